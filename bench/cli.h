@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the programs share: flags of the plant and the sensors, exit codes, error messages.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "mjcf/record.h"
+
+namespace tauext {
+
+/// Exit codes of all programs.
+enum ExitCode : int {
+  kGood = 0,         ///< done, and the answer is good
+  kAnswerIsNo = 1,   ///< done, but an entry failed
+  kCouldNotRun = 2,  ///< wrong flags, unreadable input, unwritable output
+};
+
+/// Adds --velocity_noise, --encoder_step, --loadcell_noise, --seed, --kp and --kd.
+void add_recording_flags(CLI::App& app, Sensors& sensors, Recording& recording);
+
+/// Parses and runs; prints help, version and errors as "<program>: <what>"; returns the exit code.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+/// "name  description" lines of everything the roster and the scenarios hold.
+std::string list_known();
+
+}  // namespace tauext

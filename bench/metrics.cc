@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tauext {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// first sample that counts
+Eigen::Index first_from(const Times& t, double from) {
+  return std::lower_bound(t.begin(), t.end(), from) - t.begin();
+}
+
+Eigen::RowVectorXd error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  const Eigen::Index n = truth.size() - first_from(t, from);
+  return estimate.tail(n) - truth.tail(n);
+}
+
+// [s] when the signal first reaches level in the direction up, from sample `start` on
+double crossing(const Times& t, const Signal& x, Eigen::Index start, double level, bool up) {
+  for (Eigen::Index k = start; k < x.size(); ++k) {
+    if (up ? x[k] < level : x[k] > level) continue;
+    if (k == start) return t[k];
+    const double part = std::clamp((level - x[k - 1]) / (x[k] - x[k - 1]), 0., 1.);
+    return t[k - 1] + part * (t[k] - t[k - 1]);
+  }
+  return kNaN;
+}
+
+// mean squared estimate(t_k) - truth(t_k-shift), every stride-th sample
+double mismatch(const Signal& truth, const Signal& estimate, Eigen::Index first, Eigen::Index shift,
+                Eigen::Index stride) {
+  double sum = 0;
+  for (Eigen::Index k = first; k < truth.size(); k += stride) {
+    const double e = estimate[k] - truth[k - shift];
+    sum += e * e;
+  }
+  return sum;
+}
+
+}  // namespace
+
+double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  return std::sqrt(error(t, truth, estimate, from).array().square().mean());
+}
+
+double bias(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  return error(t, truth, estimate, from).mean();
+}
+
+double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  return error(t, truth, estimate, from).cwiseAbs().maxCoeff();
+}
+
+double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from) {
+  const Eigen::RowVectorXd e = error(t, ideal, noisy, from);
+  return std::sqrt((e.array() - e.mean()).square().mean());
+}
+
+StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate) {
+  Eigen::Index k = 0;
+  const Eigen::Index n = truth.size();
+  if (n < 2) return {kNaN, kNaN, kNaN, kNaN};
+  (truth.tail(n - 1) - truth.head(n - 1)).cwiseAbs().maxCoeff(&k);
+  const double a = truth[k], b = truth[k + 1], step = b - a;
+  ++k;  // the first sample of level b, t_s = t[k]
+  if (step == 0) return {kNaN, kNaN, kNaN, kNaN};
+
+  StepResponse r;
+  const double at_10 = crossing(t, estimate, k, a + 0.1 * step, step > 0);
+  const double at_90 = crossing(t, estimate, k, a + 0.9 * step, step > 0);
+  r.rise = at_90 - at_10;
+  r.rise_0_90 = at_90 - t[k];
+  r.overshoot = std::max(0., ((estimate.tail(n - k).array() - b) / step).maxCoeff() * 100);
+
+  const double band = 0.02 * std::abs(step);
+  Eigen::Index last_outside = n - 1;
+  while (last_outside >= k && std::abs(estimate[last_outside] - b) <= band) --last_outside;
+  if (last_outside == n - 1) {
+    r.settling = kNaN;
+  } else if (last_outside < k) {
+    r.settling = 0;
+  } else {
+    const double edge = estimate[last_outside] > b ? b + band : b - band;
+    r.settling = crossing(t, estimate, last_outside, edge, estimate[last_outside] < b) - t[k];
+  }
+  return r;
+}
+
+double lag(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  constexpr double kLongest = 2;        // [s]
+  constexpr Eigen::Index kCoarse = 16;  // samples
+  if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNaN;
+  if (estimate.maxCoeff() == estimate.minCoeff()) return kNaN;
+  const Eigen::Index first = first_from(t, t.front() + from + kLongest);
+  const double Ts = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
+  const auto longest = static_cast<Eigen::Index>(kLongest / Ts);
+  if (first >= truth.size() || longest > first) return kNaN;
+
+  const auto best = [&](Eigen::Index from_shift, Eigen::Index to_shift, Eigen::Index step) {
+    Eigen::Index at = from_shift;
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index s = from_shift; s <= to_shift; s += step) {
+      const double m = mismatch(truth, estimate, first, s, step);
+      if (m < least) least = m, at = s;
+    }
+    return at;
+  };
+  const Eigen::Index coarse = best(0, longest, kCoarse);
+  const Eigen::Index fine =
+      best(std::max<Eigen::Index>(0, coarse - kCoarse), std::min(longest, coarse + kCoarse), 1);
+  return fine == longest ? kNaN : static_cast<double>(fine) * Ts;
+}
+
+DetectionScore detection_score(const Times& t, const std::vector<std::uint8_t>& contact,
+                               const std::vector<std::uint8_t>& marks) {
+  constexpr double kGrace = 0.2;  // [s] after the contact
+  DetectionScore s;
+  s.delay = kNaN;
+  const std::size_t n = t.size();
+  std::vector<std::uint8_t> expected(n, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!contact[k]) continue;
+    std::size_t end = k;
+    while (end + 1 < n && contact[end + 1]) ++end;
+    ++s.collisions;
+    bool detected = false;
+    std::size_t j = k;
+    for (; j < n && (j <= end || (!contact[j] && t[j] <= t[end] + kGrace)); ++j) {
+      expected[j] = 1;
+      if (!marks[j] || detected) continue;
+      detected = true;
+      ++s.detected;
+      s.delay = std::fmax(s.delay, t[j] - t[k]);
+    }
+    k = j - 1;
+  }
+  for (std::size_t k = 0; k < n; ++k) s.false_alarms += marks[k] && !expected[k];
+  if (n > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (t.back() - t.front());
+  return s;
+}
+
+}  // namespace tauext

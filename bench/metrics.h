@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Every metric of the suite, defined once. A signal is one joint's row over the samples; `truth`
+/// and `estimate` are tau_ext [N m]; NaN says that a metric does not exist for these signals.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace tauext {
+
+using Signal = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+using Times = std::vector<double>;  ///< [s], increasing
+
+/// [N m] root of the mean squared error over samples with t >= from.
+double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] mean of estimate - truth over samples with t >= from.
+double bias(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] largest |estimate - truth| over samples with t >= from.
+double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run, over
+/// samples with t >= from.
+double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from);
+
+/// The answer to the largest jump of the truth, from level a to level b at time t_s. A crossing
+/// lies on the straight line between two samples.
+struct StepResponse {
+  double rise;       ///< [s] from first reaching 10 % to first reaching 90 % of the way from a to b
+  double rise_0_90;  ///< [s] from t_s to first reaching 90 %
+  double
+      settling;  ///< [s] from t_s to last entering b +- 2 % of b - a; NaN if it never stays there
+  double overshoot;  ///< [%] of b - a, beyond b; at least 0
+};
+StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate);
+
+/// [s] the delay L, at sample resolution and up to 2 s, for which truth(t - L) is closest to
+/// estimate(t) in the mean square over t >= from + 2 s. NaN for a constant truth or estimate, for a
+/// shorter run, and if no delay below 2 s fits best.
+double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// Marks against the true contact. A collision lasts from the first to the last sample of a run of
+/// contact = 1. It is detected by the first mark from its begin until 0.2 s after its end; any mark
+/// outside these windows is a false alarm.
+struct DetectionScore {
+  int collisions = 0;
+  int detected = 0;
+  int false_alarms = 0;
+  double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
+  double false_alarms_per_hour = 0;  ///< [1/h]
+};
+DetectionScore detection_score(const Times& t, const std::vector<std::uint8_t>& contact,
+                               const std::vector<std::uint8_t>& marks);
+
+}  // namespace tauext

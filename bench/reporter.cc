@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/reporter.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace tauext {
+
+Reporter::Reporter(benchmark::BenchmarkReporter* display, bool progress, int total)
+    : display_(display), progress_(progress), total_(total) {
+  json_.SetOutputStream(&json_text_);
+  json_.SetErrorStream(&json_text_);
+}
+
+bool Reporter::ReportContext(const Context& context) {
+  return json_.ReportContext(context) && (display_ == nullptr || display_->ReportContext(context));
+}
+
+void Reporter::ReportRuns(const std::vector<Run>& runs) {
+  std::vector<Run> finite = runs;
+  for (Run& run : finite) {
+    std::erase_if(run.counters, [](const auto& c) { return !std::isfinite(c.second.value); });
+    any_error_ = any_error_ || run.error_occurred;
+    const auto time = run.counters.find("cpu_ns");
+    if (time == run.counters.end()) continue;
+    const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
+    if (median || run.run_type == Run::RT_Iteration)
+      cpu_ns_[run.run_name.function_name] = time->second.value;
+  }
+  json_.ReportRuns(finite);
+  if (display_ != nullptr) display_->ReportRuns(finite);
+  if (progress_ && !runs.empty()) {
+    done_ = std::min(done_ + 1, total_);
+    fmt::print(stderr, "\r\033[K[{:3}/{}] {}", done_, total_, runs[0].run_name.function_name);
+    std::fflush(stderr);
+  }
+}
+
+void Reporter::Finalize() {
+  json_.Finalize();
+  if (display_ != nullptr) display_->Finalize();
+  clear_progress();
+}
+
+void Reporter::clear_progress() const {
+  if (progress_) fmt::print(stderr, "\r\033[K");
+}
+
+}  // namespace tauext

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Takes Google Benchmark's results: progress to a terminal, times for the table, valid JSON.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <sstream>
+#include <string>
+
+namespace tauext {
+
+/// A display reporter that also builds the JSON of --benchmark_out. Google Benchmark writes a bare
+/// NaN, which is no JSON, for a counter without a value; here such a counter is left out.
+class Reporter : public benchmark::BenchmarkReporter {
+ public:
+  /// @param display prints to standard output; nullptr for none
+  /// @param progress whether to show what is running, on standard error
+  Reporter(benchmark::BenchmarkReporter* display, bool progress, int total);
+
+  bool ReportContext(const Context& context) override;
+  void ReportRuns(const std::vector<Run>& runs) override;
+  void Finalize() override;
+
+  /// The whole document; valid once all benchmarks are done.
+  std::string json() const { return json_text_.str(); }
+
+  bool any_error() const { return any_error_; }
+
+  /// [ns] CPU time of a step by benchmark name: the median if there are repetitions.
+  const std::map<std::string, double>& cpu_ns() const { return cpu_ns_; }
+
+  /// Erases the progress line.
+  void clear_progress() const;
+
+ private:
+  benchmark::BenchmarkReporter* display_;
+  benchmark::JSONReporter json_;
+  std::ostringstream json_text_;
+  std::map<std::string, double> cpu_ns_;
+  bool progress_, any_error_ = false;
+  int done_ = 0, total_;
+};
+
+}  // namespace tauext

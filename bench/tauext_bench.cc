@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-bench: scores, then times every entry of the roster inside Google Benchmark.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/cli.h"
+#include "bench/reporter.h"
+#include "bench/suite.h"
+#include "bench/table.h"
+#include "bench/table3.h"
+#include "mjcf/atomic_file.h"
+
+namespace {
+
+using namespace tauext;
+
+// takes --name=value (or --name value) out of argv
+std::optional<std::string> take_flag(std::vector<std::string>& args, const std::string& name) {
+  for (std::size_t i = 1; i < args.size(); ++i) {
+    if (args[i].starts_with(name + "=")) {
+      std::string value = args[i].substr(name.size() + 1);
+      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i));
+      return value;
+    }
+    if (args[i] == name && i + 1 < args.size()) {
+      std::string value = args[i + 1];
+      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i),
+                 args.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+      return value;
+    }
+  }
+  return std::nullopt;
+}
+
+// score first; a wrong answer is an error and is not timed
+void run_entry(benchmark::State& state, Suite& suite, Row& row) {
+  if (row.score.metrics.empty()) row.score = suite.score(row.entry);
+  if (!row.score.error.empty()) {
+    state.SkipWithError(row.score.error.c_str());
+    return;
+  }
+  const auto runner = suite.runner(row.entry);
+  for (auto _ : state) {
+    runner->batch();
+    benchmark::ClobberMemory();
+  }
+  for (const auto& [key, value] : row.score.metrics) state.counters[key] = value;
+  using C = benchmark::Counter;
+  state.counters["cpu_ns"] = C(Runner::kBatch * 1e-9, C::kIsIterationInvariantRate | C::kInvert);
+}
+
+std::unique_ptr<benchmark::BenchmarkReporter> make_display(
+    const std::optional<std::string>& format) {
+  if (!format) return nullptr;
+  if (*format == "console")
+    return std::make_unique<benchmark::ConsoleReporter>(benchmark::ConsoleReporter::OO_Tabular);
+  if (*format == "json") return std::make_unique<benchmark::JSONReporter>();
+  throw std::invalid_argument(fmt::format("--benchmark_format={}: console or json", *format));
+}
+
+std::string build_line(const Suite& suite) {
+  const SuiteOptions& o = suite.options();
+  return fmt::format("tauext {}, {}, {}, MuJoCo {}, seed {}, Kp {:g} 1/s^2, Kd {:g} 1/s",
+                     TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(),
+                     o.sensors.seed, o.recording.tracking.Kp, o.recording.tracking.Kd);
+}
+
+struct Flags {
+  SuiteOptions suite;
+  bool list = false, paper = false;
+  std::optional<std::string> out, format;
+};
+
+int run(const Flags& flags) {
+  if (flags.list) {
+    for (const Entry& e : entries()) fmt::print("{}\n", e.name());
+    return kGood;
+  }
+  std::optional<AtomicFile> json_file;  // opened now: an unwritable path should not cost a run
+  if (flags.out) json_file.emplace(*flags.out);
+  const auto display = make_display(flags.format);
+
+  Suite suite(flags.suite);
+  std::vector<Row> rows;
+  for (const Entry& e : entries()) rows.push_back({e, {}});
+  for (Row& row : rows) {
+    benchmark::RegisterBenchmark(row.entry.name().c_str(),
+                                 [&suite, &row](benchmark::State& s) { run_entry(s, suite, row); });
+  }
+  benchmark::AddCustomContext("tauext", build_line(suite));
+  Reporter reporter(display.get(), ::isatty(STDERR_FILENO) == 1, static_cast<int>(rows.size()));
+  if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
+    throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
+  }
+
+  std::erase_if(rows, [](const Row& r) { return r.score.metrics.empty(); });
+  if (rows.empty()) return kGood;  // --benchmark_list_tests
+  for (Row& row : rows) {
+    const auto time = reporter.cpu_ns().find(row.entry.name());
+    if (time != reporter.cpu_ns().end()) row.score.metrics["cpu_ns"] = time->second;
+  }
+  std::FILE* const to = flags.format == "json" ? stderr : stdout;
+  fmt::print(to, "{}\n\n{}\n{}", build_line(suite), format_table(rows), table_legend());
+  if (flags.paper) fmt::print(to, "\n{}", format_table3());
+  if (json_file) {
+    json_file->write(reporter.json());
+    json_file->commit();
+    fmt::print(to, "\n{}: results as JSON\n", *flags.out);
+  }
+  return reporter.any_error() ? kAnswerIsNo : kGood;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Scores every estimator on every scenario, then times its step, and prints a table.\n"
+      "Exit code 1 if an entry failed. All flags of Google Benchmark work.\n\n"
+      "  tauext-bench --benchmark_filter=step/ --benchmark_out=results.json\n",
+      "tauext-bench");
+  Flags flags;
+  app.add_flag("--list", flags.list, "list the entries <robot>/<scenario>/<estimator>, and stop");
+  app.add_flag("--paper", flags.paper, "print Table III of the paper beside ours, too");
+  app.add_option("--noise_probe", flags.suite.noise_probe,
+                 "velocity noise [rad/s] behind the column noise, for ideal sensors")
+      ->capture_default_str();
+  add_recording_flags(app, flags.suite.sensors, flags.suite.recording);
+  app.footer(
+      "Google Benchmark's: --benchmark_filter=REGEX --benchmark_out=FILE (JSON)\n"
+      "  --benchmark_repetitions=N --benchmark_min_time=SECONDS --benchmark_format=console|json");
+
+  std::vector<std::string> args(argv, argv + argc);
+  flags.out = take_flag(args, "--benchmark_out");
+  flags.format = take_flag(args, "--benchmark_format");
+  const auto out_format = take_flag(args, "--benchmark_out_format");
+  std::vector<char*> rest;
+  bool help = false;
+  for (std::string& a : args) {
+    help = help || a == "--help" || a == "-h";
+    rest.push_back(a.data());
+  }
+  int count = static_cast<int>(rest.size());
+  rest.push_back(nullptr);
+  if (!help) benchmark::Initialize(&count, rest.data());
+  return run_program(app, count, rest.data(), [&] {
+    if (out_format && *out_format != "json") {
+      throw std::invalid_argument(
+          "--benchmark_out_format: json is the only format; rows have different counters");
+    }
+    return run(flags);
+  });
+}

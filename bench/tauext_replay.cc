@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-replay: runs estimators over a recorded log.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/cli.h"
+#include "bench/suite.h"
+#include "mjcf/atomic_file.h"
+
+namespace {
+
+using namespace tauext;
+
+struct Column {
+  std::string estimator, detector;
+  Output output;
+};
+
+std::string marks_name(const Column& c, bool several) {
+  return several ? fmt::format("{}_{}_mark", c.estimator, c.detector)
+                 : fmt::format("{}_mark", c.detector);
+}
+
+void write_estimates(const Trace& trace, const std::vector<Column>& columns,
+                     const std::string& path) {
+  // with one estimator, <detector>_mark is unambiguous; with more, the estimator's name comes first
+  const bool several = columns.size() > 1;
+  AtomicFile file(path);
+  fmt::memory_buffer out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "t");
+  for (const Column& c : columns) {
+    for (int j = 1; j <= trace.dof(); ++j) fmt::format_to(to, ",{}_tau_ext{}", c.estimator, j);
+    if (!c.output.marks.empty()) fmt::format_to(to, ",{}", marks_name(c, several));
+  }
+  fmt::format_to(to, "\n");
+  for (int k = 0; k < trace.size(); ++k) {
+    fmt::format_to(to, "{:.17g}", trace.t[k]);
+    for (const Column& c : columns) {
+      for (int j = 0; j < trace.dof(); ++j) fmt::format_to(to, ",{:.17g}", c.output.tau_ext(j, k));
+      if (!c.output.marks.empty()) fmt::format_to(to, ",{}", int{c.output.marks[k]});
+    }
+    fmt::format_to(to, "\n");
+  }
+  file.write({out.data(), out.size()});
+  file.commit();
+}
+
+void report_skipped(const SkippedRows& s, const std::string& log) {
+  if (s.total() == 0) return;
+  fmt::print(
+      stderr,
+      "{}: skipped {} rows: {} with a wrong number of fields, {} not a number, {} not finite, "
+      "{} out of time order\n",
+      log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order);
+  for (const std::string& line : s.first) fmt::print(stderr, "  {}\n", line);
+  if (s.total() > static_cast<int>(s.first.size())) fmt::print(stderr, "  ...\n");
+}
+
+// statuses that an engineer has to know of
+void report_status(const Column& c) {
+  int bad = 0, restarts = -1, diverged = 0, singular = 0;
+  for (const Status s : c.output.status) {
+    bad += s == Status::kBadMeasurement;
+    restarts += s == Status::kStarted;
+    diverged += s == Status::kDiverged;
+    singular += s == Status::kSingularInertia;
+  }
+  if (bad + restarts + diverged + singular <= 0) return;
+  fmt::print(stderr,
+             "{}: {} samples ignored as out of range, {} restarts after gaps, {} divergences, "
+             "{} with a singular inertia\n",
+             c.estimator, bad, std::max(restarts, 0), diverged, singular);
+}
+
+void print_metrics(const Trace& trace, const std::vector<Column>& columns) {
+  fmt::print("{:<28} {:>6} {:>12} {:>12} {:>12}\n{:<28} {:>6} {:>12} {:>12} {:>12}\n", "estimator",
+             "joint", "rmse", "|bias|", "max", "", "", "N m", "N m", "N m");
+  for (const Column& c : columns) {
+    Score s;
+    add_error_metrics(trace, c.output, trace.t.front(), s);
+    add_detection_metrics(trace, c.output, s);
+    for (int j = 1; j <= trace.dof(); ++j) {
+      const auto value = [&](const char* q) { return s.metrics.at(fmt::format("{}{}_Nm", q, j)); };
+      fmt::print("{:<28} {:>6} {:>12.6g} {:>12.6g} {:>12.6g}\n", j == 1 ? c.estimator : "", j,
+                 value("rmse"), value("bias"), value("max"));
+    }
+    if (c.detector.empty() || trace.contact.empty()) continue;
+    const auto delay = s.get("delay_s");
+    fmt::print("  {}: {} false alarms, {}\n", c.detector, s.metrics.at("false_alarms"),
+               !delay               ? "no collision in the log"
+               : std::isnan(*delay) ? "no collision detected"
+                                    : fmt::format("recall {}, largest delay {:.3f} s",
+                                                  s.metrics.at("recall"), *delay));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Runs estimators over a recorded log (columns as tauext-record writes them; tau_ext\n"
+      "and contact may be missing) and writes their estimates, one row per sample.\n"
+      "With the truth in the log, prints the errors too.\n\n"
+      "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
+      "tauext-replay");
+  std::string log, robot_name, detector, out;
+  std::vector<std::string> estimators;
+  bool list = false;
+  app.add_option("log", log, "CSV to read");
+  app.add_option("--robot", robot_name, "robot (see --list)");
+  app.add_option("--estimator", estimators, "one or more, separated by commas")->delimiter(',');
+  app.add_option("--detector", detector, "detector behind each estimator");
+  app.add_option("--out", out, "file to write; - is standard output");
+  app.add_flag("--list", list, "list robots, estimators and detectors, and stop");
+  return run_program(app, argc, argv, [&] {
+    if (list) {
+      fmt::print("{}", list_known());
+      return kGood;
+    }
+    if (log.empty() || robot_name.empty() || estimators.empty() || out.empty()) {
+      throw std::invalid_argument(
+          "a log, --robot, --estimator and --out are required; see tauext-replay --help");
+    }
+    const Robot& r = robot(robot_name);
+    SkippedRows skipped;
+    const Trace trace = read_csv(log, &skipped);
+    std::vector<Column> columns;
+    for (const std::string& e : estimators) {
+      if (std::count(estimators.begin(), estimators.end(), e) > 1) {
+        throw std::invalid_argument(fmt::format("estimator '{}' is named twice", e));
+      }
+      columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
+    }
+    report_skipped(skipped, log);
+    for (const Column& c : columns) report_status(c);
+    write_estimates(trace, columns, out);
+    if (trace.has_truth() && out != "-") print_metrics(trace, columns);
+    return kGood;
+  });
+}

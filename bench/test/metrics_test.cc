@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metrics on signals whose answer is known by hand.
+#include "bench/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tauext::test {
+namespace {
+
+using Row = Eigen::RowVectorXd;
+
+Times times(int n, double Ts = 1e-3) {
+  Times t(n);
+  for (int k = 0; k < n; ++k) t[k] = k * Ts;
+  return t;
+}
+
+template <class F>
+Row signal(const Times& t, F&& f) {
+  Row x(t.size());
+  for (std::size_t k = 0; k < t.size(); ++k) x[k] = f(t[k]);
+  return x;
+}
+
+TEST(ErrorMetrics, OfFourSamples) {
+  const Times t = times(4, 1);
+  const Row truth = (Row(4) << 0, 0, 10, 10).finished(),
+            estimate = (Row(4) << 100, 3, 6, 10).finished();
+  EXPECT_DOUBLE_EQ(rmse(t, truth, estimate, 1), std::sqrt((9. + 16 + 0) / 3));
+  EXPECT_DOUBLE_EQ(bias(t, truth, estimate, 1), (3. - 4 + 0) / 3);
+  EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 1), 4);
+  EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 0), 100) << "the start counts if asked";
+}
+
+TEST(Noise, IsTheDeviationOfTheDifferenceWithoutItsMean) {
+  const Times t = times(4, 1);
+  const Row ideal = Row::Zero(4), noisy = (Row(4) << 7, 3, 7, 3).finished();
+  EXPECT_DOUBLE_EQ(noise(t, ideal, noisy, 0), 2);
+}
+
+// the answer of a first-order filter of bandwidth K to a step from a to b at 1 s
+Row first_order(const Times& t, double K, double a, double b) {
+  return signal(t, [=](double s) { return s < 1 ? a : b + (a - b) * std::exp(-K * (s - 1)); });
+}
+Row step(const Times& t, double a, double b) {
+  return signal(t, [=](double s) { return s < 1 ? a : b; });
+}
+
+TEST(StepResponse, OfAFirstOrderFilterIsInClosedForm) {
+  const Times t = times(5000);
+  for (const auto& [a, b] : {std::pair(0., 98.2), std::pair(20., -30.)}) {
+    const StepResponse r = step_response(t, step(t, a, b), first_order(t, 10, a, b));
+    EXPECT_NEAR(r.rise, std::log(9) / 10, 1e-5) << "straight lines between samples leave h^2 K / 8";
+    EXPECT_NEAR(r.rise_0_90, std::log(10) / 10, 1e-5);
+    EXPECT_NEAR(r.settling, std::log(50) / 10, 1e-5);
+    EXPECT_EQ(r.overshoot, 0);
+  }
+}
+
+TEST(StepResponse, OfASecondOrderFilterOvershootsByItsDamping) {
+  // zeta = 0.5: overshoot exp(-pi zeta / sqrt(1 - zeta^2)) = 16.3 %
+  const Times t = times(5000);
+  const double w = 10, zeta = 0.5, wd = w * std::sqrt(1 - zeta * zeta);
+  const Row x = signal(t, [=](double s) {
+    const double u = s - 1;
+    return u < 0 ? 0
+                 : 1 - std::exp(-zeta * w * u) *
+                           (std::cos(wd * u) + zeta * w / wd * std::sin(wd * u));
+  });
+  EXPECT_NEAR(step_response(t, step(t, 0, 1), x).overshoot,
+              100 * std::exp(-M_PI * zeta / std::sqrt(1 - zeta * zeta)), 0.01);
+}
+
+TEST(StepResponse, OfThePerfectEstimateIsZero) {
+  const Times t = times(3000);
+  const StepResponse r = step_response(t, step(t, 0, 5), step(t, 0, 5));
+  EXPECT_EQ(r.rise, 0);
+  EXPECT_EQ(r.rise_0_90, 0);
+  EXPECT_EQ(r.settling, 0);
+}
+
+TEST(StepResponse, OfAnEstimateThatNeverArrivesIsNaN) {
+  const Times t = times(3000);
+  const StepResponse r = step_response(t, step(t, 0, 5), step(t, 0, 4));
+  EXPECT_TRUE(std::isnan(r.rise));
+  EXPECT_TRUE(std::isnan(r.settling));
+  EXPECT_TRUE(std::isnan(step_response(t, step(t, 5, 5), step(t, 0, 4)).rise))
+      << "no step, no answer";
+}
+
+TEST(Lag, OfADelayedSignalIsExactlyItsDelay) {
+  const Times t = times(20000);
+  const auto truth = [](double s) { return 10 * std::sin(s) + 5 * std::cos(2 * s); };
+  for (const int delay : {0, 1, 17, 400, 1999}) {
+    const Row late = signal(t, [&](double s) { return truth(s - delay * 1e-3); });
+    EXPECT_NEAR(lag(t, signal(t, truth), late, 3), delay * 1e-3, 1e-12);
+  }
+}
+
+TEST(Lag, OfAFirstOrderFilterOnARampIsOneOverItsBandwidth) {
+  const Times t = times(20000);
+  const Row truth = signal(t, [](double s) { return 5 * s; });
+  const Row late = signal(t, [](double s) { return 5 * (s - (1 - std::exp(-20 * s)) / 20); });
+  EXPECT_NEAR(lag(t, truth, late, 3), 1. / 20, 1e-9);
+}
+
+TEST(Lag, OfAnAnswerThatIsNoneIsNaN) {
+  const Times t = times(20000);
+  const Row moving = signal(t, [](double s) { return std::sin(s); }), still = Row::Zero(20000);
+  EXPECT_TRUE(std::isnan(lag(t, moving, still, 0)));
+  EXPECT_TRUE(std::isnan(lag(t, still, moving, 0)));
+  EXPECT_TRUE(std::isnan(lag(times(100), moving.head(100), moving.head(100), 0)))
+      << "too short to tell";
+}
+
+std::vector<std::uint8_t> flags(int n, std::initializer_list<std::pair<int, int>> ranges) {
+  std::vector<std::uint8_t> f(n, 0);
+  for (const auto& [first, last] : ranges) std::fill(f.begin() + first, f.begin() + last + 1, 1);
+  return f;
+}
+
+TEST(DetectionScore, CountsEachCollisionOnceAndTheRestAsFalse) {
+  // two collisions; the first marked after 15 ms and again (no matter), the second missed; one mark
+  // before everything and one 0.3 s after the first contact are false
+  const Times t = times(3600);
+  const auto contact = flags(3600, {{1000, 1019}, {2000, 2019}});
+  const auto marks = flags(3600, {{100, 100}, {1015, 1015}, {1100, 1100}, {1320, 1320}});
+  const DetectionScore s = detection_score(t, contact, marks);
+  EXPECT_EQ(s.collisions, 2);
+  EXPECT_EQ(s.detected, 1);
+  EXPECT_DOUBLE_EQ(s.delay, t[1015] - t[1000]);
+  EXPECT_EQ(s.false_alarms, 2);
+  EXPECT_NEAR(s.false_alarms_per_hour, 2 * 3600 / 3.599, 1e-9);
+}
+
+TEST(DetectionScore, WithoutContactEveryMarkIsFalseAndThereIsNoDelay) {
+  const DetectionScore s = detection_score(times(100), flags(100, {}), flags(100, {{5, 5}}));
+  EXPECT_EQ(s.collisions, 0);
+  EXPECT_EQ(s.false_alarms, 1);
+  EXPECT_TRUE(std::isnan(s.delay));
+}
+
+}  // namespace
+}  // namespace tauext::test

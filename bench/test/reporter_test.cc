@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/reporter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tauext::test {
+namespace {
+
+using Result = benchmark::BenchmarkReporter::Run;
+
+Result run_of(const char* name, double cpu_ns) {
+  Result r;
+  r.run_name.function_name = name;
+  r.run_type = Result::RT_Iteration;
+  r.iterations = 10;
+  r.counters["cpu_ns"] = benchmark::Counter(cpu_ns);
+  return r;
+}
+
+TEST(Reporter, ItsJsonIsValidWhateverTheCountersHold) {
+  Reporter reporter(nullptr, false, 2);
+  benchmark::BenchmarkReporter::Context context;
+  ASSERT_TRUE(reporter.ReportContext(context));
+  Result odd = run_of("a/b/odd", 3);
+  odd.counters["cv"] = benchmark::Counter(std::nan(""));
+  odd.counters["settling_s"] = benchmark::Counter(-INFINITY);
+  Result failed = run_of("a/b/failed", 1);
+  failed.error_occurred = true;
+  failed.error_message = "wrong \"answer\"";
+  reporter.ReportRuns({odd});
+  reporter.ReportRuns({failed});
+  reporter.Finalize();
+  const auto json = nlohmann::json::parse(reporter.json());  // throws on a bare NaN
+  ASSERT_EQ(json["benchmarks"].size(), 2u);
+  EXPECT_EQ(json["benchmarks"][0]["cpu_ns"], 3);
+  EXPECT_FALSE(json["benchmarks"][0].contains("cv"));
+  EXPECT_EQ(json["benchmarks"][1]["error_occurred"], true);
+  EXPECT_TRUE(reporter.any_error());
+}
+
+TEST(Reporter, TakesTheMedianOfRepetitions) {
+  Reporter reporter(nullptr, false, 1);
+  reporter.ReportContext({});
+  Result median = run_of("a/b/c", 20);
+  median.run_type = Result::RT_Aggregate;
+  median.aggregate_name = "median";
+  Result deviation = run_of("a/b/c", 5);
+  deviation.run_type = Result::RT_Aggregate;
+  deviation.aggregate_name = "stddev";
+  reporter.ReportRuns({run_of("a/b/c", 10), run_of("a/b/c", 90), median, deviation});
+  EXPECT_EQ(reporter.cpu_ns().at("a/b/c"), 20);
+  EXPECT_FALSE(reporter.any_error());
+}
+
+}  // namespace
+}  // namespace tauext::test

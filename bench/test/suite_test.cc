@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/suite.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace tauext::test {
+namespace {
+
+Suite& suite() {
+  static Suite s{SuiteOptions{}};
+  return s;
+}
+
+TEST(Suite, NamesEveryEntryOnceAndInTheOrderOfTheRoster) {
+  std::set<std::string> names;
+  for (const Entry& e : entries()) EXPECT_TRUE(names.insert(e.name()).second) << e.name();
+  EXPECT_TRUE(names.contains("wallmobot3/step/ekf"));
+  EXPECT_TRUE(names.contains("wallmobot3/collision/ndob+pan_tompkins"));
+}
+
+TEST(Suite, TheTruthScoresExactlyZeroOnEveryScenario) {
+  for (const Scenario& s : scenarios()) {
+    const Score score = suite().score({"wallmobot3", s.name, "truth", ""});
+    EXPECT_EQ(score.error, "");
+    for (const char* key : {"rmse_Nm", "max_Nm", "bias_Nm", "noise_Nm"})
+      EXPECT_EQ(score.get(key), 0) << s.name << key;
+    EXPECT_EQ(score.get("lag_s").value_or(0), 0);
+  }
+}
+
+TEST(Suite, TheDelayedTruthScoresExactlyItsDelay) {
+  for (const char* name : {"ramp", "sine"}) {
+    const Score score = suite().score({"wallmobot3", name, "delayed_truth", ""});
+    EXPECT_NEAR(*score.get("lag_s"), 0.010, 1e-12) << name;
+  }
+  const Score step = suite().score({"wallmobot3", "step", "delayed_truth", ""});
+  EXPECT_NEAR(*step.get("settling_s"), 0.010, 0.001) << "within the sample in which it jumps";
+}
+
+TEST(Suite, EkfAndNdobReachThePublishedLevelOnSine) {
+  // an independent reproduction's figures for joint 2, noise-free, after 3 s
+  EXPECT_LT(*suite().score({"wallmobot3", "sine", "ndob", ""}).get("rmse1_Nm"), 0.7);
+  EXPECT_LT(*suite().score({"wallmobot3", "sine", "ekf", ""}).get("rmse1_Nm"), 0.25);
+}
+
+TEST(Suite, EveryEntryOfTheRosterPasses) {
+  for (const Entry& e : entries()) {
+    const Score score = suite().score(e);
+    EXPECT_EQ(score.error, "") << e.name();
+    EXPECT_EQ(score.get("allocs").value_or(0), 0) << e.name();
+  }
+}
+
+TEST(Suite, TheCollisionIsMarkedAndTheSlowLoadIsNot) {
+  for (const char* e : {"ekf", "ndob", "inverse_dynamics"}) {
+    const Score hit = suite().score({"wallmobot3", "collision", e, "pan_tompkins"});
+    EXPECT_EQ(hit.get("recall"), 1) << e;
+    EXPECT_LT(*hit.get("delay_s"), 0.015) << e;
+    EXPECT_EQ(hit.get("false_alarms"), 0) << e;
+    EXPECT_EQ(suite().score({"wallmobot3", "sine", e, "pan_tompkins"}).get("false_alarms"), 0) << e;
+  }
+}
+
+TEST(Suite, NoiseIsWhatTheSensorsAdd) {
+  // (17): velocity noise s goes through X at once: 600, 1000, 600 times 1e-3, a little more by (18)
+  const Score score = suite().score({"wallmobot3", "free", "ndob", ""});
+  EXPECT_NEAR(*score.get("noise1_Nm"), 0.6, 0.02);
+  EXPECT_NEAR(*score.get("noise2_Nm"), 1.0, 0.02);
+  EXPECT_NEAR(*score.get("noise3_Nm"), 0.6, 0.02);
+}
+
+TEST(Suite, AskedForSensorsItScoresTheirTrace) {
+  SuiteOptions options;
+  options.sensors.velocity_noise = 1e-2;
+  Suite noisy(options);
+  EXPECT_NEAR(*noisy.score({"wallmobot3", "free", "ndob", ""}).get("rmse2_Nm"), 10, 0.2);
+}
+
+// an output that a broken estimator might give
+Output output(const Trace& t, double factor) {
+  return {factor * t.tau_ext, std::vector<Status>(t.size(), Status::kOk), {}};
+}
+
+TEST(Failure, AWrongSignIsAWrongAnswer) {
+  const Trace t = record(load_robot("wallmobot3"), scenario("step"));
+  EXPECT_EQ(failure(t, output(t, 1), 0), "");
+  EXPECT_EQ(failure(t, output(t, 0), 0), "");
+  EXPECT_NE(failure(t, output(t, -1), 0).find("wrong answer"), std::string::npos);
+}
+
+TEST(Failure, AStatusOrANonFiniteEstimateIsNamedWithItsTime) {
+  const Trace t = record(load_robot("wallmobot3"), scenario("free"));
+  Output diverged = output(t, 1);
+  diverged.status[2000] = Status::kDiverged;
+  EXPECT_EQ(failure(t, diverged, 0), "diverged at t = 2 s");
+  Output nan = output(t, 1);
+  nan.tau_ext(1, 500) = std::nan("");
+  EXPECT_EQ(failure(t, nan, 0), "not finite at t = 0.5 s");
+}
+
+}  // namespace
+}  // namespace tauext::test

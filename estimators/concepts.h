@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What a robot model, an estimator and a detector must offer to take part. No base classes.
+#pragma once
+
+#include <concepts>
+#include <string_view>
+
+#include "estimators/types.h"
+
+namespace tauext {
+
+/// The terms of (3) of an arm with kDof joints; all in joint coordinates, all const and noexcept.
+template <class M>
+concept RobotModel = requires(const M& m, const Vec<M::kDof>& q, const Vec<M::kDof>& qd) {
+  { M::kDof } -> std::convertible_to<int>;
+  { m.inertia(q) }
+  noexcept->std::convertible_to<Mat<M::kDof>>;  // B [kg m^2]
+  { m.gravity(q) }
+  noexcept->std::convertible_to<Vec<M::kDof>>;  // g [N m]
+  { m.bias(q, qd) }
+  noexcept->std::convertible_to<Vec<M::kDof>>;  // C qd + g [N m]
+  { m.momentum_bias(q, qd) }
+  noexcept->std::convertible_to<Vec<M::kDof>>;  // C^T qd - g [N m]
+  { m.friction(qd) }
+  noexcept->std::convertible_to<Vec<M::kDof>>;  // F [N m]
+};
+
+/// Inertia and bias of one state.
+template <int N, class Scalar = double>
+struct Dynamics {
+  Mat<N, Scalar> B;     ///< [kg m^2] inertia
+  Vec<N, Scalar> bias;  ///< [N m] C qd + g
+};
+
+/// B and C qd + g of one state; a model that shares work between the two offers `dynamics` itself.
+template <RobotModel M>
+[[gnu::always_inline]] inline Dynamics<M::kDof> dynamics(const M& m, const Vec<M::kDof>& q,
+                                                         const Vec<M::kDof>& qd) noexcept {
+  if constexpr (requires { m.dynamics(q, qd); }) {
+    return m.dynamics(q, qd);
+  } else {
+    return {m.inertia(q), m.bias(q, qd)};
+  }
+}
+
+/// Where (3) leads, and how that changes: the blocks of (16).
+template <int N, class Scalar = double>
+struct ForwardDynamics {
+  Vec<N, Scalar> qdd;            ///< [rad/s^2]
+  Mat<N, Scalar> dqdd_dq;        ///< [1/s^2]
+  Mat<N, Scalar> dqdd_dqd;       ///< [1/s]
+  Mat<N, Scalar> dqdd_dtau_ext;  ///< [1/(kg m^2)] = -B^-1
+  bool ok = false;               ///< false: B was not positive definite and the rest means nothing
+};
+
+/// A model that can be linearised: u [N m] is tau - tau_ext.
+template <class M>
+concept DifferentiableModel = RobotModel<M> && requires(const M& m, const Vec<M::kDof>& x) {
+  { m.forward_dynamics(x, x, x) }
+  noexcept->std::same_as<ForwardDynamics<M::kDof>>;
+};
+
+/// Turns samples into estimates of tau_ext.
+///
+/// `reset()` forgets everything; the first `update` after it starts the estimator at that sample.
+/// After construction nothing throws, allocates, logs or reads a clock.
+template <class E>
+concept TorqueEstimator = requires(E e, const Measurement<E::kDof>& y) {
+  { E::kName } -> std::convertible_to<std::string_view>;
+  { E::kDof } -> std::convertible_to<int>;
+  { e.reset() }
+  noexcept;
+  { e.update(y) }
+  noexcept->std::same_as<Estimate<E::kDof>>;
+};
+
+/// Turns estimates of tau_ext at times t [s] into fiducial marks.
+template <class D>
+concept CollisionDetector = requires(D d, double t, const Vec<D::kDof>& tau_ext) {
+  { D::kName } -> std::convertible_to<std::string_view>;
+  { D::kDof } -> std::convertible_to<int>;
+  { d.reset() }
+  noexcept;
+  { d.update(t, tau_ext) }
+  noexcept->std::same_as<Detection>;
+};
+
+}  // namespace tauext

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Extended Kalman filter of x = [q; qd; d], d = tau_ext assumed constant: the paper (6)-(16).
+///
+/// Time update over h from k-1 to k, with qdd and its Jacobians at the last estimate:
+///     q += h qd,  qd += h qdd,  P' = F P F^T + Q,
+///     F = I + h [ 0  I  0 ; Jq  Jv  -B^-1 ; 0  0  0 ]                                   (10), (15)
+/// (10) says that tau_k-1 drives this step; (13) prints tau_k, a sample late: Alignment::kPaper.
+/// F is the identity but for its middle rows, so with G = h [Jq Jv -B^-1] (N x 3N) and U = P G^T,
+/// in blocks U_q, U_v, U_d, these blocks of the symmetric P change:
+///     P_qq' = P_qq + h (P_qv + P_vq) + h^2 P_vv
+///     P_qv' = P_qv + h P_vv + U_q + h U_v          P_dq' = P_dq + h P_dv
+///     P_vv' = P_vv + V + V^T,  V = U_v + G U / 2   P_dv' = P_dv + U_d                       (i)
+///
+/// Measurement update: H = [I 0] picks states and R is diagonal, so (14) is 2N scalar updates, one
+/// for each measured state i, in turn and without any inverse:
+///     s = P_ii + R_i,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s             (ii)
+/// Of P only the blocks on and below the diagonal are kept: qq, vq, dq, vv, dv, dd. The columns e_i
+/// of q lie in these; for those of v the block vq is turned into qv = vq^T.
+///
+/// (i) and (ii) are symmetric to the last bit (c_i c_j is formed first), which is what keeps a long
+/// run alive. The N rows of a block are padded with zeros to whole SIMD registers.
+#pragma once
+
+#include "estimators/concepts.h"
+#include "estimators/lanes.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Which torque drives the step from k-1 to k.
+enum class Alignment : std::uint8_t {
+  kHeld,   ///< tau_k-1, which acted over that step: (10)
+  kPaper,  ///< tau_k, as (13) prints it: an error of h dtau/dt
+};
+
+/// The paper's EKF over a robot model M.
+template <DifferentiableModel M>
+class Ekf {
+ public:
+  static constexpr const char* kName = "ekf";
+  static constexpr int kDof = M::kDof;
+  using Vec2 = Vec<2 * kDof>;
+  using Vec3 = Vec<3 * kDof>;
+
+  /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. Q is added once per step, of
+  /// whatever length. A larger Q_d or a smaller R is faster and noisier.
+  struct Parameters {
+    Vec3 P0 = Vec3::Constant(1e-3);  ///< of the state at the start
+    Vec3 Q = Vec3::Constant(1e-6);   ///< of the process, per step
+    Vec2 R = Vec2::Constant(1e-6);   ///< of the measured q and qd
+    Alignment alignment = Alignment::kHeld;
+    Start start = Start::kFirstMeasurement;
+    double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
+
+    /// (32), for wallmobot3.
+    static Parameters paper() requires(kDof == 3) {
+      Parameters p;
+      p.P0 << 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-2, 1e-2;
+      p.Q << 1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, 4, 2.5, 4;
+      p.R << 8e-10, 1e-12, 1e-12, 3e-11, 1e-12, 1e-12;
+      return p;
+    }
+  };
+
+  explicit Ekf(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
+    for (int b = 0; b < 3; ++b) Q_[b] = diagonal(p.Q, b);
+    start({});
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    x_[2].setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    const Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return estimate(status);
+    if (status == Status::kStarted) {
+      start(y);
+      return estimate(status);
+    }
+    const Vec<kDof>& tau = p_.alignment == Alignment::kHeld ? tau_ : y.tau;
+    if (!predict(sampling_.h(), tau)) {
+      sampling_.reset();
+      return estimate(Status::kSingularInertia);
+    }
+    correct(y);
+    tau_ = y.tau;
+    if (!within(x_[0] + x_[1], kEstimateLimit) || !within(x_[2], kEstimateLimit)) {
+      x_[2].setZero();
+      start(y);
+      return estimate(Status::kDiverged);
+    }
+    return estimate(status);
+  }
+
+  /// P [rad^2 ... (N m)^2] after the last sample, in the order of x; symmetric.
+  Mat<3 * kDof> covariance() const noexcept {
+    Mat<3 * kDof> P;
+    const Block* const blocks[3][3] = {
+        {&qq_, nullptr, nullptr}, {&vq_, &vv_, nullptr}, {&dq_, &dv_, &dd_}};
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c <= r; ++c) {
+        const Mat<kDof> b = blocks[r][c]->template topLeftCorner<kDof, kDof>();
+        P.template block<kDof, kDof>(r * kDof, c * kDof) = b;
+        P.template block<kDof, kDof>(c * kDof, r * kDof) = b.transpose();
+      }
+    }
+    return P;
+  }
+
+  /// x = [q; qd; tau_ext] after the last sample.
+  Vec3 state() const noexcept {
+    return (Vec3() << x_[0].template head<kDof>(), x_[1].template head<kDof>(),
+            x_[2].template head<kDof>())
+        .finished();
+  }
+
+ private:
+  static constexpr int kRows = detail::kPadded<kDof>;
+  using Block = detail::Block<kDof>;
+  using Column = Vec<kRows>;
+
+  Estimate<kDof> estimate(Status s) const noexcept { return {x_[2].template head<kDof>(), s}; }
+
+  void start(const Measurement<kDof>& y) noexcept {
+    const bool zero = p_.start == Start::kZero;
+    x_[0] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.q);
+    x_[1] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.qd);
+    if (zero) x_[2].setZero();
+    qq_ = diagonal(p_.P0, 0);
+    vv_ = diagonal(p_.P0, 1);
+    dd_ = diagonal(p_.P0, 2);
+    vq_.setZero();
+    dq_.setZero();
+    dv_.setZero();
+    tau_ = y.tau;
+  }
+
+  // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
+  [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau) noexcept {
+    const ForwardDynamics<kDof> f =
+        model_.forward_dynamics(x_[0].template head<kDof>(), x_[1].template head<kDof>(),
+                                tau - x_[2].template head<kDof>());
+    if (!f.ok) return false;
+    x_[0] += h * x_[1];  // (10)
+    x_[1] += h * detail::pad_vector<kDof>(f.qdd);
+
+    // U and V of (i); G stands without its factor h, transposes are named by their letters
+    const Mat<kDof>* const G[] = {&f.dqdd_dq, &f.dqdd_dqd, &f.dqdd_dtau_ext};
+    const Block qv = transposed(vq_), qd = transposed(dq_), vd = transposed(dv_);
+    const Block Uq = h * times_transposed(qq_, qv, qd, G);
+    const Block Uv = h * times_transposed(vq_, vv_, vd, G);
+    const Block Ud = h * times_transposed(dq_, dv_, dd_, G);
+    const Block Uv_t = transposed(Uv);
+    const Block V_t = Uv_t + 0.5 * h * times_transposed(transposed(Uq), Uv_t, transposed(Ud), G);
+
+    qq_ += h * (qv + vq_) + h * h * vv_ + Q_[0];  // (i)
+    dq_ += h * dv_;
+    vq_ = transposed(qv + h * vv_ + Uq + h * Uv);
+    vv_ += (V_t + transposed(V_t)) + Q_[1];
+    dv_ += Ud;
+    dd_ += Q_[2];
+    return true;
+  }
+
+  [[gnu::noinline]] void correct(const Measurement<kDof>& y) noexcept {
+#pragma GCC unroll 8
+    for (int i = 0; i < kDof; ++i) {
+      const Column c[] = {qq_.col(i), vq_.col(i), dq_.col(i)};
+      const double s_inverse = 1 / (c[0][i] + p_.R[i]);
+      update(c, s_inverse, y.q[i] - x_[0][i]);
+      subtract(c[1], c[0], s_inverse, vq_);
+    }
+    Block qv = transposed(vq_);
+#pragma GCC unroll 8
+    for (int i = 0; i < kDof; ++i) {
+      const Column c[] = {qv.col(i), vv_.col(i), dv_.col(i)};
+      const double s_inverse = 1 / (c[1][i] + p_.R[kDof + i]);
+      update(c, s_inverse, y.qd[i] - x_[1][i]);
+      subtract(c[0], c[1], s_inverse, qv);
+    }
+    vq_ = transposed(qv);
+  }
+
+  // (ii), all but the block between q and qd
+  [[gnu::always_inline]] void update(const Column (&c)[3], double s_inverse,
+                                     double innovation) noexcept {
+    for (int b = 0; b < 3; ++b) x_[b] += c[b] * (s_inverse * innovation);
+    subtract(c[0], c[0], s_inverse, qq_);
+    subtract(c[1], c[1], s_inverse, vv_);
+    subtract(c[2], c[0], s_inverse, dq_);
+    subtract(c[2], c[1], s_inverse, dv_);
+    subtract(c[2], c[2], s_inverse, dd_);
+  }
+
+  // block -= (a b^T) / s
+  [[gnu::always_inline]] static void subtract(const Column& a, const Column& b, double s_inverse,
+                                              Block& block) noexcept {
+#pragma GCC unroll 8
+    for (int j = 0; j < kDof; ++j) block.col(j) -= (a * b[j]) * s_inverse;
+  }
+
+  // [A0 A1 A2] G^T over the columns that are no padding
+  [[gnu::always_inline]] static Block times_transposed(const Block& A0, const Block& A1,
+                                                       const Block& A2,
+                                                       const Mat<kDof>* const (&G)[3]) noexcept {
+    const Block* const A[] = {&A0, &A1, &A2};
+    Block product = Block::Zero();
+#pragma GCC unroll 8
+    for (int i = 0; i < kDof; ++i) {
+      Column sum[3] = {Column::Zero(), Column::Zero(),
+                       Column::Zero()};  // short chains of additions
+#pragma GCC unroll 3
+      for (int b = 0; b < 3; ++b) {
+#pragma GCC unroll 8
+        for (int j = 0; j < kDof; ++j) sum[b] += A[b]->col(j) * (*G[b])(i, j);
+      }
+      product.col(i) = (sum[0] + sum[1]) + sum[2];
+    }
+    return product;
+  }
+
+  static Block transposed(const Block& b) noexcept {
+    return detail::transposed<kRows>(b);
+  }
+
+  // block b of a diagonal
+  static Block diagonal(const Vec3& d, int b) noexcept {
+    return detail::pad_matrix<kDof>(d.template segment<kDof>(b * kDof).asDiagonal());
+  }
+
+  M model_;
+  Parameters p_;
+  Sampling sampling_;
+  Block Q_[3];                                                      // diagonal blocks of Q
+  Column x_[3] = {Column::Zero(), Column::Zero(), Column::Zero()};  // q, qd, d
+  Block qq_, vq_, dq_, vv_, dv_, dd_;                               // of P
+  Vec<kDof> tau_ = Vec<kDof>::Zero();                               // [N m] at the last used sample
+};
+
+}  // namespace tauext

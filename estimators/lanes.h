@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Small matrices padded with zeros to whole SIMD registers. Registers of the compiler's own vector
+/// type are filled element by element: a register loaded from memory that was just written in
+/// smaller pieces stalls the pipeline, which costs more than the arithmetic of a step.
+#pragma once
+
+#include <cstring>
+
+#include "estimators/types.h"
+
+namespace tauext::detail {
+
+/// Four doubles in a register.
+typedef double Lanes __attribute__((vector_size(4 * sizeof(double))));
+
+/// Rows of N padded to whole registers.
+template <int N>
+inline constexpr int kPadded = (N + 3) / 4 * 4;
+
+/// A padded N x N block.
+template <int N>
+using Block = Mat<kPadded<N>>;
+
+inline void store(double* to, const Lanes& x) noexcept {
+  std::memcpy(to, &x, sizeof x);
+}
+
+/// Four elements of v from `first` on, with copies of the first one beyond its end; `first` must fold
+/// to a constant.
+template <int N>
+[[gnu::always_inline]] inline Lanes gather(const Vec<N>& v, int first) noexcept {
+  const auto at = [&](int i) { return v[i < N ? i : first]; };
+  return Lanes{at(first), at(first + 1), at(first + 2), at(first + 3)};
+}
+
+/// The same with zeros beyond its end.
+template <int N>
+[[gnu::always_inline]] inline Lanes gather_zeros(const Vec<N>& v, int first) noexcept {
+  const Lanes x = gather<N>(v, first), zero = {};
+  switch (N - first) {
+    case 1:
+      return __builtin_shufflevector(x, zero, 0, 4, 4, 4);
+    case 2:
+      return __builtin_shufflevector(x, zero, 0, 1, 4, 4);
+    case 3:
+      return __builtin_shufflevector(x, zero, 0, 1, 2, 4);
+    default:
+      return x;
+  }
+}
+
+/// v with zeros appended.
+template <int N>
+[[gnu::always_inline]] inline Vec<kPadded<N>> pad_vector(const Vec<N>& v) noexcept {
+  Vec<kPadded<N>> p;
+  for (int i = 0; i < N; i += 4) store(&p[i], gather_zeros<N>(v, i));
+  return p;
+}
+
+/// m with rows and columns of zeros appended.
+template <int N>
+[[gnu::always_inline]] inline Block<N> pad_matrix(const Mat<N>& m) noexcept {
+  Block<N> b = Block<N>::Zero();
+  for (int j = 0; j < N; ++j) b.col(j) = pad_vector<N>(m.col(j));
+  return b;
+}
+
+inline Lanes load(const double* from) noexcept {
+  Lanes x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+
+/// b^T by tiles of 4 x 4.
+template <int Rows>
+[[gnu::always_inline]] inline Mat<Rows> transposed(const Mat<Rows>& b) noexcept {
+  Mat<Rows> t;
+#pragma GCC unroll 2
+  for (int i = 0; i < Rows; i += 4) {
+#pragma GCC unroll 2
+    for (int j = 0; j < Rows; j += 4) {
+      const Lanes c0 = load(&b(i, j)), c1 = load(&b(i, j + 1));
+      const Lanes c2 = load(&b(i, j + 2)), c3 = load(&b(i, j + 3));
+      const Lanes even01 = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
+      const Lanes odd01 = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
+      const Lanes even23 = __builtin_shufflevector(c2, c3, 0, 4, 2, 6);
+      const Lanes odd23 = __builtin_shufflevector(c2, c3, 1, 5, 3, 7);
+      store(&t(j, i), __builtin_shufflevector(even01, even23, 0, 1, 4, 5));
+      store(&t(j, i + 1), __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5));
+      store(&t(j, i + 2), __builtin_shufflevector(even01, even23, 2, 3, 6, 7));
+      store(&t(j, i + 3), __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7));
+    }
+  }
+  return t;
+}
+
+}  // namespace tauext::detail

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What an estimator does with a sample before any arithmetic: every estimator asks here first.
+#pragma once
+
+#include <cmath>
+
+#include "estimators/types.h"
+
+namespace tauext {
+
+/// A norm [rad, rad/s, N m] beyond which a reading is a broken sensor and no robot's.
+inline constexpr double kMeasurementLimit = 1e6;
+
+/// A norm [N m] beyond which an estimate has diverged.
+inline constexpr double kEstimateLimit = 1e9;
+
+/// |x| <= limit; false if an element is NaN or infinite.
+template <class Derived>
+bool within(const Eigen::MatrixBase<Derived>& x, double limit) noexcept {
+  return x.squaredNorm() <= limit * limit;
+}
+
+/// Time and status of the samples an estimator has used.
+class Sampling {
+ public:
+  /// @param max_gap [s] longest step to integrate over
+  explicit Sampling(double max_gap) : max_gap_(max_gap) {}
+
+  void reset() noexcept { started_ = false; }
+
+  /// Whether y can be used: kOk to step by h(), kStarted to start at y, kBadMeasurement to ignore it.
+  template <int N>
+  Status accept(const Measurement<N>& y) noexcept {
+    const bool in_order = !started_ || y.t > t_;
+    if (!std::isfinite(y.t) || !in_order || !within(y.q, kMeasurementLimit) ||
+        !within(y.qd, kMeasurementLimit) || !within(y.tau, kMeasurementLimit)) {
+      return Status::kBadMeasurement;
+    }
+    h_ = y.t - t_;
+    t_ = y.t;
+    if (!started_ || h_ > max_gap_) {
+      started_ = true;
+      return Status::kStarted;
+    }
+    return Status::kOk;
+  }
+
+  double h() const noexcept { return h_; }  ///< [s] from the last used sample to this one
+
+ private:
+  double max_gap_;
+  double t_ = 0;
+  double h_ = 0;
+  bool started_ = false;
+};
+
+/// What an observer assumes before its first sample.
+enum class Start : std::uint8_t {
+  kFirstMeasurement,  ///< the arm moves as first measured and nothing touches it
+  kZero,              ///< the state is zero, as the paper prints (its arm starts at rest at q = 0)
+};
+
+}  // namespace tauext

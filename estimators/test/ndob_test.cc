@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/ndob.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "estimators/test/arm.h"
+
+namespace tauext::test {
+namespace {
+
+using ArmNdob = Ndob<WallMoBot3>;
+
+TEST(Ndob, PolesAreTheEigenvaluesOfXOverB) {
+  // independently published values at q = 0 with the paper's X
+  const Vec<3> X = ArmNdob::Parameters::paper().X;
+  const Mat<3> A = X.asDiagonal() * WallMoBot3().inertia(Vec<3>::Zero()).inverse();
+  Vec<3> poles = A.eigenvalues().real();
+  std::sort(poles.begin(), poles.end());
+  EXPECT_NEAR(poles[0], 2.62, 0.005);
+  EXPECT_NEAR(poles[1], 12.3, 0.05);
+  EXPECT_NEAR(poles[2], 34.8, 0.05);
+}
+
+TEST(Ndob, ErrorDecaysAtTheRatesOfXOverB) {
+  // the arm held at q = 0: (18) is linear, e(t) = V diag((1 - h lambda)^k) V^-1 e(0)
+  const WallMoBot3 arm;
+  const Vec<3> load(30, -20, 10);
+  const double h = 1e-3;
+  ArmNdob ndob(arm, ArmNdob::Parameters::paper());
+  const Mat<3> A = Vec<3>(600, 1000, 600).asDiagonal() * arm.inertia(Vec<3>::Zero()).inverse();
+  Measurement<3> y;
+  y.tau = arm.gravity(y.q) + load;  // at rest (3) is tau = g + tau_ext
+  Vec<3> error = -load;
+  for (int k = 0; k < 2000; ++k) {
+    y.t = k * h;
+    const Estimate<3> e = ndob.update(y);
+    ASSERT_LT((e.tau_ext - load - error).norm(), 1e-9) << "k = " << k;
+    error -= h * (A * error);
+  }
+  EXPECT_LT(error.norm(), 0.2);
+}
+
+TEST(Ndob, ConvergesToAConstantLoadWithItsOwnSign) {
+  ArmNdob ndob(WallMoBot3(), ArmNdob::Parameters::paper());
+  Estimate<3> e;
+  for (const auto& y : simulate(grid(6, 1e-3), constant(5))) e = ndob.update(y);
+  EXPECT_LT((e.tau_ext - Vec<3>::Constant(5)).cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(Ndob, StartingFromZeroInMotionGivesMinusXQd) {
+  // (17) with z_0 = 0, the paper's choice, for an arm that moves: why it is not the default
+  ArmNdob::Parameters p = ArmNdob::Parameters::paper();
+  p.start = Start::kZero;
+  ArmNdob ndob(WallMoBot3(), p);
+  Measurement<3> y;
+  y.qd.setConstant(0.5);
+  EXPECT_EQ(ndob.update(y).tau_ext, Vec<3>(-300, -500, -300));
+}
+
+}  // namespace
+}  // namespace tauext::test

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// B, C qd and g themselves are checked against MuJoCo in mjcf/test/wallmobot3_test.cc; here is what
+// must hold between them.
+#include "estimators/wallmobot3.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+#include "estimators/test/precise.h"
+
+namespace tauext::test {
+namespace {
+
+class RandomStates : public testing::Test {
+ protected:
+  Vec<3> vector(double scale) {
+    std::uniform_real_distribution<double> u(-scale, scale);
+    const double a = u(generator_), b = u(generator_), c = u(generator_);
+    return {a, b, c};
+  }
+  std::mt19937_64 generator_{7};
+};
+
+using WallMoBot3Test = RandomStates;
+
+TEST_F(WallMoBot3Test, BdotMinusTwoCIsSkew) {
+  const WallMoBot3 arm;
+  for (int i = 0; i < 200; ++i) {
+    const Vec<3> q = vector(3), qd = vector(2);
+    // Bdot by a central difference along qd, whose error is of order h^2 = 1e-10
+    const double h = 1e-5;
+    const Mat<3> Bdot = (arm.inertia(q + h * qd) - arm.inertia(q - h * qd)) / (2 * h);
+    const Mat<3> N = Bdot - 2 * arm.coriolis(q, qd);
+    EXPECT_LT((N + N.transpose()).cwiseAbs().maxCoeff(), 1e-6) << "N m s, of terms up to 400";
+    // and exactly the Christoffel form: Bdot = C + C^T
+    const Mat<3> C = arm.coriolis(q, qd);
+    EXPECT_LT((Bdot - C - C.transpose()).cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST_F(WallMoBot3Test, BiasIsCoriolisTimesVelocityPlusGravity) {
+  const WallMoBot3 arm;
+  for (int i = 0; i < 200; ++i) {
+    const Vec<3> q = vector(3), qd = vector(2);
+    const Mat<3> C = arm.coriolis(q, qd);
+    const double scale = arm.bias(q, qd).norm();
+    EXPECT_LT((arm.bias(q, qd) - C * qd - arm.gravity(q)).norm(), 1e-13 * scale);
+    EXPECT_LT((arm.momentum_bias(q, qd) - C.transpose() * qd + arm.gravity(q)).norm(),
+              1e-13 * scale);
+    const Dynamics<3> d = dynamics(arm, q, qd);
+    EXPECT_EQ(d.B, arm.inertia(q));
+    EXPECT_LT((d.bias - arm.bias(q, qd)).norm(), 1e-13 * scale);
+  }
+}
+
+TEST_F(WallMoBot3Test, InertiaIsPositiveDefiniteForEveryPanelOfThePaper) {
+  for (const double panel : {0., 50., 150.}) {
+    const WallMoBot3 arm(WallMoBot3::Parameters::with_panel(panel));
+    for (int i = 0; i < 300; ++i) {
+      const Eigen::SelfAdjointEigenSolver<Mat<3>> eigen(arm.inertia(vector(4)));
+      EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.01) << "panel " << panel;
+    }
+  }
+}
+
+TEST_F(WallMoBot3Test, JacobiansAgreeWith100DigitDifferences) {
+  use_100_digits();
+  const WallMoBot3 arm;
+  const BasicWallMoBot3<Precise> precise;
+  const Precise h("1e-30");  // a forward difference is then good to 30 digits
+  for (int i = 0; i < 50; ++i) {
+    const Vec<3> q = vector(2), qd = vector(2), u = vector(500);
+    const ForwardDynamics<3> f = arm.forward_dynamics(q, qd, u);
+    ASSERT_TRUE(f.ok);
+    using V = Vec<3, Precise>;
+    const V pq = q.cast<Precise>(), pqd = qd.cast<Precise>(), pu = u.cast<Precise>();
+    const V qdd = precise.forward_dynamics(pq, pqd, pu).qdd;
+    EXPECT_LT((qdd.cast<double>() - f.qdd).norm(), 1e-12 * f.qdd.norm());
+    for (int j = 0; j < 3; ++j) {
+      V e = V::Zero();
+      e[j] = h;
+      const auto column = [&](const V& moved) -> Vec<3> {
+        return V((moved - qdd) / h).cast<double>();
+      };
+      const Vec<3> by_q = column(precise.forward_dynamics(pq + e, pqd, pu).qdd);
+      const Vec<3> by_qd = column(precise.forward_dynamics(pq, pqd + e, pu).qdd);
+      const Vec<3> by_u = column(precise.forward_dynamics(pq, pqd, pu + e).qdd);
+      EXPECT_LT((by_q - f.dqdd_dq.col(j)).norm(), 1e-11 * f.dqdd_dq.norm());
+      EXPECT_LT((by_qd - f.dqdd_dqd.col(j)).norm(), 1e-11 * (1 + f.dqdd_dqd.norm()));
+      EXPECT_LT((by_u + f.dqdd_dtau_ext.col(j)).norm(), 1e-11 * f.dqdd_dtau_ext.norm());
+    }
+  }
+}
+
+TEST_F(WallMoBot3Test, JacobiansIncludeViscousFriction) {
+  WallMoBot3::Parameters p;
+  p.viscous << 3, 5, 7;
+  const WallMoBot3 arm(p), smooth;
+  const Vec<3> q = vector(1), qd = vector(1), u = vector(100);
+  const auto with = arm.forward_dynamics(q, qd, u);
+  const auto without = smooth.forward_dynamics(q, qd, u - arm.friction(qd));
+  EXPECT_LT((with.qdd - without.qdd).norm(), 1e-12 * with.qdd.norm());
+  const Mat<3> expected = without.dqdd_dqd + without.dqdd_dtau_ext * Mat<3>(p.viscous.asDiagonal());
+  EXPECT_LT((with.dqdd_dqd - expected).norm(), 1e-12 * expected.norm());
+}
+
+TEST_F(WallMoBot3Test, EndEffectorStandsWhereTableIPutsIt) {
+  // at q = 0 link 4 points forward and link 5 down: the panel's point is 0.93 m below joint 5 and
+  // 0.109 + 0.2025 m before it
+  const WallMoBot3 arm;
+  Mat<3> expected;
+  expected << 0.5, -0.93, -0.93,     // vx: link 2 is 0.5 m up, link 5 0.93 m down
+      0, -(0.85 + 0.3115), -0.3115,  // vz: positive rotation takes x to -z
+      0, 1, 1;                       // pitch
+  EXPECT_LT((arm.jacobian(Vec<3>::Zero()) - expected).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace tauext::test

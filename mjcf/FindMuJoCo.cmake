@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian 12's mujocoConfig.cmake names the headers of a package that libmujoco-dev does not depend
+# on, so the library is looked up here. Sets MuJoCo_FOUND, gives MuJoCo::MuJoCo.
+include(FindPackageHandleStandardArgs)
+find_path(MuJoCo_INCLUDE_DIR mujoco/mujoco.h)
+find_library(MuJoCo_LIBRARY mujoco)
+if(MuJoCo_INCLUDE_DIR)
+  file(STRINGS ${MuJoCo_INCLUDE_DIR}/mujoco/mujoco.h _line REGEX "#define mjVERSION_HEADER")
+  string(REGEX MATCH "[0-9]+" _digits "${_line}")
+  string(REGEX REPLACE "(.)(.)(.)$" "\\1.\\2.\\3" MuJoCo_VERSION "${_digits}")
+endif()
+find_package_handle_standard_args(MuJoCo REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR
+                                  VERSION_VAR MuJoCo_VERSION)
+if(MuJoCo_FOUND AND NOT TARGET MuJoCo::MuJoCo)
+  add_library(MuJoCo::MuJoCo UNKNOWN IMPORTED)
+  set_target_properties(MuJoCo::MuJoCo PROPERTIES
+    IMPORTED_LOCATION ${MuJoCo_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${MuJoCo_INCLUDE_DIR})
+endif()

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Loading MuJoCo models, with every failure an exception that says what and where.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tauext {
+
+/// A loaded model, shared and read-only: safe to use from many threads, one Plant each.
+using Model = std::shared_ptr<const mjModel>;
+
+/// MuJoCo's version, like "2.2.2".
+std::string mujoco_version();
+
+/// The names of the robots that come with tauext, sorted.
+std::vector<std::string> robot_names();
+
+/// One of these robots. Its MJCF is built into the library, so no file has to be found.
+/// @throws std::invalid_argument for an unknown name, listing the known ones
+Model load_robot(std::string_view name);
+
+/// A copy of the model whose body has `factor` times its mass and its inertia.
+/// @throws std::invalid_argument for an unknown body or a factor that is not positive and finite
+Model with_scaled_body(const Model& model, const std::string& body, double factor);
+
+/// wallmobot3 with another panel [kg] than the 150 kg of Table II: link 5 weighs 27 kg + panel and
+/// its inertia scales with its mass, as WallMoBot3::Parameters::with_panel has it.
+Model wallmobot3_with_panel(double panel);
+
+}  // namespace tauext
