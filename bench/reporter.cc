@@ -32,8 +32,9 @@ void Reporter::ReportRuns(const std::vector<Run>& runs) {
   json_.ReportRuns(finite);
   if (display_ != nullptr) display_->ReportRuns(finite);
   if (progress_ && !runs.empty()) {
-    done_ = std::min(done_ + 1, total_);
-    fmt::print(stderr, "\r\033[K[{:3}/{}] {}", done_, total_, runs[0].run_name.function_name);
+    ++done_;
+    const std::string of = total_ > 0 ? fmt::format("/{}", total_) : "";
+    fmt::print(stderr, "\r\033[K[{}{}] {}", done_, of, runs[0].run_name.function_name);
     std::fflush(stderr);
   }
 }

@@ -16,7 +16,8 @@ namespace tauext {
 class Reporter : public benchmark::BenchmarkReporter {
  public:
   /// @param display prints to standard output; nullptr for none
-  /// @param progress whether to show what is running, on standard error
+  /// @param progress whether to show what is done, on standard error
+  /// @param total number of benchmarks, 0 if it is not known
   Reporter(benchmark::BenchmarkReporter* display, bool progress, int total);
 
   bool ReportContext(const Context& context) override;

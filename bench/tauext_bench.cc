@@ -82,8 +82,7 @@ int run(const Flags& flags) {
     for (const Entry& e : entries()) fmt::print("{}\n", e.name());
     return kGood;
   }
-  std::optional<AtomicFile> json_file;  // opened now: an unwritable path should not cost a run
-  if (flags.out) json_file.emplace(*flags.out);
+  if (flags.out) AtomicFile{*flags.out};  // an unwritable path should not cost a run
   const auto display = make_display(flags.format);
 
   Suite suite(flags.suite);
@@ -94,7 +93,10 @@ int run(const Flags& flags) {
                                  [&suite, &row](benchmark::State& s) { run_entry(s, suite, row); });
   }
   benchmark::AddCustomContext("tauext", build_line(suite));
-  Reporter reporter(display.get(), ::isatty(STDERR_FILENO) == 1, static_cast<int>(rows.size()));
+  const std::string filter = benchmark::GetBenchmarkFilter();
+  const bool all = filter.empty() || filter == "." || filter == "all";
+  Reporter reporter(display.get(), ::isatty(STDERR_FILENO) == 1,
+                    all ? static_cast<int>(rows.size()) : 0);
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
     throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
   }
@@ -108,9 +110,10 @@ int run(const Flags& flags) {
   std::FILE* const to = flags.format == "json" ? stderr : stdout;
   fmt::print(to, "{}\n\n{}\n{}", build_line(suite), format_table(rows), table_legend());
   if (flags.paper) fmt::print(to, "\n{}", format_table3());
-  if (json_file) {
-    json_file->write(reporter.json());
-    json_file->commit();
+  if (flags.out) {
+    AtomicFile file(*flags.out);
+    file.write(reporter.json());
+    file.commit();
     fmt::print(to, "\n{}: results as JSON\n", *flags.out);
   }
   return reporter.any_error() ? kAnswerIsNo : kGood;

@@ -6,22 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <random>
 
 #include "estimators/test/precise.h"
+#include "estimators/test/random_states.h"
 
 namespace tauext::test {
 namespace {
-
-class RandomStates : public testing::Test {
- protected:
-  Vec<3> vector(double scale) {
-    std::uniform_real_distribution<double> u(-scale, scale);
-    const double a = u(generator_), b = u(generator_), c = u(generator_);
-    return {a, b, c};
-  }
-  std::mt19937_64 generator_{7};
-};
 
 using WallMoBot3Test = RandomStates;
 

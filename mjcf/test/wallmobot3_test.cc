@@ -8,22 +8,14 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <random>
 
+#include "estimators/test/random_states.h"
 #include "mjcf/plant.h"
 
 namespace tauext::test {
 namespace {
 
-class WallMoBot3Mjcf : public testing::Test {
- protected:
-  Vec<3> vector(double scale) {
-    std::uniform_real_distribution<double> u(-scale, scale);
-    const double a = u(generator_), b = u(generator_), c = u(generator_);
-    return {a, b, c};
-  }
-  std::mt19937_64 generator_{11};
-};
+using WallMoBot3Mjcf = RandomStates;
 
 // largest difference over 1,000 random states, relative to the largest term of its kind
 struct Difference {
