@@ -44,11 +44,12 @@ class Ekf {
   using Vec3 = Vec<3 * kDof>;
 
   /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. Q is added once per step, of
-  /// whatever length. A larger Q_d or a smaller R is faster and noisier.
+  /// whatever length. A larger Q_d or a smaller R is faster and noisier. P0, Q and R have no default
+  /// that fits every arm.
   struct Parameters {
-    Vec3 P0 = Vec3::Constant(1e-3);  ///< of the state at the start
-    Vec3 Q = Vec3::Constant(1e-6);   ///< of the process, per step
-    Vec2 R = Vec2::Constant(1e-6);   ///< of the measured q and qd
+    Vec3 P0 = Vec3::Zero();  ///< of the state at the start, at least 0
+    Vec3 Q = Vec3::Zero();   ///< of the process, per step, at least 0
+    Vec2 R = Vec2::Zero();   ///< of the measured q and qd, positive
     Alignment alignment = Alignment::kHeld;
     Start start = Start::kFirstMeasurement;
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
@@ -63,7 +64,11 @@ class Ekf {
     }
   };
 
+  /// @throws std::invalid_argument for parameters out of range
   explicit Ekf(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
+    require(p.P0.minCoeff() >= 0, "P0 of the EKF must not be negative");
+    require(p.Q.minCoeff() >= 0, "Q of the EKF must not be negative");
+    require(p.R.minCoeff() > 0, "R of the EKF must be positive");
     for (int b = 0; b < 3; ++b) Q_[b] = diagonal(p.Q, b);
     start({});
   }

@@ -29,8 +29,11 @@ class InverseDynamics {
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
   };
 
+  /// @throws std::invalid_argument for parameters out of range
   explicit InverseDynamics(const M& model, const Parameters& p = {})
-      : model_(model), p_(p), sampling_(p.max_gap) {}
+      : model_(model), p_(p), sampling_(p.max_gap) {
+    require(p.bandwidth > 0, "the bandwidth [rad/s] of inverse_dynamics must be positive");
+  }
 
   void reset() noexcept {
     sampling_.reset();

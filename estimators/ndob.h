@@ -26,8 +26,9 @@ class Ndob {
   static constexpr int kDof = M::kDof;
 
   struct Parameters {
-    /// [N m s/rad] gain of (18), diagonal and positive: larger is faster and noisier
-    Vec<kDof> X = Vec<kDof>::Constant(1000);
+    /// [N m s/rad] gain of (18), diagonal, positive: larger is faster and noisier; no default fits
+    /// every arm
+    Vec<kDof> X = Vec<kDof>::Zero();
     Start start = Start::kFirstMeasurement;  ///< z_0 = X qd_0, or 0
     double max_gap = 0.05;                   ///< [s] a longer gap restarts the observer
 
@@ -35,7 +36,10 @@ class Ndob {
     static Parameters paper() requires(kDof == 3) { return {.X = {600, 1000, 600}}; }
   };
 
-  explicit Ndob(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {}
+  /// @throws std::invalid_argument for parameters out of range
+  explicit Ndob(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
+    require(p.X.minCoeff() > 0, "X of the NDOB must be positive");
+  }
 
   void reset() noexcept {
     sampling_.reset();

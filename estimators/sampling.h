@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <stdexcept>
 
 #include "estimators/types.h"
 
@@ -21,11 +22,20 @@ bool within(const Eigen::MatrixBase<Derived>& x, double limit) noexcept {
   return x.squaredNorm() <= limit * limit;
 }
 
+/// Parameters are checked when an estimator is built, which may throw; its steps never do.
+/// @throws std::invalid_argument(what) unless ok
+inline void require(bool ok, const char* what) {
+  if (!ok) throw std::invalid_argument(what);
+}
+
 /// Time and status of the samples an estimator has used.
 class Sampling {
  public:
   /// @param max_gap [s] longest step to integrate over
-  explicit Sampling(double max_gap) : max_gap_(max_gap) {}
+  /// @throws std::invalid_argument if it is not positive
+  explicit Sampling(double max_gap) : max_gap_(max_gap) {
+    require(max_gap > 0, "max_gap [s] must be positive");
+  }
 
   void reset() noexcept { started_ = false; }
 

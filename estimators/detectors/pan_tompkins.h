@@ -13,10 +13,10 @@
 /// is marked; and the state of rest before a collision does not matter, which is the point.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "estimators/concepts.h"
+#include "estimators/sampling.h"
 
 namespace tauext {
 
@@ -38,8 +38,11 @@ class PanTompkins {
     double refractory = 0.2;  ///< [s] after a mark without another
   };
 
+  /// @throws std::invalid_argument for parameters out of range
   explicit PanTompkins(const Parameters& p = {}) : p_(p) {
-    p_.stride = std::clamp(p_.stride, 1, kMaxStride);
+    require(p.stride >= 1 && p.stride <= kMaxStride, "stride of pan_tompkins must be 1 to 16");
+    require(p.threshold.minCoeff() > 0, "threshold [(N m/s)^2] of pan_tompkins must be positive");
+    require(p.hold >= 0 && p.refractory >= 0, "hold and refractory [s] must not be negative");
   }
 
   void reset() noexcept {

@@ -5,6 +5,12 @@
 
 #include <limits>
 
+#include "estimators/detectors/pan_tompkins.h"
+#include "estimators/ekf.h"
+#include "estimators/inverse_dynamics.h"
+#include "estimators/ndob.h"
+#include "estimators/wallmobot3.h"
+
 namespace tauext::test {
 namespace {
 
@@ -52,6 +58,21 @@ TEST(Sampling, RefusesWhatNoSensorSays) {
       EXPECT_EQ(s.accept(y), Status::kBadMeasurement) << bad << " in field " << field;
     }
   }
+}
+
+TEST(Parameters, OutOfRangeAreRefusedWhenAnEstimatorIsBuilt) {
+  const WallMoBot3 arm;
+  using ArmEkf = Ekf<WallMoBot3>;
+  using ArmNdob = Ndob<WallMoBot3>;
+  EXPECT_THROW(ArmEkf(arm, {}), std::invalid_argument) << "R = 0";
+  EXPECT_THROW(ArmNdob(arm, {}), std::invalid_argument) << "X = 0";
+  ArmEkf::Parameters p = ArmEkf::Parameters::paper();
+  EXPECT_NO_THROW(ArmEkf(arm, p));
+  p.Q[8] = -1;
+  EXPECT_THROW(ArmEkf(arm, p), std::invalid_argument);
+  EXPECT_THROW(InverseDynamics<WallMoBot3>(arm, {.bandwidth = kNaN}), std::invalid_argument);
+  EXPECT_THROW(InverseDynamics<WallMoBot3>(arm, {.max_gap = 0}), std::invalid_argument);
+  EXPECT_THROW(PanTompkins<3>({.stride = 0}), std::invalid_argument);
 }
 
 }  // namespace
