@@ -15,7 +15,9 @@ void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
       ->capture_default_str();
   app.add_option("--loadcell_noise", s.loadcell_noise, "standard deviation [N m]")
       ->capture_default_str();
-  app.add_option("--seed", s.seed, "of the sensors' noise")->capture_default_str();
+  app.add_option("--seed", s.seed, "of the sensors' noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--kp", r.tracking.Kp, "tracking stiffness [1/s^2]")->capture_default_str();
   app.add_option("--kd", r.tracking.Kd, "tracking damping [1/s]")->capture_default_str();
 }

@@ -92,7 +92,7 @@ class Ekf {
     }
     correct(y);
     tau_ = y.tau;
-    if (!within(x_[0] + x_[1], kEstimateLimit) || !within(x_[2], kEstimateLimit)) {
+    if (!(x_[0].allFinite() && x_[1].allFinite() && within(x_[2], kEstimateLimit))) {
       x_[2].setZero();
       start(y);
       return estimate(Status::kDiverged);

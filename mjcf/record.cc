@@ -63,7 +63,13 @@ Trace record(const Model& model, const Scenario& scenario, const Sensors& sensor
     trace.qdd.col(k) = plant.qdd();
     trace.friction.col(k) = plant.friction();
     trace.contact[k] = scenario.contact(t);
-    for (int s = 0; s < recording.substeps; ++s) plant.step(recording.Ts / recording.substeps);
+    try {
+      for (int s = 0; s < recording.substeps; ++s) plant.step(recording.Ts / recording.substeps);
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(fmt::format(
+          "scenario {}: {} Tracking may be too stiff for Ts = {} s: Kp = {} 1/s^2, Kd = {} 1/s",
+          scenario.name, e.what(), recording.Ts, recording.tracking.Kp, recording.tracking.Kd));
+    }
   }
   return measure(trace, sensors);
 }

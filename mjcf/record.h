@@ -11,8 +11,8 @@
 namespace tauext {
 
 /// The tracking controller: computed torque, tau = B (qdd_ref + Kp e + Kd edot) + C qd + F + g with
-/// the exact model. The paper names none; it presupposes one as stiff as this. A soft one makes
-/// every estimator look worse, because then B qdd is large.
+/// the exact model. The paper names none, but its runs presuppose one: under gravity compensation
+/// alone the arm falls over within 2 s of the step.
 struct Tracking {
   double Kp = 400;  ///< [1/s^2]
   double Kd = 40;   ///< [1/s]

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -66,10 +69,13 @@ Columns parse_header(std::string_view line, const std::string& path) {
     }
   }
   if (c.t < 0 || c.dof == 0) {
+    std::string start(line.substr(0, 60));
+    std::replace_if(
+        start.begin(), start.end(), [](char x) { return x < ' ' || x > '~'; }, '?');
     throw std::runtime_error(
         fmt::format("{}: the first line must name the columns "
                     "t,q1..,qd1..,tau1..[,tau_ext1..][,contact]; it is '{}'",
-                    path, line.substr(0, 60)));
+                    path, start));
   }
   return c;
 }
@@ -147,10 +153,13 @@ void write_csv(const Trace& trace, const std::string& path) {
 }
 
 Trace read_csv(const std::string& path, SkippedRows* skipped) {
+  errno = 0;
   std::ifstream in(path);
   std::string line;
   if (!in || !std::getline(in, line)) {
-    throw std::runtime_error(fmt::format("{}: cannot be read, or is empty", path));
+    const int reason = errno;
+    throw std::runtime_error(
+        fmt::format("{}: {}", path, reason == 0 ? "is empty" : std::strerror(reason)));
   }
   const Columns c = parse_header(line, path);
   std::vector<std::vector<double>> rows;

@@ -129,6 +129,14 @@ TEST(Record, RefusesARecordingOutOfRange) {
       std::string::npos);
 }
 
+TEST(Record, AnUnstableRunIsAnErrorThatNamesItsCause) {
+  const Recording stiff{.tracking = {.Kp = 1e6, .Kd = 1e4}};
+  const std::string error =
+      error_of([&] { record(load_robot("wallmobot3"), scenario("free"), {}, stiff); });
+  EXPECT_NE(error.find("scenario free: MuJoCo warned at t = "), std::string::npos) << error;
+  EXPECT_NE(error.find("Kp = 1000000 1/s^2, Kd = 10000 1/s"), std::string::npos) << error;
+}
+
 TEST(Scenarios, AnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(error_of([] { scenario("dance"); }),
             "unknown scenario 'dance'; known: free, step, ramp, sine, collision, in_motion");

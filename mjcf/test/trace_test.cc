@@ -105,16 +105,17 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(error_of_reading(std::string(kHead) + "0,1,2\n"),
             path() + ": no usable row (1 skipped; line 2: wrong number of fields)");
   EXPECT_EQ(error_of_reading(kHead), path() + ": no usable row (0 skipped)");
-  EXPECT_EQ(error_of_reading(""), path() + ": cannot be read, or is empty");
+  EXPECT_EQ(error_of_reading(""), path() + ": is empty");
   EXPECT_EQ(error_of_reading("t,q1,qd1\n0,1,2\n"), path() + ": has q1 but no column 'tau1'");
   EXPECT_EQ(error_of_reading("t,q1,q1,qd1,tau1\n"), path() + ": column 'q1' appears twice");
   EXPECT_NE(error_of_reading("0,1,2,3\n").find("the first line must name the columns"),
             std::string::npos);
   SkippedRows skipped;
   EXPECT_EQ(error_of([&] { read_csv("/nowhere/x.csv", &skipped); }),
-            "/nowhere/x.csv: cannot be read, or is empty");
-  EXPECT_NE(error_of([&] { read_csv(folder_.string(), &skipped); }).find(folder_.string()),
-            std::string::npos);
+            "/nowhere/x.csv: No such file or directory");
+  EXPECT_EQ(error_of([&] { read_csv(folder_.string(), &skipped); }),
+            folder_.string() + ": Is a directory");
+  EXPECT_NE(error_of_reading("\x01\xff").find("it is '??'"), std::string::npos);
 }
 
 TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
