@@ -55,13 +55,18 @@ double allocations_per_step(Runner& runner) {
 
 }  // namespace
 
-std::string failure(const Trace& ideal, const Output& out, double from) {
-  for (int k = 0; k < ideal.size(); ++k) {
-    if (!out.tau_ext.col(k).allFinite()) return fmt::format("not finite at t = {} s", ideal.t[k]);
+std::string bad_status(const Trace& trace, const Output& out) {
+  for (int k = 0; k < trace.size(); ++k) {
+    if (!out.tau_ext.col(k).allFinite()) return fmt::format("not finite at t = {} s", trace.t[k]);
     const Status s = out.status[k];
     if (s == Status::kOk || (s == Status::kStarted && k == 0)) continue;
-    return fmt::format("{} at t = {} s", name_of(s), ideal.t[k]);
+    return fmt::format("{} at t = {} s", name_of(s), trace.t[k]);
   }
+  return "";
+}
+
+std::string failure(const Trace& ideal, const Output& out, double from) {
+  if (std::string bad = bad_status(ideal, out); !bad.empty()) return bad;
   constexpr double kSlack = 5;  // [N m]
   for (int j = 0; j < ideal.dof(); ++j) {
     const auto truth = ideal.tau_ext.row(j);
@@ -176,6 +181,10 @@ Score Suite::score(const Entry& e) {
 
   Score score;
   score.error = failure(recorded.ideal, ideal, s.score_from);
+  if (const std::string bad = bad_status(recorded.noisy, noisy);
+      score.error.empty() && !bad.empty()) {
+    score.error = "under sensor noise: " + bad;
+  }
   const Trace& trace = scored(e);
   const Output& out = options_.sensors.ideal() ? ideal : noisy;
   add_error_metrics(trace, out, s.score_from, score);

@@ -51,6 +51,9 @@ void add_response_metrics(const Trace& trace, const Output& output, const Scenar
                           Score& score);
 void add_detection_metrics(const Trace& trace, const Output& output, Score& score);
 
+/// The first estimate that is not finite or whose status says that it is an old one; "" for none.
+std::string bad_status(const Trace& trace, const Output& output);
+
 /// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one is
 /// not finite, a status says so, or from time `from` [s] on some joint's rmse exceeds
 /// 1.5 times that of an estimate of 0 by more than 5 N m.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "bench/cli.h"
 #include "bench/suite.h"
@@ -26,7 +27,6 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
                      const std::string& path) {
   // with one estimator, <detector>_mark is unambiguous; with more, the estimator's name comes first
   const bool several = columns.size() > 1;
-  AtomicFile file(path);
   fmt::memory_buffer out;
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "t");
@@ -43,6 +43,7 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
     }
     fmt::format_to(to, "\n");
   }
+  AtomicFile file(path);  // not before all is ready: an interrupt leaves nothing behind
   file.write({out.data(), out.size()});
   file.commit();
 }
@@ -101,7 +102,7 @@ void print_metrics(const Trace& trace, const std::vector<Column>& columns) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Runs estimators over a recorded log (columns as tauext-record writes them; tau_ext\n"
-      "and contact may be missing) and writes their estimates, one row per sample.\n"
+      "and contact may be missing) and writes their estimates, one row per usable sample.\n"
       "With the truth in the log, prints the errors too.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
@@ -122,6 +123,10 @@ int main(int argc, char** argv) {
     if (log.empty() || robot_name.empty() || estimators.empty() || out.empty()) {
       throw std::invalid_argument(
           "a log, --robot, --estimator and --out are required; see tauext-replay --help");
+    }
+    std::error_code ignored;  // a file that is not there yet is no other file
+    if (std::filesystem::equivalent(log, out, ignored)) {
+      throw std::invalid_argument(fmt::format("--out {} is the log itself", out));
     }
     const Robot& r = robot(robot_name);
     SkippedRows skipped;

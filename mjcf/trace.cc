@@ -68,6 +68,11 @@ Columns parse_header(std::string_view line, const std::string& path) {
           fmt::format("{}: has q{} but no column '{}{}'", path, j + 1, name, j + 1));
     }
   }
+  const std::vector<int>& truth = c.of["tau_ext"];
+  const auto missing = std::count(truth.begin(), truth.end(), -1);
+  if (missing != 0 && missing != c.dof) {
+    throw std::runtime_error(fmt::format("{}: has some of tau_ext1..{} but not all", path, c.dof));
+  }
   if (c.t < 0 || c.dof == 0) {
     std::string start(line.substr(0, 60));
     std::replace_if(
@@ -167,7 +172,12 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   double last_t = -std::numeric_limits<double>::infinity();
   for (int number = 2; std::getline(in, line); ++number) {
     if (line.empty() || line == "\r") continue;
-    if (const char* reason = parse_row(line, c, last_t, values, *skipped)) {
+    const char* reason = parse_row(line, c, last_t, values, *skipped);
+    if (reason == nullptr && in.eof()) {  // no line end: the last number may be cut
+      ++skipped->wrong_field_count;
+      reason = "the last line is incomplete";
+    }
+    if (reason != nullptr) {
       if (skipped->first.size() < 3)
         skipped->first.push_back(fmt::format("line {}: {}", number, reason));
       continue;

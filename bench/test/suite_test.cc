@@ -78,6 +78,14 @@ TEST(Suite, AskedForSensorsItScoresTheirTrace) {
   EXPECT_NEAR(*noisy.score({"wallmobot3", "free", "ndob", ""}).get("rmse2_Nm"), 10, 0.2);
 }
 
+TEST(Suite, AnEstimatorThatRejectsTheNoisySamplesFails) {
+  SuiteOptions options;
+  options.sensors.velocity_noise = 1e7;  // beyond kMeasurementLimit
+  Suite noisy(options);
+  EXPECT_EQ(noisy.score({"wallmobot3", "free", "ekf", ""}).error.substr(0, 35),
+            "under sensor noise: bad measurement");
+}
+
 // an output that a broken estimator might give
 Output output(const Trace& t, double factor) {
   return {factor * t.tau_ext, std::vector<Status>(t.size(), Status::kOk), {}};

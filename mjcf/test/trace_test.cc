@@ -93,6 +93,19 @@ TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
   EXPECT_TRUE(t.contact.empty());
 }
 
+TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {
+  SkippedRows skipped;
+  const Trace t =
+      read_csv(written(std::string(kHead) + "0,1,2,3,4,5,6\n0.001,1,2,3,4,5,-5"), &skipped);
+  EXPECT_EQ(t.size(), 1);
+  EXPECT_EQ(skipped.first.at(0), "line 3: the last line is incomplete");
+}
+
+TEST_F(TraceFile, HalfATruthIsRefused) {
+  EXPECT_EQ(error_of_reading("t,q1,q2,qd1,qd2,tau1,tau2,tau_ext1\n0,1,2,3,4,5,6,7\n"),
+            path() + ": has some of tau_ext1..2 but not all");
+}
+
 TEST_F(TraceFile, ColumnsAreFoundByNameInAnyOrder) {
   SkippedRows skipped;
   const Trace t = read_csv(written("temperature,tau1,qd1,q1,t\n20,3,2,1,0\n"), &skipped);
