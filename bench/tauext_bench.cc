@@ -124,7 +124,7 @@ int run(const Flags& flags) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Scores every estimator on every scenario, then times its step, and prints a table.\n"
-      "Exit code 1 if an entry failed. All flags of Google Benchmark work.\n\n"
+      "Exit code 1 if an entry failed. Google Benchmark's flags work, csv output excepted.\n\n"
       "  tauext-bench --benchmark_filter=step/ --benchmark_out=results.json\n",
       "tauext-bench");
   Flags flags;

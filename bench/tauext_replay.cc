@@ -75,21 +75,21 @@ void report_status(const Column& c) {
              c.estimator, bad, std::max(restarts, 0), diverged, singular);
 }
 
-void print_metrics(const Trace& trace, const std::vector<Column>& columns) {
-  fmt::print("{:<28} {:>6} {:>12} {:>12} {:>12}\n{:<28} {:>6} {:>12} {:>12} {:>12}\n", "estimator",
-             "joint", "rmse", "|bias|", "max", "", "", "N m", "N m", "N m");
+void print_metrics(const Trace& trace, const std::vector<Column>& columns, std::FILE* to) {
+  fmt::print(to, "{:<28} {:>6} {:>12} {:>12} {:>12}\n{:<28} {:>6} {:>12} {:>12} {:>12}\n",
+             "estimator", "joint", "rmse", "|bias|", "max", "", "", "N m", "N m", "N m");
   for (const Column& c : columns) {
     Score s;
     add_error_metrics(trace, c.output, trace.t.front(), s);
     add_detection_metrics(trace, c.output, s);
     for (int j = 1; j <= trace.dof(); ++j) {
       const auto value = [&](const char* q) { return s.metrics.at(fmt::format("{}{}_Nm", q, j)); };
-      fmt::print("{:<28} {:>6} {:>12.6g} {:>12.6g} {:>12.6g}\n", j == 1 ? c.estimator : "", j,
+      fmt::print(to, "{:<28} {:>6} {:>12.6g} {:>12.6g} {:>12.6g}\n", j == 1 ? c.estimator : "", j,
                  value("rmse"), value("bias"), value("max"));
     }
     if (c.detector.empty() || trace.contact.empty()) continue;
     const auto delay = s.get("delay_s");
-    fmt::print("  {}: {} false alarms, {}\n", c.detector, s.metrics.at("false_alarms"),
+    fmt::print(to, "  {}: {} false alarms, {}\n", c.detector, s.metrics.at("false_alarms"),
                !delay               ? "no collision in the log"
                : std::isnan(*delay) ? "no collision detected"
                                     : fmt::format("recall {}, largest delay {:.3f} s",
@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
     report_skipped(skipped, log);
     for (const Column& c : columns) report_status(c);
     write_estimates(trace, columns, out);
-    if (trace.has_truth() && out != "-") print_metrics(trace, columns);
+    if (trace.has_truth()) print_metrics(trace, columns, out == "-" ? stderr : stdout);
     return kGood;
   });
 }
