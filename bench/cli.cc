@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdio>
+#include <stdexcept>
+
 #include "bench/robot.h"
 
 namespace tauext {
@@ -33,7 +36,11 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return kCouldNotRun;
   }
   try {
-    return body();
+    const int code = body();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("cannot write to standard output");
+    }
+    return code;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
     return kCouldNotRun;

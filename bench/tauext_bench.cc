@@ -73,7 +73,7 @@ std::string build_line(const Suite& suite) {
 
 struct Flags {
   SuiteOptions suite;
-  bool list = false, paper = false;
+  bool list = false, list_tests = false, paper = false;
   std::optional<std::string> out, format;
 };
 
@@ -102,7 +102,8 @@ int run(const Flags& flags) {
   }
 
   std::erase_if(rows, [](const Row& r) { return r.score.metrics.empty(); });
-  if (rows.empty()) return kGood;  // --benchmark_list_tests
+  if (rows.empty() && flags.list_tests) return kGood;
+  if (rows.empty()) throw std::invalid_argument("no benchmark ran: check --benchmark_repetitions");
   for (Row& row : rows) {
     const auto time = reporter.cpu_ns().find(row.entry.name());
     if (time != reporter.cpu_ns().end()) row.score.metrics["cpu_ns"] = time->second;
@@ -146,6 +147,7 @@ int main(int argc, char** argv) {
   bool help = false;
   for (std::string& a : args) {
     help = help || a == "--help" || a == "-h";
+    flags.list_tests = flags.list_tests || a.starts_with("--benchmark_list_tests");
     rest.push_back(a.data());
   }
   int count = static_cast<int>(rest.size());

@@ -94,6 +94,8 @@ TEST_F(Programs, WrongFlagsExitWith2) {
        {"tauext-bench --nonsense", "tauext-bench --benchmark_nonsense=1", "tauext-record --seed x",
         "tauext-record", "tauext-replay", "tauext-bench --benchmark_format=csv",
         "tauext-bench --benchmark_out_format=csv",
+        "tauext-bench --benchmark_repetitions=0 --benchmark_filter=free/zero",
+        "tauext-bench --list > /dev/full",
         "tauext-record --robot wallmobot3 --scenario free --velocity_noise -1 --out x.csv"}) {
     const Outcome o = run(command);
     EXPECT_EQ(o.code, 2) << command << '\n' << o.text;
