@@ -54,13 +54,20 @@ class Ekf {
     Start start = Start::kFirstMeasurement;
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
 
-    /// (32), for wallmobot3.
-    static Parameters paper() requires(kDof == 3) {
+    /// (32) for the three joints of wallmobot3, (38) for the one of testbed1.
+    static Parameters paper() requires(kDof == 3 || kDof == 1) {
       Parameters p;
-      p.P0 << 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-2, 1e-2;
-      p.Q << 1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, 4, 2.5, 4;
-      p.R << 8e-10, 1e-12, 1e-12, 3e-11, 1e-12, 1e-12;
-      return p;
+      if constexpr (kDof == 1) {
+        p.P0 << 1e-20, 1e-20, 1e-2;
+        p.Q << 1e-14, 1e-14, 1e-2;
+        p.R << 1e-20, 1e-17;
+        return p;
+      } else {
+        p.P0 << 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-2, 1e-2;
+        p.Q << 1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, 4, 2.5, 4;
+        p.R << 8e-10, 1e-12, 1e-12, 3e-11, 1e-12, 1e-12;
+        return p;
+      }
     }
   };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's EKF as (10)-(16) print it: dense 9 x 9 matrices and a factorisation of the 6 x 6
+// The paper's EKF as (10)-(16) print it: dense 3N x 3N matrices and a factorisation of the 2N x 2N
 // innovation covariance, in any scalar. The oracle of Ekf, and what its speed is compared with.
 #pragma once
 
@@ -10,69 +10,69 @@
 
 namespace tauext::test {
 
-template <class S>
+template <class S, class Arm = BasicWallMoBot3<S>>
 class TextbookEkf {
  public:
   static constexpr const char* kName = "textbook_ekf";
-  static constexpr int kDof = 3;
-  using Arm = BasicWallMoBot3<S>;
+  static constexpr int N = Arm::kDof, kDof = N;
 
-  explicit TextbookEkf(const Ekf<WallMoBot3>::Parameters& p) {
-    P0_ = p.P0.cast<S>().asDiagonal();
-    Q_ = p.Q.cast<S>().asDiagonal();
-    R_ = p.R.cast<S>().asDiagonal();
+  template <class Parameters>
+  explicit TextbookEkf(const Parameters& p) {
+    P0_ = p.P0.template cast<S>().asDiagonal();
+    Q_ = p.Q.template cast<S>().asDiagonal();
+    R_ = p.R.template cast<S>().asDiagonal();
     H_.setZero();
-    H_.template leftCols<6>().setIdentity();
+    H_.template leftCols<2 * N>().setIdentity();
   }
 
   void reset() noexcept { started_ = false; }
 
-  Estimate<3> update(const Measurement<3>& m) noexcept {
-    Vec<6, S> y;
-    y << m.q.cast<S>(), m.qd.cast<S>();
+  Estimate<N> update(const Measurement<N>& m) noexcept {
+    Vec<2 * N, S> y;
+    y << m.q.template cast<S>(), m.qd.template cast<S>();
     if (!started_) {
       started_ = true;
-      x << y, Vec<3, S>::Zero();
+      x << y, Vec<N, S>::Zero();
       P = P0_;
     } else {
       step(S(m.t) - t_, y);
     }
     t_ = S(m.t);
-    tau_ = m.tau.cast<S>();
-    return {x.template tail<3>().template cast<double>(), Status::kOk};
+    tau_ = m.tau.template cast<S>();
+    return {x.template tail<N>().template cast<double>(), Status::kOk};
   }
 
-  Vec<9, S> x = Vec<9, S>::Zero();
-  Mat<9, S> P = Mat<9, S>::Zero();
+  Vec<3 * N, S> x = Vec<3 * N, S>::Zero();
+  Mat<3 * N, S> P = Mat<3 * N, S>::Zero();
 
  private:
-  void step(const S& h, const Vec<6, S>& y) {
-    const Vec<3, S> q = x.template head<3>(), qd = x.template segment<3>(3),
-                    d = x.template tail<3>();
-    const auto f = arm_.forward_dynamics(q, qd, Vec<3, S>(tau_ - d));
-    Vec<9, S> xdot;
-    xdot << qd, f.qdd, Vec<3, S>::Zero();
-    Mat<9, S> F = Mat<9, S>::Identity();  // (15)
-    F.template block<3, 3>(0, 3) += h * Mat<3, S>::Identity();
-    F.template block<3, 3>(3, 0) += h * f.dqdd_dq;
-    F.template block<3, 3>(3, 3) += h * f.dqdd_dqd;
-    F.template block<3, 3>(3, 6) += h * f.dqdd_dtau_ext;
+  void step(const S& h, const Vec<2 * N, S>& y) {
+    const Vec<N, S> q = x.template head<N>(), qd = x.template segment<N>(N),
+                    d = x.template tail<N>();
+    const auto f = arm_.forward_dynamics(q, qd, Vec<N, S>(tau_ - d));
+    Vec<3 * N, S> xdot;
+    xdot << qd, f.qdd, Vec<N, S>::Zero();
+    Mat<3 * N, S> F = Mat<3 * N, S>::Identity();  // (15)
+    F.template block<N, N>(0, N) += h * Mat<N, S>::Identity();
+    F.template block<N, N>(N, 0) += h * f.dqdd_dq;
+    F.template block<N, N>(N, N) += h * f.dqdd_dqd;
+    F.template block<N, N>(N, 2 * N) += h * f.dqdd_dtau_ext;
     x += h * xdot;  // (10)
-    P = Mat<9, S>(F * P * F.transpose()) + Q_;
+    P = Mat<3 * N, S>(F * P * F.transpose()) + Q_;
 
-    const Mat<6, S> innovation = H_ * P * H_.transpose() + R_;  // (14)
-    const Eigen::LLT<Mat<6, S>> factor(innovation);
-    const Eigen::Matrix<S, 9, 6> K = factor.solve(H_ * P).transpose();
+    const Mat<2 * N, S> innovation = H_ * P * H_.transpose() + R_;  // (14)
+    const Eigen::LLT<Mat<2 * N, S>> factor(innovation);
+    const Eigen::Matrix<S, 3 * N, 2 * N> K = factor.solve(H_ * P).transpose();
     x += K * (y - H_ * x);
-    P = Mat<9, S>((Mat<9, S>::Identity() - K * H_) * P);
-    P = Mat<9, S>(S(0.5) * (P + P.transpose()));  // without this it overflows within 30 s
+    P = Mat<3 * N, S>((Mat<3 * N, S>::Identity() - K * H_) * P);
+    P = Mat<3 * N, S>(S(0.5) * (P + P.transpose()));  // without this it overflows within 30 s
   }
 
   Arm arm_;
-  Mat<9, S> P0_, Q_;
-  Mat<6, S> R_;
-  Eigen::Matrix<S, 6, 9> H_;
-  Vec<3, S> tau_ = Vec<3, S>::Zero();
+  Mat<3 * N, S> P0_, Q_;
+  Mat<2 * N, S> R_;
+  Eigen::Matrix<S, 2 * N, 3 * N> H_;
+  Vec<N, S> tau_ = Vec<N, S>::Zero();
   S t_{};
   bool started_ = false;
 };
