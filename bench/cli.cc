@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -11,18 +12,52 @@
 
 namespace tauext {
 
+namespace {
+
+// "noise=1,offset=2" into the fields of these names
+void parse_loadcell(const std::vector<std::string>& items, Loadcell& l) {
+  const std::pair<const char*, double*> fields[] = {
+      {"scale", &l.scale},           {"offset", &l.offset},
+      {"hysteresis", &l.hysteresis}, {"nonlinearity", &l.nonlinearity},
+      {"noise", &l.noise},           {"step", &l.step},
+      {"full_scale", &l.full_scale}};
+  for (const std::string& item : items) {
+    const auto equals = item.find('=');
+    const auto field = std::find_if(std::begin(fields), std::end(fields), [&](const auto& f) {
+      return item.substr(0, equals) == f.first;
+    });
+    if (equals == std::string::npos || field == std::end(fields) ||
+        !CLI::detail::lexical_cast(item.substr(equals + 1), *field->second)) {
+      throw CLI::ValidationError(
+          "--loadcell",
+          fmt::format("'{}' is not KEY=NUMBER with a KEY of scale, offset [N], "
+                      "hysteresis, nonlinearity [of full scale], noise [N], step [N], "
+                      "full_scale [N]",
+                      item));
+    }
+  }
+}
+
+}  // namespace
+
 void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
   app.add_option("--velocity_noise", s.velocity_noise, "standard deviation [rad/s]")
       ->capture_default_str();
   app.add_option("--encoder_step", s.encoder_step, "quantisation of q [rad]")
       ->capture_default_str();
-  app.add_option("--loadcell_noise", s.loadcell_noise, "standard deviation [N m]")
+  app.add_option("--loadcell_noise", s.loadcell_noise, "standard deviation [N m], on tau itself")
       ->capture_default_str();
   app.add_option("--seed", s.seed, "of the sensors' noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--kp", r.tracking.Kp, "tracking stiffness [1/s^2]")->capture_default_str();
-  app.add_option("--kd", r.tracking.Kd, "tracking damping [1/s]")->capture_default_str();
+  app.add_option_function<std::vector<std::string>>(
+         "--loadcell", [&s](const std::vector<std::string>& v) { parse_loadcell(v, s.loadcell); },
+         "faults of a screw's loadcell, like noise=1,offset=5 [N]")
+      ->delimiter(',')
+      ->expected(1)
+      ->type_name("KEY=VALUE,..");
+  app.add_option("--kp", r.Kp, "tracking stiffness [1/s^2], else the scenario's own");
+  app.add_option("--kd", r.Kd, "tracking damping [1/s], else the scenario's own");
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
@@ -52,9 +87,10 @@ std::string list_known() {
   for (const Robot& r : robots()) {
     out += fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n", r.name, r.dof,
                        fmt::join(r.estimators, ", "), fmt::join(r.detectors, ", "));
+    out += "  scenarios\n";
+    for (const Scenario& s : scenarios(r.name))
+      out += fmt::format("    {:<12} {}\n", s.name, s.description);
   }
-  out += "scenarios\n";
-  for (const Scenario& s : scenarios()) out += fmt::format("  {:<11} {}\n", s.name, s.description);
   return out;
 }
 

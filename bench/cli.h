@@ -18,7 +18,7 @@ enum ExitCode : int {
   kCouldNotRun = 2,  ///< wrong flags, unreadable input, unwritable output
 };
 
-/// Adds --velocity_noise, --encoder_step, --loadcell_noise, --seed, --kp and --kd.
+/// Adds --velocity_noise, --encoder_step, --loadcell_noise, --loadcell, --seed, --kp and --kd.
 void add_recording_flags(CLI::App& app, Sensors& sensors, Recording& recording);
 
 /// Parses and runs; prints help, version and errors as "<program>: <what>"; returns the exit code.

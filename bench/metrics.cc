@@ -61,6 +61,10 @@ double noise(const Times& t, const Signal& ideal, const Signal& noisy, double fr
   return std::sqrt((e.array() - e.mean()).square().mean());
 }
 
+double final_error(const Times& t, const Signal& truth, const Signal& estimate) {
+  return bias(t, truth, estimate, t.back() - 1);
+}
+
 StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate) {
   Eigen::Index k = 0;
   const Eigen::Index n = truth.size();
@@ -142,6 +146,22 @@ DetectionScore detection_score(const Times& t, const std::vector<std::uint8_t>& 
   for (std::size_t k = 0; k < n; ++k) s.false_alarms += marks[k] && !expected[k];
   if (n > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (t.back() - t.front());
   return s;
+}
+
+double overtravel(const Trace& trace) {
+  const int at = trace.stopped_at;
+  if (at < 0) return kNaN;
+  double most = 0;
+  for (int j = 0; j < trace.dof(); ++j) {
+    const double sense = trace.qd(j, at) < 0 ? -1 : 1;
+    const auto after = trace.q.row(j).tail(trace.size() - at).array();
+    most = std::max(most, (sense * (after - trace.q(j, at))).maxCoeff());
+  }
+  return most;
+}
+
+double peak(const std::vector<double>& force) {
+  return force.empty() ? 0 : *std::max_element(force.begin(), force.end());
 }
 
 }  // namespace tauext

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mjcf/trace.h"
+
 namespace tauext {
 
 using Signal = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
@@ -25,6 +27,9 @@ double max_error(const Times& t, const Signal& truth, const Signal& estimate, do
 /// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run, over
 /// samples with t >= from.
 double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from);
+
+/// [N m] mean of estimate - truth over the last second: where an estimate ends up.
+double final_error(const Times& t, const Signal& truth, const Signal& estimate);
 
 /// The answer to the largest jump of the truth, from level a to level b at time t_s. A crossing
 /// lies on the straight line between two samples.
@@ -54,5 +59,12 @@ struct DetectionScore {
 };
 DetectionScore detection_score(const Times& t, const std::vector<std::uint8_t>& contact,
                                const std::vector<std::uint8_t>& marks);
+
+/// [rad] how far an arm moves on, in the direction in which it moved, after a mark stopped its motor at
+/// sample trace.stopped_at: the largest of its joints. NaN if nothing stopped it.
+double overtravel(const Trace& trace);
+
+/// [N] the largest force of a contact; 0 without a sample.
+double peak(const std::vector<double>& force);
 
 }  // namespace tauext

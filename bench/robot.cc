@@ -52,6 +52,23 @@ Robot make_robot(const char* name, const M& model) {
   r.dof = N;
   for (const auto& [key, make] : f.estimators) r.estimators.push_back(key);
   for (const auto& [key, make] : f.detectors) r.detectors.push_back(key);
+  r.supervisor = [f](std::string_view estimator, std::string_view detector) -> Supervisor {
+    if (needs_truth(estimator)) {
+      throw std::invalid_argument(
+          fmt::format("estimator '{}' copies the truth: it cannot stop a motor", estimator));
+    }
+    const std::shared_ptr<EstimatorStage<N>> e =
+        find(f.estimators, "estimator", estimator)(Trace());
+    const std::shared_ptr<DetectorStage<N>> d = find(f.detectors, "detector", detector)();
+    return [=](const Sample& y) {
+      const Measurement<N> in{y.t, y.q, y.qd, y.tau};
+      Estimate<N> estimate;
+      Detection detection;
+      e->run({&in, 1}, {&estimate, 1});
+      d->run({&in, 1}, {&estimate, 1}, {&detection, 1});
+      return detection.mark;
+    };
+  };
   r.runner = [f = std::move(f), robot = r.name](std::string_view estimator,
                                                 std::string_view detector,
                                                 const Trace& trace) -> std::unique_ptr<Runner> {

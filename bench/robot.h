@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/stages.h"
+#include "mjcf/record.h"
 
 namespace tauext {
 
@@ -25,6 +26,9 @@ struct Robot {
   std::function<std::unique_ptr<Runner>(std::string_view estimator, std::string_view detector,
                                         const Trace& trace)>
       runner;
+  /// The pair as the one who stops the motor: at the first mark. It never sees a truth.
+  /// @throws std::invalid_argument for an unknown name, or an estimator that copies the truth
+  std::function<Supervisor(std::string_view estimator, std::string_view detector)> supervisor;
 };
 
 /// Every robot of bench/roster.h.

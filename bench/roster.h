@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// THE list: what the suite runs. One line here adds an estimator, a detector or a robot to the
-/// benchmark, to tauext-replay and to the conformance tests. (Scenarios: mjcf/scenario.cc.)
+/// benchmark, to tauext-replay and to the conformance tests. (Scenarios: mjcf/scenario_<robot>.cc.)
 #pragma once
 
 #include "bench/baselines.h"
@@ -9,20 +9,75 @@
 #include "estimators/ekf.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/ndob.h"
+#include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
 
 namespace tauext {
 
-/// Calls visit(make) for every estimator of the arm; make(trace) builds one.
+// Forms as the paper prints them, to be compared with those that we stand for (kPrintedForm).
+
+/// The testbed's EKF from x_0 = 0, as section 6.2 starts it, wherever the arm is.
+struct EkfZeroStart : Ekf<Testbed1> {
+  static constexpr const char* kName = "ekf_zero_start";
+  static constexpr bool kPrintedForm = true;
+  explicit EkfZeroStart(const Testbed1& arm) : Ekf(arm, parameters()) {}
+  static Parameters parameters() {
+    Parameters p = Parameters::paper();
+    p.start = Start::kZero;
+    return p;
+  }
+};
+
+/// The EKF with the printed sign(qd) for its friction.
+struct EkfRawSign : Ekf<Testbed1> {
+  static constexpr const char* kName = "ekf_raw_sign";
+  static constexpr bool kPrintedForm = true;
+  EkfRawSign() : Ekf(Testbed1(Testbed1::Parameters::raw_sign()), Parameters::paper()) {}
+};
+
+/// The NDOB with the printed sign(qd) for its friction.
+struct NdobRawSign : Ndob<Testbed1> {
+  static constexpr const char* kName = "ndob_raw_sign";
+  static constexpr bool kPrintedForm = true;
+  explicit NdobRawSign(const Parameters& p) : Ndob(Testbed1(Testbed1::Parameters::raw_sign()), p) {}
+};
+
+/// The NDOB's gain on the testbed, for which the paper prints none: X = 100 1/s theta_1, a pole of
+/// 100 rad/s. Its 10 ms are a tenth of a human's quickest push, and 1e-3 rad/s of velocity noise
+/// cost 0.04 N m.
+inline Ndob<Testbed1>::Parameters testbed1_ndob() {
+  return {.X = Vec<1>(100 * Testbed1::Parameters().theta1)};
+}
+
+/// Calls visit(make) for the estimators that every arm has; make(trace) builds one.
 template <RobotModel M, class Visit>
-void for_each_estimator(const M& model, Visit&& visit) {
+void for_each_common_estimator(const M& model, Visit&& visit) {
   constexpr int N = M::kDof;
   visit([](const Trace&) { return Zero<N>(); });
   visit([](const Trace& trace) { return Truth<N>(trace); });
   visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
   visit([=](const Trace&) { return InverseDynamics<M>(model); });
-  visit([=](const Trace&) { return Ekf<M>(model, Ekf<M>::Parameters::paper()); });
-  visit([=](const Trace&) { return Ndob<M>(model, Ndob<M>::Parameters::paper()); });
+}
+
+/// Calls visit(make) for every estimator of wallmobot3.
+template <class Visit>
+void for_each_estimator(const WallMoBot3& arm, Visit&& visit) {
+  using M = WallMoBot3;
+  for_each_common_estimator(arm, visit);
+  visit([=](const Trace&) { return Ekf<M>(arm, Ekf<M>::Parameters::paper()); });
+  visit([=](const Trace&) { return Ndob<M>(arm, Ndob<M>::Parameters::paper()); });
+}
+
+/// Calls visit(make) for every estimator of testbed1.
+template <class Visit>
+void for_each_estimator(const Testbed1& arm, Visit&& visit) {
+  using M = Testbed1;
+  for_each_common_estimator(arm, visit);
+  visit([=](const Trace&) { return Ekf<M>(arm, Ekf<M>::Parameters::paper()); });
+  visit([=](const Trace&) { return EkfZeroStart(arm); });
+  visit([](const Trace&) { return EkfRawSign(); });
+  visit([=](const Trace&) { return Ndob<M>(arm, testbed1_ndob()); });
+  visit([](const Trace&) { return NdobRawSign(testbed1_ndob()); });
 }
 
 /// Calls visit(make) for every detector of N joints; make() builds one.
@@ -35,6 +90,7 @@ void for_each_detector(Visit&& visit) {
 template <class Visit>
 void for_each_robot(Visit&& visit) {
   visit("wallmobot3", WallMoBot3());
+  visit("testbed1", Testbed1());
 }
 
 }  // namespace tauext

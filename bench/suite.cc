@@ -91,7 +91,7 @@ std::string Entry::name() const {
 std::vector<Entry> entries() {
   std::vector<Entry> all;
   for (const Robot& r : robots()) {
-    for (const Scenario& s : scenarios()) {
+    for (const Scenario& s : scenarios(r.name)) {
       for (const std::string& e : r.estimators) all.push_back({r.name, s.name, e, ""});
       if (s.response != Response::kDetection && s.response != Response::kLag) continue;
       for (const std::string& e : r.estimators) {
@@ -133,6 +133,9 @@ void add_response_metrics(const Trace& trace, const Output& out, const Scenario&
     add_per_joint(n, "rise_0_90", "s", score, [&](int j) { return r[j].rise_0_90; });
     add_per_joint(n, "settling", "s", score, [&](int j) { return r[j].settling; });
     add_per_joint(n, "overshoot", "percent", score, [&](int j) { return r[j].overshoot; });
+    add_per_joint(n, "final", "Nm", score, [&](int j) {
+      return std::abs(final_error(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j)));
+    });
   }
   if (scenario.response == Response::kLag) {
     add_per_joint(n, "lag", "s", score, [&](int j) {
@@ -152,15 +155,28 @@ void add_detection_metrics(const Trace& trace, const Output& out, Score& score) 
   score.metrics["false_alarms_per_hour"] = d.false_alarms_per_hour;
 }
 
+void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score) {
+  score.metrics["overtravel_rad"] = overtravel(stopped);
+  score.metrics["peak_N"] = peak(stopped.contact_force);
+  score.metrics["peak_unstopped_N"] = peak(free.contact_force);
+}
+
+bool Suite::closed_loop(const Entry& e) {
+  return !e.detector.empty() && scenario(e.robot, e.scenario).reacts;
+}
+
 const Suite::Traces& Suite::traces(const Entry& e) {
-  const auto it = traces_.find(e.group());
+  const std::string key = closed_loop(e) ? e.name() : e.group();
+  const auto it = traces_.find(key);
   if (it != traces_.end()) return it->second;
   Traces t;
-  t.ideal = record(load_robot(e.robot), scenario(e.scenario), {}, options_.recording);
+  const Scenario& s = scenario(e.robot, e.scenario);
+  t.ideal = simulate(load_for(e.robot, s), s, options_.recording, options_.sensors,
+                     closed_loop(e) ? robot(e.robot).supervisor(e.estimator, e.detector) : nullptr);
   Sensors sensors = options_.sensors;
   if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
   t.noisy = measure(t.ideal, sensors);
-  return traces_.emplace(e.group(), std::move(t)).first->second;
+  return traces_.emplace(key, std::move(t)).first->second;
 }
 
 const Trace& Suite::scored(const Entry& e) {
@@ -172,7 +188,7 @@ std::unique_ptr<Runner> Suite::runner(const Entry& e) {
 }
 
 Score Suite::score(const Entry& e) {
-  const Scenario& s = scenario(e.scenario);
+  const Scenario& s = scenario(e.robot, e.scenario);
   const Robot& r = robot(e.robot);
   const Traces& recorded = traces(e);
   const auto ideal_runner = r.runner(e.estimator, e.detector, recorded.ideal);
@@ -190,6 +206,11 @@ Score Suite::score(const Entry& e) {
   add_error_metrics(trace, out, s.score_from, score);
   add_response_metrics(trace, out, s, score);
   add_detection_metrics(trace, out, score);
+  if (closed_loop(e)) {
+    Entry free = e;
+    free.detector = "";
+    add_reaction_metrics(recorded.ideal, traces(free).ideal, score);
+  }
   add_per_joint(r.dof, "noise", "Nm", score, [&](int j) {
     return noise(trace.t, ideal.tau_ext.row(j), noisy.tau_ext.row(j), s.score_from);
   });

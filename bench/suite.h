@@ -51,6 +51,9 @@ void add_response_metrics(const Trace& trace, const Output& output, const Scenar
                           Score& score);
 void add_detection_metrics(const Trace& trace, const Output& output, Score& score);
 
+/// What stopping at the mark was worth: overtravel, and the contact's peak force with and without.
+void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score);
+
 /// The first estimate that is not finite or whose status says that it is an old one; "" for none.
 std::string bad_status(const Trace& trace, const Output& output);
 
@@ -59,7 +62,8 @@ std::string bad_status(const Trace& trace, const Output& output);
 /// 1.5 times that of an estimate of 0 by more than 5 N m.
 std::string failure(const Trace& ideal, const Output& output, double from);
 
-/// Scores entries; records each robot's scenario once and shares it. Safe for one thread.
+/// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is recorded
+/// anew for each pair of estimator and detector, whose mark then stops the motor. Safe for one thread.
 class Suite {
  public:
   explicit Suite(const SuiteOptions& options) : options_(options) {}
@@ -75,11 +79,13 @@ class Suite {
   struct Traces {
     Trace ideal, noisy;  // noisy: by `sensors`, or by the noise probe if these are ideal
   };
+  // whether the entry's own marks stop its motor
+  static bool closed_loop(const Entry& entry);
   const Traces& traces(const Entry& entry);
   const Trace& scored(const Entry& entry);
 
   SuiteOptions options_;
-  std::map<std::string, Traces> traces_;  // by group
+  std::map<std::string, Traces> traces_;  // by group; a closed loop's by name
 };
 
 }  // namespace tauext

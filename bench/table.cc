@@ -24,9 +24,13 @@ constexpr Column kColumns[] = {
     {"rise_s", "rise", "s", 3},
     {"settling_s", "settling", "s", 3},
     {"overshoot_percent", "overshoot", "%", 1},
+    {"final_Nm", "final", "N m", 3},
     {"lag_s", "lag", "s", 3},
     {"delay_s", "delay", "s", 3},
     {"false_alarms", "false", "alarms", 0},
+    {"overtravel_rad", "overtravel", "rad", 4},
+    {"peak_N", "peak", "N", 0},
+    {"peak_unstopped_N", "unstopped", "N", 0},
     {"cpu_ns", "step", "ns", 1},
     {"allocs", "allocs", "1/step", 0},
 };
@@ -119,8 +123,10 @@ std::string table_legend() {
   return "Worst joint of each row; * best of its group (zero, truth, delayed_truth do not "
          "compete).\n"
          "noise: what sensor noise adds to the estimate. rise: 10-90 %. settling: to within 2 %.\n"
-         "lag: delay behind a moving truth. delay: from first contact to the mark. step: CPU "
-         "time.\n";
+         "final: error over the last second. lag: delay behind a moving truth. delay: from first "
+         "contact\nto the mark, which stops the motor where it can; overtravel: how far the arm "
+         "moves "
+         "on; peak: largest\nforce of the contact, and what it is unstopped. step: CPU time.\n";
 }
 
 }  // namespace tauext

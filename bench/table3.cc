@@ -40,7 +40,7 @@ std::vector<Table3Row> table3_printed() {
 
 std::vector<Table3Row> table3_measured(double panel) {
   const WallMoBot3 model(WallMoBot3::Parameters::with_panel(panel));
-  const Trace trace = record(wallmobot3_with_panel(panel), scenario("step"));
+  const Trace trace = record(wallmobot3_with_panel(panel), scenario("wallmobot3", "step"));
   using EkfOfArm = Ekf<WallMoBot3>;
   using NdobOfArm = Ndob<WallMoBot3>;
   const auto ekf = responses(trace, EkfOfArm(model, EkfOfArm::Parameters::paper()));

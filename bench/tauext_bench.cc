@@ -66,9 +66,11 @@ std::unique_ptr<benchmark::BenchmarkReporter> make_display(
 
 std::string build_line(const Suite& suite) {
   const SuiteOptions& o = suite.options();
-  return fmt::format("tauext {}, {}, {}, MuJoCo {}, seed {}, Kp {:g} 1/s^2, Kd {:g} 1/s",
-                     TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(),
-                     o.sensors.seed, o.recording.tracking.Kp, o.recording.tracking.Kd);
+  std::string line = fmt::format("tauext {}, {}, {}, MuJoCo {}, seed {}", TAUEXT_VERSION,
+                                 TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(), o.sensors.seed);
+  if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
+  if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
+  return line;
 }
 
 struct Flags {

@@ -12,13 +12,14 @@ int main(int argc, char** argv) {
       "t,q1..,qd1..,tau1..,tau_ext1..,contact  [s, rad, rad/s, N m; sign: see README]\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
-  std::string robot_name, scenario_name, out;
+  std::string robot_name, scenario_name, out, stop;
   Sensors sensors;
   Recording recording;
   bool list = false;
   app.add_option("--robot", robot_name, "robot (see --list)");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--out", out, "file to write; - is standard output");
+  app.add_option("--stop", stop, "ESTIMATOR+DETECTOR whose first mark stops the motor");
   add_recording_flags(app, sensors, recording);
   app.add_flag("--list", list, "list robots and scenarios, and stop");
   return run_program(app, argc, argv, [&] {
@@ -30,10 +31,21 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(
           "--robot, --scenario and --out are required; see tauext-record --help");
     }
-    const Scenario& s = scenario(scenario_name);
-    const Trace trace = record(load_robot(robot(robot_name).name), s, sensors, recording);
+    const Robot& r = robot(robot_name);
+    const Scenario& s = scenario(r.name, scenario_name);
+    const auto plus = stop.find('+');
+    if (!stop.empty() && plus == std::string::npos) {
+      throw std::invalid_argument(
+          fmt::format("--stop {}: ESTIMATOR+DETECTOR, like ekf+pan_tompkins", stop));
+    }
+    const Supervisor supervisor =
+        stop.empty() ? nullptr : r.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
+    const Trace trace =
+        measure(simulate(load_for(r.name, s), s, recording, sensors, supervisor), sensors);
     write_csv(trace, out);
-    fmt::print(stderr, "{}: {} samples of {}/{}\n", out, trace.size(), robot_name, scenario_name);
+    fmt::print(stderr, "{}: {} samples of {}/{}{}\n", out, trace.size(), robot_name, scenario_name,
+               trace.stopped_at < 0 ? stop.empty() ? "" : "; nothing stopped it"
+                                    : fmt::format("; stopped at {} s", trace.t[trace.stopped_at]));
     return kGood;
   });
 }

@@ -14,9 +14,9 @@ namespace tauext::detail {
 /// Four doubles in a register.
 typedef double Lanes __attribute__((vector_size(4 * sizeof(double))));
 
-/// Rows of N padded to whole registers.
+/// Rows of N padded to whole registers; one joint needs none.
 template <int N>
-inline constexpr int kPadded = (N + 3) / 4 * 4;
+inline constexpr int kPadded = N == 1 ? 1 : (N + 3) / 4 * 4;
 
 /// A padded N x N block.
 template <int N>
@@ -53,6 +53,7 @@ template <int N>
 /// v with zeros appended.
 template <int N>
 [[gnu::always_inline]] inline Vec<kPadded<N>> pad_vector(const Vec<N>& v) noexcept {
+  if constexpr (kPadded<N> == N) return v;
   Vec<kPadded<N>> p;
   for (int i = 0; i < N; i += 4) store(&p[i], gather_zeros<N>(v, i));
   return p;
@@ -61,6 +62,7 @@ template <int N>
 /// m with rows and columns of zeros appended.
 template <int N>
 [[gnu::always_inline]] inline Block<N> pad_matrix(const Mat<N>& m) noexcept {
+  if constexpr (kPadded<N> == N) return m;
   Block<N> b = Block<N>::Zero();
   for (int j = 0; j < N; ++j) b.col(j) = pad_vector<N>(m.col(j));
   return b;
@@ -75,6 +77,7 @@ inline Lanes load(const double* from) noexcept {
 /// b^T by tiles of 4 x 4.
 template <int Rows>
 [[gnu::always_inline]] inline Mat<Rows> transposed(const Mat<Rows>& b) noexcept {
+  if constexpr (Rows == 1) return b;
   Mat<Rows> t;
 #pragma GCC unroll 2
   for (int i = 0; i < Rows; i += 4) {

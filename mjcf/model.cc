@@ -43,6 +43,33 @@ struct Vfs {
   std::unique_ptr<mjVFS> vfs = std::make_unique<mjVFS>();
 };
 
+// the text of an embedded file
+template <class Files>
+std::string_view find(const Files& files, const char* what, std::string_view name) {
+  std::vector<std::string_view> known;
+  for (const EmbeddedFile& f : files) {
+    if (f.name == name) return f.xml;
+    known.push_back(f.name);
+  }
+  throw std::invalid_argument(
+      fmt::format("unknown {} '{}'; known: {}", what, name, fmt::join(known, ", ")));
+}
+
+void add(Vfs& files, const std::string& name, std::string_view text) {
+  if (mj_makeEmptyFileVFS(files.vfs.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
+    throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", name));
+  }
+  std::copy(text.begin(), text.end(),
+            static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
+}
+
+// recomputes what MuJoCo derives from masses
+Model with_constants(mjModel* m) {
+  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(m), mj_deleteData);
+  mj_setConst(m, d.get());
+  return own(m);
+}
+
 }  // namespace
 
 std::string mujoco_version() {
@@ -51,29 +78,23 @@ std::string mujoco_version() {
 
 std::vector<std::string> robot_names() {
   std::vector<std::string> names;
-  for (const EmbeddedRobot& r : kEmbeddedRobots) names.emplace_back(r.name);
+  for (const EmbeddedFile& r : kEmbeddedRobots) names.emplace_back(r.name);
   return names;
 }
 
-Model load_robot(std::string_view name) {
+Model load_robot(std::string_view name, std::string_view scene) {
   install_handlers();
-  for (const EmbeddedRobot& r : kEmbeddedRobots) {
-    if (r.name != name) continue;
-    Vfs files;
-    const std::string file = fmt::format("{}.xml", name);
-    const int size = static_cast<int>(r.xml.size());
-    if (mj_makeEmptyFileVFS(files.vfs.get(), file.c_str(), size) != 0) {
-      throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", file));
-    }
-    std::copy(r.xml.begin(), r.xml.end(),
-              static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
-    char error[1000] = "";
-    mjModel* m = mj_loadXML(file.c_str(), files.vfs.get(), error, sizeof error);
-    if (m == nullptr) throw std::runtime_error(fmt::format("{}: {}", file, error));
-    return own(m);
-  }
-  throw std::invalid_argument(
-      fmt::format("unknown robot '{}'; known: {}", name, fmt::join(robot_names(), ", ")));
+  const std::string_view robot = find(kEmbeddedRobots, "robot", name);
+  Vfs files;
+  add(files, fmt::format("{}.xml", name), robot);
+  const std::string main = "main.xml";
+  add(files, main,
+      fmt::format("<mujoco><include file=\"{}.xml\"/>{}</mujoco>", name,
+                  scene.empty() ? "" : find(kEmbeddedScenes, "scene", scene)));
+  char error[1000] = "";
+  mjModel* m = mj_loadXML(main.c_str(), files.vfs.get(), error, sizeof error);
+  if (m == nullptr) throw std::runtime_error(fmt::format("{} {}: {}", name, scene, error));
+  return own(m);
 }
 
 Model with_scaled_body(const Model& model, const std::string& body, double factor) {
@@ -86,9 +107,20 @@ Model with_scaled_body(const Model& model, const std::string& body, double facto
   mjModel* m = mj_copyModel(nullptr, model.get());
   m->body_mass[id] *= factor;
   for (int i = 0; i < 3; ++i) m->body_inertia[3 * id + i] *= factor;
-  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(m), mj_deleteData);
-  mj_setConst(m, d.get());
-  return own(m);
+  return with_constants(m);
+}
+
+Model testbed1_absorbed(std::string_view scene) {
+  const Model printed = load_robot("testbed1", scene);
+  mjModel* const m = mj_copyModel(nullptr, printed.get());
+  const int arm = mj_name2id(m, mjOBJ_BODY, "arm");
+  const double g = -m->opt.gravity[2];
+  const double mass = m->body_mass[arm] / g;
+  // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
+  const double* const r = m->body_ipos + 3 * arm;
+  m->body_inertia[3 * arm + 1] += (m->body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
+  m->body_mass[arm] = mass;
+  return with_constants(m);
 }
 
 Model wallmobot3_with_panel(double panel) {

@@ -22,12 +22,17 @@ std::string mujoco_version();
 std::vector<std::string> robot_names();
 
 /// One of these robots. Its MJCF is built into the library, so no file has to be found.
-/// @throws std::invalid_argument for an unknown name, listing the known ones
-Model load_robot(std::string_view name);
+/// @param scene what stands around it: "" for nothing, "load" (a mass on a tether) or "obstacle"
+/// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
+Model load_robot(std::string_view name, std::string_view scene = "");
 
 /// A copy of the model whose body has `factor` times its mass and its inertia.
 /// @throws std::invalid_argument for an unknown body or a factor that is not positive and finite
 Model with_scaled_body(const Model& model, const std::string& body, double factor);
+
+/// testbed1 with g inside theta_2 and theta_3, Testbed1::Parameters::absorbed(): its first moments
+/// divided by 9.81, its inertia and friction as they are.
+Model testbed1_absorbed(std::string_view scene = "");
 
 /// wallmobot3 with another panel [kg] than the 150 kg of Table II: link 5 weighs 27 kg + panel and
 /// its inertia scales with its mass, as WallMoBot3::Parameters::with_panel has it.

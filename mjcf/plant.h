@@ -6,14 +6,27 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <memory>
+#include <vector>
 
 #include "mjcf/model.h"
+#include "mjcf/screw.h"
 
 namespace tauext {
 
-/// A simulated arm. MuJoCo's own coordinates rho are mapped to q = S rho, S constant: actuator i
-/// must be a motor of unit gain whose length is q_i (on a joint or on a fixed tendon), one for each
-/// degree of freedom. Generalised forces map by rho_force = S^T force.
+/// A point of the arm in the world frame.
+struct Point {
+  Eigen::Vector3d position;  ///< [m]
+  Eigen::Vector3d velocity;  ///< [m/s]
+};
+
+/// A simulated arm, and what stands around it. MuJoCo's coordinates rho of the arm are mapped to
+/// q = S rho, S constant. Actuators, in this order:
+///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its force
+///    tau_i. Generalised forces map by rho_force = S^T force.
+///  - none, or one motor of unit gain on a spatial tendon for each joint: a linear screw, which is
+///    never driven here but says what a loadcell at its end feels.
+///  - with the scene "load", the switch of the tether.
+/// Further degrees of freedom are the scene's: bodies that meet the arm by contacts and tethers only.
 ///
 /// Everything but `step` speaks of the present state and input, and equation (3) holds there:
 ///     B qdd + bias + friction + tau_ext = tau.
@@ -22,37 +35,79 @@ class Plant {
   /// @throws std::invalid_argument if the model's actuators do not give such coordinates
   explicit Plant(Model model);
 
-  int dof() const { return model_->nu; }
+  int dof() const { return dof_; }
   const mjModel& model() const { return *model_; }
+  const mjData& data() const { return *data_; }
 
-  /// Puts the arm at q [rad], qd [rad/s], at rest from inputs.
+  /// The screws of the joints, in their order; empty if the robot has none.
+  const std::vector<Screw>& screws() const { return screws_; }
+
+  /// Puts the arm at q [rad], qd [rad/s], at rest from inputs, and the scene at its begin: a load is
+  /// held beside the arm.
   void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 
-  /// Applies tau [N m] and tau_ext [N m, sign of (3)] from now on.
+  /// Applies tau [N m] and tau_ext [N m, sign of (3)] from now on. tau beyond what the motors can do
+  /// is clipped.
   void set_input(const Eigen::VectorXd& tau, const Eigen::VectorXd& tau_ext);
 
   Eigen::VectorXd q() const;         ///< [rad]
   Eigen::VectorXd qd() const;        ///< [rad/s]
+  Eigen::VectorXd tau() const;       ///< [N m] as applied, clipped
   Eigen::MatrixXd inertia() const;   ///< B [kg m^2]
   Eigen::VectorXd bias() const;      ///< C qd + g [N m]
+  Eigen::VectorXd damping() const;   ///< the part of F that is linear in qd [N m]
   Eigen::VectorXd friction() const;  ///< F [N m], damping and dry friction
   Eigen::VectorXd qdd() const;       ///< [rad/s^2] MuJoCo's acceleration under the present input
+
+  /// All that acts on the arm from outside [N m, sign of (3)]: the input, the tether, contacts.
+  Eigen::VectorXd tau_ext() const;
+  /// Sum of the normal forces of the contacts on the arm [N].
+  double contact_force() const;
+
+  /// A site of the arm.
+  /// @throws std::invalid_argument for an unknown site
+  Point site(const std::string& name) const;
 
   /// tau_ext = -J^T f [N m] of a force f [N, world frame] that acts on the arm at the site.
   /// @throws std::invalid_argument for an unknown site
   Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f, const std::string& site) const;
+
+  /// Hangs the load on the end effector, below it and moving with it, its tether stretched by its
+  /// weight. @throws std::invalid_argument without the scene "load"
+  void hang_load();
+  /// Lets it fall.
+  void drop_load();
+  /// Pushes it with f [N, world frame] from the next set_input on.
+  void push_load(const Eigen::Vector3d& f) { push_ = f; }
 
   /// Integrates over one step h [s] by RK4, input held.
   /// @throws std::runtime_error when MuJoCo warns (bad state, too many contacts, ...)
   void step(double h);
 
  private:
+  enum class LoadState { kNone, kHeld, kHung, kDropped };
+
+  void find_coordinates();
+  void find_scene();
+  void apply_to_load();
+  int site_id(const std::string& name) const;
+  Eigen::VectorXd of_arm(const double* force) const;  // a generalised force, in joint coordinates
+  template <class Counts>
+  Eigen::VectorXd constraint_force(Counts&& counts) const;
+
   Model model_;
   std::unique_ptr<mjData, decltype(&mj_deleteData)> data_;
+  int dof_ = 0;
+  std::vector<int> arm_;  // dofs of rho
+  std::vector<Screw> screws_;
   Eigen::MatrixXd S_;                           // q = S rho + q0
   Eigen::PartialPivLU<Eigen::MatrixXd> S_lu_;   // of S
   Eigen::PartialPivLU<Eigen::MatrixXd> St_lu_;  // of S^T
   Eigen::VectorXd q0_;
+  Eigen::VectorXd tau_ext_;  // of set_input
+  LoadState load_ = LoadState::kNone;
+  int load_dof_ = -1, tether_ = -1;  // its first dof, its actuator
+  Eigen::Vector3d push_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace tauext

@@ -3,6 +3,8 @@
 /// Ground truth: a scenario, run on a robot, sampled.
 #pragma once
 
+#include <optional>
+
 #include "mjcf/plant.h"
 #include "mjcf/scenario.h"
 #include "mjcf/sensors.h"
@@ -10,26 +12,30 @@
 
 namespace tauext {
 
-/// The tracking controller: computed torque, tau = B (qdd_ref + Kp e + Kd edot) + C qd + F + g with
-/// the exact model. The paper names none, but its runs presuppose one: under gravity compensation
-/// alone the arm falls over within 2 s of the step.
-struct Tracking {
-  double Kp = 400;  ///< [1/s^2]
-  double Kd = 40;   ///< [1/s]
-};
-
 /// How a scenario is run and sampled.
 struct Recording {
-  Tracking tracking;
-  double Ts = 1e-3;  ///< [s] sampling time; tau and tau_ext are held over it
-  int substeps = 1;  ///< RK4 steps per sample
+  std::optional<double> Kp;  ///< [1/s^2] of the tracking controller; else the scenario's
+  std::optional<double> Kd;  ///< [1/s]
+  double Ts = 1e-3;          ///< [s] sampling time; tau and tau_ext are held over it
+  int substeps = 1;          ///< RK4 steps per sample
 };
 
-/// Runs the scenario from its start and samples t_k = k Ts before the end.
+/// Asked at every sample, with what the sensors read: whether to stop the motor. From the next sample
+/// on the controller holds the arm where it was at this one.
+using Supervisor = std::function<bool(const Sample&)>;
+
+/// Runs the scenario from its start and samples t_k = k Ts before the end; the supervisor, if there
+/// is one, sees it through the sensors. The trace returned is the truth: ideal sensors.
 ///
 /// tau_ext acts as a generalised force and the force on the end effector as J(q_k)^T f, both held
-/// over [t_k, t_k+1), so the recorded tau_ext is exact by construction.
-/// @throws std::invalid_argument for a Recording that is out of range, std::runtime_error if MuJoCo warns
+/// over [t_k, t_k+1), so their recorded tau_ext is exact by construction. What a tether or a contact
+/// does to the arm changes within a sample; recorded is its value at t_k.
+/// @throws std::invalid_argument for a Recording that is out of range, or a model without the
+/// scenario's scene (load_for gives one with it); std::runtime_error if MuJoCo warns
+Trace simulate(const Model& model, const Scenario& scenario, const Recording& recording = {},
+               const Sensors& sensors = {}, const Supervisor& supervisor = nullptr);
+
+/// measure(simulate(...)) without a supervisor.
 Trace record(const Model& model, const Scenario& scenario, const Sensors& sensors = {},
              const Recording& recording = {});
 

@@ -4,102 +4,45 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-#include <numbers>
+#include <map>
 #include <stdexcept>
 
+#include "mjcf/scenario_lists.h"
+
 namespace tauext {
-namespace {
 
-Reference sine_motion(double amplitude, double w, double t) {
-  return {amplitude * std::sin(w * t), amplitude * w * std::cos(w * t),
-          -amplitude * w * w * std::sin(w * t)};
+Scenario quiet() {
+  Scenario s;
+  s.reference = [](double) { return Reference{}; };
+  s.tau_ext = [](double) { return 0; };
+  s.force = [](double, const Point&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); };
+  s.contact = [](double) { return false; };
+  return s;
 }
 
-// section 5.2 of the paper
-Reference paper_motion(double t) {
-  return sine_motion(0.1, 1, t);
-}
-double paper_sine(double t) {
-  return 10 * std::sin(t) + 5 * std::cos(2 * t + std::numbers::pi / 2) - 5;
-}
-
-double zero(double) {
-  return 0;
-}
-bool never(double) {
-  return false;
-}
-
-// the collision of Fig. 7 (b): when, how long, how hard is ours
-constexpr double kHitAt = 5, kHitFor = 0.02, kHitForce = 200;  // [s], [s], [N]
-bool hit(double t) {
-  return t >= kHitAt && t < kHitAt + kHitFor;
-}
-
-std::vector<Scenario> make() {
-  Scenario base;
-  base.reference = paper_motion;
-  base.tau_ext = zero;
-  base.force_x = zero;
-  base.contact = never;
-
-  std::vector<Scenario> all;
-  const auto add = [&](const char* name, const char* description) -> Scenario& {
-    all.push_back(base);
-    all.back().name = name;
-    all.back().description = description;
-    return all.back();
+const std::vector<Scenario>& scenarios(std::string_view robot) {
+  static const std::map<std::string_view, std::vector<Scenario>> all = {
+      {"testbed1", scenarios_of_testbed1()},
+      {"wallmobot3", scenarios_of_wallmobot3()},
   };
-
-  add("free", "no contact; q_ref = 0.1 sin t rad, from rest");
-
-  Scenario& step = add("step", "98.2 N m on every joint from t = 1 s (Fig. 4)");
-  step.response = Response::kStep;
-  step.tau_ext = [](double t) { return t < 1 ? 0 : 98.2; };
-
-  Scenario& ramp = add("ramp", "from t = 1 s, 5 N m/s on every joint (Fig. 5)");
-  ramp.response = Response::kLag;
-  ramp.tau_ext = [](double t) { return t < 1 ? 0 : 5 * (t - 1); };
-
-  Scenario& sine =
-      add("sine", "10 sin t + 5 cos(2t + pi/2) - 5 N m on every joint (Fig. 6); scored from 3 s");
-  sine.response = Response::kLag;
-  sine.score_from = 3;
-  sine.tau_ext = paper_sine;
-
-  Scenario& collision =
-      add("collision",
-          "5 sin(t/2) N m, and at t = 5 s a half sine of 200 N, 20 ms on the panel (Fig. 7)");
-  collision.response = Response::kDetection;
-  collision.tau_ext = [](double t) { return 5 * std::sin(t / 2); };
-  collision.contact = hit;
-  collision.force_x = [](double t) {
-    return hit(t) ? -kHitForce * std::sin(std::numbers::pi * (t - kHitAt) / kHitFor) : 0;
-  };
-
-  Scenario& in_motion =
-      add("in_motion", "no contact; starts at 0.6 rad/s on q_ref = 0.3 sin 2t rad");
-  in_motion.start_on_reference = true;
-  in_motion.reference = [](double t) { return sine_motion(0.3, 2, t); };
-  return all;
+  const auto it = all.find(robot);
+  if (it != all.end()) return it->second;
+  throw std::invalid_argument(fmt::format("no scenarios for robot '{}'", robot));
 }
 
-}  // namespace
-
-const std::vector<Scenario>& scenarios() {
-  static const std::vector<Scenario> all = make();
-  return all;
-}
-
-const Scenario& scenario(std::string_view name) {
+const Scenario& scenario(std::string_view robot, std::string_view name) {
   std::vector<std::string_view> known;
-  for (const Scenario& s : scenarios()) {
+  for (const Scenario& s : scenarios(robot)) {
     if (s.name == name) return s;
     known.push_back(s.name);
   }
   throw std::invalid_argument(
-      fmt::format("unknown scenario '{}'; known: {}", name, fmt::join(known, ", ")));
+      fmt::format("unknown scenario '{}' of {}; known: {}", name, robot, fmt::join(known, ", ")));
+}
+
+Model load_for(std::string_view robot, const Scenario& s) {
+  const Model m = load_robot(robot, s.scene);
+  return s.load ? with_scaled_body(m, "load", s.load->mass) : m;  // it weighs 1 kg in the scene
 }
 
 }  // namespace tauext

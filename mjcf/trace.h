@@ -9,8 +9,17 @@
 #include <vector>
 
 #include "estimators/types.h"
+#include "mjcf/screw.h"
 
 namespace tauext {
+
+/// What the sensors read at one time.
+struct Sample {
+  double t = 0;         ///< [s]
+  Eigen::VectorXd q;    ///< [rad]
+  Eigen::VectorXd qd;   ///< [rad/s]
+  Eigen::VectorXd tau;  ///< [N m]
+};
 
 /// Samples of an arm with n joints; column k of a matrix is sample k. Signs and sampling convention:
 /// estimators/types.h.
@@ -23,8 +32,11 @@ struct Trace {
   std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
 
   // known to the simulation alone, never written to a file
-  Eigen::MatrixXd qdd;       ///< [rad/s^2] MuJoCo's acceleration at t_k
-  Eigen::MatrixXd friction;  ///< [N m] F of (3) at t_k
+  Eigen::MatrixXd qdd;                ///< [rad/s^2] MuJoCo's acceleration at t_k
+  Eigen::MatrixXd friction;           ///< [N m] F of (3) at t_k
+  std::vector<double> contact_force;  ///< [N] sum of the normal forces on the arm at t_k
+  std::vector<Screw> screws;          ///< of the joints; empty if the robot has none
+  int stopped_at = -1;                ///< sample at which a supervisor stopped the motor; -1: never
 
   int dof() const { return static_cast<int>(q.rows()); }
   int size() const { return static_cast<int>(t.size()); }

@@ -72,10 +72,11 @@ TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
 TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
   const Outcome robot = run("tauext-record --robot r2d2 --scenario step --out x.csv");
   EXPECT_EQ(robot.code, 2);
-  EXPECT_TRUE(robot.says("unknown robot 'r2d2'; known: wallmobot3")) << robot.text;
+  EXPECT_TRUE(robot.says("unknown robot 'r2d2'; known: wallmobot3, testbed1")) << robot.text;
   const Outcome scenario = run("tauext-record --robot wallmobot3 --scenario dance --out x.csv");
   EXPECT_EQ(scenario.code, 2);
-  EXPECT_TRUE(scenario.says("unknown scenario 'dance'; known: free, step")) << scenario.text;
+  EXPECT_TRUE(scenario.says("unknown scenario 'dance' of wallmobot3; known: free, step"))
+      << scenario.text;
   EXPECT_FALSE(exists("x.csv"));
   run("tauext-record --robot wallmobot3 --scenario step --out log.csv");
   const Outcome estimator =

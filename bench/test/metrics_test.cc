@@ -142,5 +142,31 @@ TEST(DetectionScore, WithoutContactEveryMarkIsFalseAndThereIsNoDelay) {
   EXPECT_TRUE(std::isnan(s.delay));
 }
 
+TEST(Metrics, FinalErrorIsTheMeanOfTheLastSecond) {
+  const Times t = {0, 1, 2, 2.5, 3};
+  const Eigen::RowVectorXd truth = Eigen::RowVectorXd::Constant(5, 10);
+  Eigen::RowVectorXd estimate(5);
+  estimate << 0, 0, 10, 11, 12;
+  EXPECT_DOUBLE_EQ(final_error(t, truth, estimate), 1);
+}
+
+TEST(Metrics, OvertravelIsTheWayOnInTheDirectionOfTheMotion) {
+  Trace trace;
+  trace.t = {0, 1, 2, 3, 4};
+  trace.q.resize(2, 5);
+  trace.q << 0, 1, 1.5, 1.2, 0.5,  // moves up, stopped at 1
+      0, -1, -1.1, -1.2, -0.5;
+  trace.qd.resize(2, 5);
+  trace.qd << 1, 1, 0, 0, 0, -1, -1, 0, 0, 0;
+  EXPECT_TRUE(std::isnan(overtravel(trace))) << "nothing stopped it";
+  trace.stopped_at = 1;
+  EXPECT_DOUBLE_EQ(overtravel(trace), 0.5);
+}
+
+TEST(Metrics, PeakIsTheLargestForce) {
+  EXPECT_EQ(peak({1, 7, 3}), 7);
+  EXPECT_EQ(peak({}), 0);
+}
+
 }  // namespace
 }  // namespace tauext::test

@@ -47,7 +47,7 @@ class Speed : public testing::Test {
   std::unique_ptr<Runner> runner(const char* estimator) {
     return robot("wallmobot3").runner(estimator, "", trace_);
   }
-  Trace trace_ = record(load_robot("wallmobot3"), scenario("sine"));
+  Trace trace_ = record(load_robot("wallmobot3"), scenario("wallmobot3", "sine"));
 };
 
 TEST_F(Speed, TheEkfIsSixTimesFasterThanTheDenseTextbookForm) {

@@ -21,12 +21,15 @@ TEST(Suite, NamesEveryEntryOnceAndInTheOrderOfTheRoster) {
 }
 
 TEST(Suite, TheTruthScoresExactlyZeroOnEveryScenario) {
-  for (const Scenario& s : scenarios()) {
-    const Score score = suite().score({"wallmobot3", s.name, "truth", ""});
-    EXPECT_EQ(score.error, "");
-    for (const char* key : {"rmse_Nm", "max_Nm", "bias_Nm", "noise_Nm"})
-      EXPECT_EQ(score.get(key), 0) << s.name << key;
-    EXPECT_EQ(score.get("lag_s").value_or(0), 0);
+  for (const Robot& r : robots()) {
+    for (const Scenario& s : scenarios(r.name)) {
+      const Score score = suite().score({r.name, s.name, "truth", ""});
+      EXPECT_EQ(score.error, "");
+      for (const char* key : {"rmse_Nm", "max_Nm", "bias_Nm", "noise_Nm"})
+        EXPECT_EQ(score.get(key), 0) << s.name << key;
+      EXPECT_EQ(score.get("lag_s").value_or(0), 0);
+      EXPECT_EQ(score.get("final_Nm").value_or(0), 0);
+    }
   }
 }
 
@@ -63,6 +66,34 @@ TEST(Suite, TheCollisionIsMarkedAndTheSlowLoadIsNot) {
   }
 }
 
+TEST(Suite, InACollisionTheMarkStopsTheMotorAndSparesThePeakForce) {
+  for (const char* e : {"ekf", "ndob", "inverse_dynamics"}) {
+    const Score s = suite().score({"testbed1", "collision", e, "pan_tompkins"});
+    EXPECT_EQ(s.get("recall"), 1) << e;
+    EXPECT_EQ(s.get("false_alarms"), 0) << e;
+    EXPECT_GE(*s.get("overtravel_rad"), 0) << e;
+    EXPECT_LT(*s.get("overtravel_rad"), 0.002)
+        << e << ": what 0.3 rad/s and the controller's 5 ms allow";
+    // unstopped, the motor's 300 N m stand against some 100 of gravity and friction, on 0.61 m
+    EXPECT_GT(*s.get("peak_unstopped_N"), (300 - 105) / 0.61) << e;
+    EXPECT_LT(*s.get("peak_N"), 0.5 * *s.get("peak_unstopped_N")) << e;
+  }
+  EXPECT_FALSE(suite().score({"testbed1", "collision", "ekf", ""}).get("peak_N"));
+}
+
+TEST(Suite, ATruthCannotStopAMotor) {
+  EXPECT_THROW(robot("testbed1").supervisor("truth", "pan_tompkins"), std::invalid_argument);
+  EXPECT_THROW(robot("testbed1").supervisor("ekf", "ear"), std::invalid_argument);
+}
+
+TEST(Suite, ALoadcellWithoutAScrewIsRefused) {
+  SuiteOptions options;
+  options.sensors.loadcell.noise = 1;
+  Suite degraded(options);
+  EXPECT_THROW(degraded.score({"wallmobot3", "free", "ekf", ""}), std::invalid_argument);
+  EXPECT_EQ(degraded.score({"testbed1", "hold", "ekf", ""}).error, "");
+}
+
 TEST(Suite, NoiseIsWhatTheSensorsAdd) {
   // (17): velocity noise s goes through X at once: 600, 1000, 600 times 1e-3, a little more by (18)
   const Score score = suite().score({"wallmobot3", "free", "ndob", ""});
@@ -92,14 +123,14 @@ Output output(const Trace& t, double factor) {
 }
 
 TEST(Failure, AWrongSignIsAWrongAnswer) {
-  const Trace t = record(load_robot("wallmobot3"), scenario("step"));
+  const Trace t = record(load_robot("wallmobot3"), scenario("wallmobot3", "step"));
   EXPECT_EQ(failure(t, output(t, 1), 0), "");
   EXPECT_EQ(failure(t, output(t, 0), 0), "");
   EXPECT_NE(failure(t, output(t, -1), 0).find("wrong answer"), std::string::npos);
 }
 
 TEST(Failure, AStatusOrANonFiniteEstimateIsNamedWithItsTime) {
-  const Trace t = record(load_robot("wallmobot3"), scenario("free"));
+  const Trace t = record(load_robot("wallmobot3"), scenario("wallmobot3", "free"));
   Output diverged = output(t, 1);
   diverged.status[2000] = Status::kDiverged;
   EXPECT_EQ(failure(t, diverged, 0), "diverged at t = 2 s");

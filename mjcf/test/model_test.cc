@@ -10,12 +10,17 @@ namespace {
 
 TEST(LoadRobot, AnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(error_of([] { load_robot("wallmobot9"); }),
-            "unknown robot 'wallmobot9'; known: wallmobot3");
+            "unknown robot 'wallmobot9'; known: testbed1, wallmobot3");
+  EXPECT_EQ(error_of([] { load_robot("wallmobot3", "garden"); }),
+            "unknown scene 'garden'; known: load, obstacle");
 }
 
 TEST(LoadRobot, EveryKnownRobotLoads) {
   ASSERT_FALSE(robot_names().empty());
   for (const std::string& name : robot_names()) EXPECT_GT(load_robot(name)->nv, 0) << name;
+  for (const std::string& name : robot_names()) {
+    EXPECT_EQ(load_robot(name, "load")->nv, load_robot(name)->nv + 3) << name;
+  }
 }
 
 TEST(ScaledBody, ScalesMassAndInertiaOfACopy) {

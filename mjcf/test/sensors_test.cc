@@ -66,7 +66,7 @@ TEST(Sensors, TheTruthStaysTheTruth) {
 
 TEST(Sensors, NegativeNoiseIsRefusedByName) {
   EXPECT_EQ(error_of([] { measure(still(2), {.velocity_noise = -1}); }),
-            "velocity noise [rad/s] must be 0 or positive, not -1");
+            "velocity noise [rad/s] must be 0 to 1e+09, not -1");
 }
 
 }  // namespace

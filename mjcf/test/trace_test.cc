@@ -40,7 +40,7 @@ class TraceFile : public testing::Test {
 constexpr const char* kHead = "t,q1,q2,qd1,qd2,tau1,tau2\n";
 
 TEST_F(TraceFile, ComesBackBitForBit) {
-  Scenario s = scenario("collision");
+  Scenario s = scenario("wallmobot3", "collision");
   s.duration = 5.1;
   const Trace t =
       record(load_robot("wallmobot3"), s, {.velocity_noise = 1e-3, .loadcell_noise = 1});
@@ -57,7 +57,7 @@ TEST_F(TraceFile, ComesBackBitForBit) {
 }
 
 TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
-  Scenario s = scenario("free");
+  Scenario s = scenario("wallmobot3", "free");
   s.duration = 0.01;
   write_csv(record(load_robot("wallmobot3"), s), path());
   std::ifstream in(path());
@@ -128,7 +128,7 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
             "/nowhere/x.csv: No such file or directory");
   EXPECT_EQ(error_of([&] { read_csv(folder_.string(), &skipped); }),
             folder_.string() + ": Is a directory");
-  EXPECT_NE(error_of_reading("\x01\xff").find("it is '??'"), std::string::npos);
+  EXPECT_NE(error_of_reading("\x01\xff").find("it is '?\?'"), std::string::npos);
 }
 
 TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
@@ -143,7 +143,7 @@ TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
 }
 
 TEST_F(TraceFile, AFullDiskAndAMissingFolderAreErrors) {
-  Scenario s = scenario("free");
+  Scenario s = scenario("wallmobot3", "free");
   s.duration = 1;
   const Trace t = record(load_robot("wallmobot3"), s);
   EXPECT_EQ(error_of([&] { write_csv(t, "/dev/full"); }),

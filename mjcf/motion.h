@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Reference motions, in closed form.
+#pragma once
+
+#include <vector>
+
+namespace tauext {
+
+/// A reference motion at one time: of a joint in rad, or of a hand in m.
+struct Reference {
+  double q = 0;    ///< [rad]
+  double qd = 0;   ///< [rad/s]
+  double qdd = 0;  ///< [rad/s^2]
+};
+
+/// amplitude sin(w t), w in rad/s.
+Reference sine_motion(double amplitude, double w, double t);
+
+/// From rest to rest with the least jerk, as a human arm moves (Flash and Hogan 1985).
+struct MinimumJerk {
+  double begin = 0, duration = 1;  ///< [s]
+  double from = 0, to = 0;
+};
+
+/// From rest to rest with a trapezium of velocity, as a motor is told to.
+struct Trapezium {
+  double begin = 0;         ///< [s]
+  double from = 0, to = 0;  ///< [rad]
+  double speed = 0.2;       ///< [rad/s] largest
+  double acceleration = 1;  ///< [rad/s^2]
+
+  double duration() const;  ///< [s]
+};
+
+Reference at(const MinimumJerk& m, double t);
+Reference at(const Trapezium& m, double t);
+
+/// One move after the other, at rest before, between and after them.
+template <class Move>
+class Moves {
+ public:
+  /// @param moves in the order of time, each from where the last one ended; not empty
+  explicit Moves(std::vector<Move> moves) : moves_(std::move(moves)) {}
+
+  Reference operator()(double t) const {
+    // the last one that has begun
+    std::size_t i = moves_.size() - 1;
+    while (i > 0 && moves_[i].begin > t) --i;
+    return at(moves_[i], t);
+  }
+
+ private:
+  std::vector<Move> moves_;
+};
+
+}  // namespace tauext
