@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 
 #include "bench/robot.h"
@@ -54,7 +55,7 @@ void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
          "--loadcell", [&s](const std::vector<std::string>& v) { parse_loadcell(v, s.loadcell); },
          "faults of a screw's loadcell, like noise=1,offset=5 [N]")
       ->delimiter(',')
-      ->expected(1)
+      ->allow_extra_args(false)
       ->type_name("KEY=VALUE,..");
   app.add_option("--kp", r.Kp, "tracking stiffness [1/s^2], else the scenario's own");
   app.add_option("--kd", r.Kd, "tracking damping [1/s], else the scenario's own");
@@ -79,6 +80,24 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
     return kCouldNotRun;
+  }
+}
+
+void report_skipped(const SkippedRows& s, const std::string& log) {
+  if (s.total() == 0) return;
+  fmt::print(
+      stderr,
+      "{}: skipped {} rows: {} with a wrong number of fields, {} not a number, {} not finite, "
+      "{} out of time order\n",
+      log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order);
+  for (const std::string& line : s.first) fmt::print(stderr, "  {}\n", line);
+  if (s.total() > static_cast<int>(s.first.size())) fmt::print(stderr, "  ...\n");
+}
+
+void refuse_same_file(const std::string& log, const std::string& out) {
+  std::error_code ignored;  // a file that is not there yet is no other file
+  if (std::filesystem::equivalent(log, out, ignored)) {
+    throw std::invalid_argument(fmt::format("--out {} is the log itself", out));
   }
 }
 

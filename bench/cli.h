@@ -24,6 +24,12 @@ void add_recording_flags(CLI::App& app, Sensors& sensors, Recording& recording);
 /// Parses and runs; prints help, version and errors as "<program>: <what>"; returns the exit code.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
+/// Says on standard error what read_csv left out, if anything.
+void report_skipped(const SkippedRows& skipped, const std::string& log);
+
+/// @throws std::invalid_argument if writing `out` would overwrite the log that is read
+void refuse_same_file(const std::string& log, const std::string& out);
+
 /// "name  description" lines of everything the roster and the scenarios hold.
 std::string list_known();
 

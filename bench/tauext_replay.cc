@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <map>
 
 #include "bench/cli.h"
 #include "bench/suite.h"
@@ -32,6 +32,7 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
   fmt::format_to(to, "t");
   for (const Column& c : columns) {
     for (int j = 1; j <= trace.dof(); ++j) fmt::format_to(to, ",{}_tau_ext{}", c.estimator, j);
+    fmt::format_to(to, ",{}_status", c.estimator);
     if (!c.output.marks.empty()) fmt::format_to(to, ",{}", marks_name(c, several));
   }
   fmt::format_to(to, "\n");
@@ -39,6 +40,7 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
     fmt::format_to(to, "{:.17g}", trace.t[k]);
     for (const Column& c : columns) {
       for (int j = 0; j < trace.dof(); ++j) fmt::format_to(to, ",{:.17g}", c.output.tau_ext(j, k));
+      fmt::format_to(to, ",{}", static_cast<int>(c.output.status[k]));
       if (!c.output.marks.empty()) fmt::format_to(to, ",{}", int{c.output.marks[k]});
     }
     fmt::format_to(to, "\n");
@@ -48,31 +50,28 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
   file.commit();
 }
 
-void report_skipped(const SkippedRows& s, const std::string& log) {
-  if (s.total() == 0) return;
-  fmt::print(
-      stderr,
-      "{}: skipped {} rows: {} with a wrong number of fields, {} not a number, {} not finite, "
-      "{} out of time order\n",
-      log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order);
-  for (const std::string& line : s.first) fmt::print(stderr, "  {}\n", line);
-  if (s.total() > static_cast<int>(s.first.size())) fmt::print(stderr, "  ...\n");
-}
-
-// statuses that an engineer has to know of
-void report_status(const Column& c) {
-  int bad = 0, restarts = -1, diverged = 0, singular = 0;
-  for (const Status s : c.output.status) {
-    bad += s == Status::kBadMeasurement;
-    restarts += s == Status::kStarted;
-    diverged += s == Status::kDiverged;
-    singular += s == Status::kSingularInertia;
-  }
-  if (bad + restarts + diverged + singular <= 0) return;
+// statuses that an engineer has to know of; false if most samples could not be used
+bool report_status(const Trace& trace, const Column& c) {
+  std::map<Status, int> count;
+  for (const Status s : c.output.status) ++count[s];
+  const int good = count[Status::kOk];
+  const int restarts = std::max(count[Status::kStarted] - 1, 0);
+  if (good + 1 >= trace.size()) return true;
   fmt::print(stderr,
              "{}: {} samples ignored as out of range, {} restarts after gaps, {} divergences, "
              "{} with a singular inertia\n",
-             c.estimator, bad, std::max(restarts, 0), diverged, singular);
+             c.estimator, count[Status::kBadMeasurement], restarts, count[Status::kDiverged],
+             count[Status::kSingularInertia]);
+  if (2 * good >= trace.size()) return true;
+  std::vector<double> steps;
+  for (int k = 1; k < trace.size(); ++k) steps.push_back(trace.t[k] - trace.t[k - 1]);
+  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
+  fmt::print(
+      stderr,
+      "{}: most samples could not be used, so these are no estimates. Is t in s, q in rad, qd "
+      "in rad/s, tau in N m? Samples are {:g} s apart; more than 0.05 s is a gap\n",
+      c.estimator, steps[steps.size() / 2]);
+  return false;
 }
 
 void print_metrics(const Trace& trace, const std::vector<Column>& columns, std::FILE* to) {
@@ -103,7 +102,9 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Runs estimators over a recorded log (columns as tauext-record writes them; tau_ext\n"
       "and contact may be missing) and writes their estimates, one row per usable sample.\n"
-      "With the truth in the log, prints the errors too.\n\n"
+      "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged (old estimate held).\n"
+      "With the truth in the log, prints the errors too. Exit code 1 if most samples were "
+      "unusable.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
   std::string log, robot_name, detector, out;
@@ -111,7 +112,9 @@ int main(int argc, char** argv) {
   bool list = false;
   app.add_option("log", log, "CSV to read");
   app.add_option("--robot", robot_name, "robot (see --list)");
-  app.add_option("--estimator", estimators, "one or more, separated by commas")->delimiter(',');
+  app.add_option("--estimator", estimators, "one or more, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--detector", detector, "detector behind each estimator");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_flag("--list", list, "list robots, estimators and detectors, and stop");
@@ -124,10 +127,7 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(
           "a log, --robot, --estimator and --out are required; see tauext-replay --help");
     }
-    std::error_code ignored;  // a file that is not there yet is no other file
-    if (std::filesystem::equivalent(log, out, ignored)) {
-      throw std::invalid_argument(fmt::format("--out {} is the log itself", out));
-    }
+    refuse_same_file(log, out);
     const Robot& r = robot(robot_name);
     SkippedRows skipped;
     const Trace trace = read_csv(log, &skipped);
@@ -139,9 +139,10 @@ int main(int argc, char** argv) {
       columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
     }
     report_skipped(skipped, log);
-    for (const Column& c : columns) report_status(c);
+    bool good = true;
+    for (const Column& c : columns) good = report_status(trace, c) && good;
     write_estimates(trace, columns, out);
     if (trace.has_truth()) print_metrics(trace, columns, out == "-" ? stderr : stdout);
-    return kGood;
+    return good ? kGood : kAnswerIsNo;
   });
 }

@@ -17,6 +17,12 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     file_ = stdout;
     return;
   }
+  // a link stays a link: what it points to is replaced
+  std::error_code error;
+  for (int links = 0; links < 8 && std::filesystem::is_symlink(path_, error); ++links) {
+    const std::filesystem::path link(path_);
+    path_ = (link.parent_path() / std::filesystem::read_symlink(link)).string();
+  }
   // a device or a pipe cannot be replaced by a file, so it is written in place
   std::error_code ignored;
   const bool special =

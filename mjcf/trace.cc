@@ -166,6 +166,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
     throw std::runtime_error(
         fmt::format("{}: {}", path, reason == 0 ? "is empty" : std::strerror(reason)));
   }
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark, as Excel writes
   const Columns c = parse_header(line, path);
   std::vector<std::vector<double>> rows;
   std::vector<double> values;

@@ -58,7 +58,8 @@ class Programs : public testing::Test {
 constexpr const char* kQuick = " --benchmark_min_time=0.001";
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
-  for (const std::string name : {"tauext-bench", "tauext-record", "tauext-replay"}) {
+  for (const std::string name :
+       {"tauext-bench", "tauext-identify", "tauext-record", "tauext-replay"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;
@@ -181,13 +182,13 @@ TEST_F(Programs, ReplayWritesOneRowPerSampleAndPrintsTheErrors) {
   EXPECT_TRUE(o.says("recall 1")) << o.text;
   const std::string est = content("est.csv");
   EXPECT_EQ(est.substr(0, est.find('\n')),
-            "t,ekf_tau_ext1,ekf_tau_ext2,ekf_tau_ext3,ekf_pan_tompkins_mark,"
-            "truth_tau_ext1,truth_tau_ext2,truth_tau_ext3,truth_pan_tompkins_mark");
+            "t,ekf_tau_ext1,ekf_tau_ext2,ekf_tau_ext3,ekf_status,ekf_pan_tompkins_mark,"
+            "truth_tau_ext1,truth_tau_ext2,truth_tau_ext3,truth_status,truth_pan_tompkins_mark");
   EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 30001);
   const Outcome one = run(
       "tauext-replay log.csv --robot wallmobot3 --estimator ndob --detector pan_tompkins --out -");
   EXPECT_EQ(one.text.substr(0, one.text.find('\n')),
-            "t,ndob_tau_ext1,ndob_tau_ext2,ndob_tau_ext3,pan_tompkins_mark");
+            "t,ndob_tau_ext1,ndob_tau_ext2,ndob_tau_ext3,ndob_status,pan_tompkins_mark");
 }
 
 TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
@@ -232,6 +233,59 @@ TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   EXPECT_EQ(two.code, 2);
   EXPECT_TRUE(two.says("wallmobot3 has 3 joints, the samples have 2")) << two.text;
   EXPECT_FALSE(exists("est.csv"));
+}
+
+TEST_F(Programs, IdentifyPrintsTheParametersAndWritesThem) {
+  run("tauext-record --robot testbed1 --scenario identify --loadcell noise=1 --out log.csv");
+  const Outcome o = run(
+      "tauext-identify --terms inertia,gravity_cos,gravity_sin,coulomb log.csv --out theta.csv");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("condition number")) << o.text;
+  EXPECT_TRUE(o.says("gravity_cos    kg m                  11.66")) << o.text;
+  const std::string csv = content("theta.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "term,unit,estimate,std_error");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  const Outcome term = run("tauext-identify log.csv --terms magic --out t2.csv");
+  EXPECT_EQ(term.code, 2);
+  EXPECT_TRUE(term.says("unknown term 'magic'; known: inertia, gravity_cos")) << term.text;
+  run("tauext-record --robot wallmobot3 --scenario free --out three.csv");
+  const Outcome three = run("tauext-identify three.csv --out t2.csv");
+  EXPECT_EQ(three.code, 2);
+  EXPECT_TRUE(three.says("the log has 3 joints")) << three.text;
+  EXPECT_FALSE(exists("t2.csv"));
+}
+
+TEST_F(Programs, RecordStopsTheMotorAtAMark) {
+  const Outcome o = run(
+      "tauext-record --robot testbed1 --scenario collision --stop ndob+pan_tompkins --out c.csv");
+  EXPECT_EQ(o.code, 0);
+  EXPECT_TRUE(o.says("stopped at 5.0")) << o.text;
+  const Outcome wrong =
+      run("tauext-record --robot testbed1 --scenario collision --stop ndob --out d.csv");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(wrong.says("like ekf+pan_tompkins")) << wrong.text;
+  const Outcome cell =
+      run("tauext-record --robot testbed1 --scenario hold --loadcell nois=1 --out d.csv");
+  EXPECT_EQ(cell.code, 2);
+  EXPECT_TRUE(cell.says("'nois=1' is not KEY=NUMBER")) << cell.text;
+  EXPECT_FALSE(exists("d.csv"));
+}
+
+TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
+  // milliseconds in place of seconds: every sample lies beyond the longest gap
+  std::string log = "\xEF\xBB\xBFt,q1,qd1,tau1\n";  // with a byte order mark
+  for (int k = 0; k < 100; ++k) log += std::to_string(k) + ",0.1,0,115\n";
+  write("ms.csv", log);
+  const Outcome o = run("tauext-replay --robot testbed1 --estimator ekf,ndob ms.csv --out est.csv");
+  EXPECT_EQ(o.code, 1) << o.text;
+  EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
+}
+
+TEST_F(Programs, WritingToALinkWritesItsTarget) {
+  fs::create_symlink(folder_ / "target.csv", folder_ / "link.csv");
+  EXPECT_EQ(run("tauext-record --robot testbed1 --scenario hold --out link.csv").code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.csv"));
+  EXPECT_EQ(content("target.csv").substr(0, 5), "t,q1,");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "mjcf/test/error_of.h"
 
@@ -67,6 +68,89 @@ TEST(Sensors, TheTruthStaysTheTruth) {
 TEST(Sensors, NegativeNoiseIsRefusedByName) {
   EXPECT_EQ(error_of([] { measure(still(2), {.velocity_noise = -1}); }),
             "velocity noise [rad/s] must be 0 to 1e+09, not -1");
+}
+
+// one joint with the testbed's screw, at rest at q under forces along it
+constexpr Screw kScrew{.a = 0.3, .c = 0.4, .gamma0 = std::numbers::pi / 2};
+
+Trace under_forces(double q, const std::vector<double>& forces) {
+  Trace t;
+  const auto n = static_cast<Eigen::Index>(forces.size());
+  t.q = Eigen::MatrixXd::Constant(1, n, q);
+  t.qd = Eigen::MatrixXd::Zero(1, n);
+  t.tau.resize(1, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    t.t.push_back(1e-3 * static_cast<double>(k));
+    t.tau(0, k) = forces[k] * kScrew.lever(q);
+  }
+  t.screws = {kScrew};
+  return t;
+}
+
+// what the loadcell makes of these forces, back in N
+std::vector<double> read(const std::vector<double>& forces, const Loadcell& l, double q = 0) {
+  const Trace m = measure(under_forces(q, forces), {.loadcell = l});
+  std::vector<double> out;
+  for (int k = 0; k < m.size(); ++k) out.push_back(m.tau(0, k) / kScrew.lever(q));
+  return out;
+}
+
+TEST(Loadcell, ScaleAndOffsetActOnTheForceSoTheirTorqueDependsOnThePose) {
+  for (const double q : {-0.4, 0., 0.6}) {
+    const Trace m = measure(under_forces(q, {500}), {.loadcell = {.scale = 1.02, .offset = 5}});
+    // (33)-(34) by the law of cosines
+    const double theta =
+        std::acos((0.09 + std::pow(kScrew.length(q), 2) - 0.16) / (2 * 0.3 * kScrew.length(q)));
+    EXPECT_NEAR(m.tau(0, 0), (500 * 1.02 + 5) * 0.3 * std::sin(theta), 1e-9) << q;
+  }
+}
+
+TEST(Loadcell, NonlinearityIsLargestAtHalfScaleAndNoneAtTheEnds) {
+  const Loadcell l{.nonlinearity = 0.005, .full_scale = 1000};
+  const auto f = read({0, 500, 1000, -500, -1000}, l);
+  const double expected[] = {0, 505, 1000, -505, -1000};
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(f[k], expected[k], 1e-9);
+}
+
+TEST(Loadcell, HysteresisLagsByHalfTheLoopEachWay) {
+  const auto f = read({0, 400, 200, 199, 600}, {.hysteresis = 0.01, .full_scale = 1000});
+  const double expected[] = {0, 395, 205, 204, 595};
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(f[k], expected[k], 1e-9) << k;
+}
+
+TEST(Loadcell, ReadsInWholeStepsOfForce) {
+  const auto f = read({100.2, 100.3, -0.1}, {.step = 0.5}, 0.3);
+  EXPECT_NEAR(f[0], 100, 1e-9);
+  EXPECT_NEAR(f[1], 100.5, 1e-9);
+  EXPECT_NEAR(f[2], 0, 1e-9);
+}
+
+TEST(Loadcell, NoiseOfTheForceReachesTauByTheLever) {
+  const std::vector<double> forces(20000, 450);
+  for (const double q : {-0.4, 0.6}) {
+    const Trace m = measure(under_forces(q, forces), {.loadcell = {.noise = 2}});
+    const Eigen::ArrayXd e = m.tau.row(0).array() - 450 * kScrew.lever(q);
+    // 20,000 samples give the deviation to 0.5 %
+    EXPECT_NEAR(std::sqrt(e.square().mean()), 2 * kScrew.lever(q), 0.02 * 2 * kScrew.lever(q));
+  }
+}
+
+TEST(Loadcell, AnEncoderErrorReachesTauByTheGeometryToo) {
+  // q = 0.05 is read as 0.1: the force is right, its lever is not
+  const Trace m = measure(under_forces(0.0501, {450}), {.encoder_step = 0.1});
+  EXPECT_NEAR(m.q(0, 0), 0.1, 1e-15);
+  EXPECT_NEAR(m.tau(0, 0), 450 * kScrew.lever(0.1), 1e-9);
+}
+
+TEST(Loadcell, RefusesFaultsOutOfRangeByName) {
+  EXPECT_EQ(error_of([] { read({1}, {.full_scale = 0}); }),
+            "loadcell full_scale [N] must be positive");
+  EXPECT_NE(error_of([] { read({1}, {.hysteresis = 2}); }).find("loadcell hysteresis"),
+            std::string::npos);
+  Trace without = under_forces(0, {1});
+  without.screws.clear();
+  EXPECT_NE(error_of([&] { measure(without, {.loadcell = {.noise = 1}}); }).find("has no screw"),
+            std::string::npos);
 }
 
 }  // namespace

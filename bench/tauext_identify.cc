@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-identify: the parameters of a one-joint model from a recorded motion.
+#include <fmt/format.h>
+
+#include "bench/cli.h"
+#include "bench/identify.h"
+#include "mjcf/atomic_file.h"
+
+namespace {
+
+using namespace tauext;
+
+std::string list_terms() {
+  std::string out = fmt::format("{:<14} {:<15} {}\n", "term", "unit", "what it multiplies");
+  for (const Term& t : terms())
+    out += fmt::format("{:<14} {:<15} {}\n", t.name, t.unit, t.description);
+  return out;
+}
+
+std::string as_table(const std::vector<Term>& terms, const Identification& id) {
+  std::string out = fmt::format(
+      "{:<14} {:<15} {:>12} {:>12} {:>12} {:>8}\n{:<14} {:<15} {:>12} {:>12} {:>12} {:>8}\n",
+      "term", "unit", "estimate", "std error", "excitation", "own", "", "", "", "(1 sigma)",
+      "(rms)", "share");
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Parameter& p = id.parameters[i];
+    out += fmt::format("{:<14} {:<15} {:>12.5g} {:>12.2g} {:>12.4g} {:>8.3f}\n", terms[i].name,
+                       terms[i].unit, p.theta, p.sigma, p.excitation, p.own);
+  }
+  out += fmt::format(
+      "\nresidual {:.3g} N m, condition number {:.3g}, {} windows used, {} left out (slow, or a "
+      "gap)\n",
+      id.residual, id.condition, id.windows, id.left_out);
+  if (id.condition > 100) {
+    out += "The motion hardly tells some terms apart: see the smallest own share.\n";
+  }
+  return out;
+}
+
+std::string as_csv(const std::vector<Term>& terms, const Identification& id) {
+  std::string out = "term,unit,estimate,std_error\n";
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    out += fmt::format("{},{},{:.17g},{:.17g}\n", terms[i].name, terms[i].unit,
+                       id.parameters[i].theta, id.parameters[i].sigma);
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Identifies a one-joint model, linear in its parameters, from a log of a motion without\n"
+      "contact (t,q1,qd1,tau1 in s, rad, rad/s, N m), by linear least squares: by default\n"
+      "tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd).\n\n"
+      "  tauext-identify log.csv\n",
+      "tauext-identify");
+  std::string log, out;
+  std::vector<std::string> names = {"inertia", "gravity_cos", "gravity_sin", "coulomb"};
+  Windows windows;
+  bool list = false;
+  app.add_option("log", log, "CSV to read");
+  app.add_option("--terms", names, "terms of the model, separated by commas (see --list)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--window", windows.length, "length of a difference and of the means [s]")
+      ->capture_default_str();
+  app.add_option("--min_speed", windows.min_speed,
+                 "slower samples are left out: friction there is unknown [rad/s]")
+      ->capture_default_str();
+  app.add_option("--out", out, "CSV to write, too; - is standard output");
+  app.add_flag("--list", list, "list the terms, and stop");
+  return run_program(app, argc, argv, [&] {
+    if (list) {
+      fmt::print("{}", list_terms());
+      return kGood;
+    }
+    if (log.empty()) throw std::invalid_argument("a log is required; see tauext-identify --help");
+    refuse_same_file(log, out);
+    const std::vector<Term> model = find_terms(names);
+    SkippedRows skipped;
+    const Trace trace = read_csv(log, &skipped);
+    report_skipped(skipped, log);
+    const Identification id = identify(trace, model, windows);
+    fmt::print(out == "-" ? stderr : stdout, "{}", as_table(model, id));
+    if (!out.empty()) {
+      AtomicFile file(out);
+      file.write(as_csv(model, id));
+      file.commit();
+    }
+    return kGood;
+  });
+}
