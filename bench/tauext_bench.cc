@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/cli.h"
+#include "bench/reliability.h"
 #include "bench/reporter.h"
 #include "bench/suite.h"
 #include "bench/table.h"
@@ -75,11 +76,31 @@ std::string build_line(const Suite& suite) {
 
 struct Flags {
   SuiteOptions suite;
-  bool list = false, list_tests = false, paper = false;
+  bool list = false, list_tests = false, paper = false, reliability = false;
   std::optional<std::string> out, format;
 };
 
+// at the noise that was asked for, or at a good and at a poor encoder's
+int run_reliability(const Sensors& sensors) {
+  const bool show = ::isatty(STDERR_FILENO) == 1;
+  std::vector<Trials> all(sensors.ideal() ? 2 : 1);
+  for (Trials& trials : all) trials.sensors = sensors;
+  if (sensors.ideal()) {
+    all[0].sensors.velocity_noise = 1e-4;
+    all[1].sensors.velocity_noise = 1e-3;
+  }
+  for (const Trials& trials : all) {
+    const auto rows = reliability(trials, [&](double share) {
+      if (show) fmt::print(stderr, "\r\033[K{:.0f} %", 100 * share);
+    });
+    if (show) fmt::print(stderr, "\r\033[K");
+    fmt::print("{}\n", format_reliability(trials, rows));
+  }
+  return kGood;
+}
+
 int run(const Flags& flags) {
+  if (flags.reliability) return run_reliability(flags.suite.sensors);
   if (flags.list) {
     for (const Entry& e : entries()) fmt::print("{}\n", e.name());
     return kGood;
@@ -133,6 +154,8 @@ int main(int argc, char** argv) {
   Flags flags;
   app.add_flag("--list", flags.list, "list the entries <robot>/<scenario>/<estimator>, and stop");
   app.add_flag("--paper", flags.paper, "print Table III of the paper beside ours, too");
+  app.add_flag("--reliability", flags.reliability,
+               "instead: 200 blows and an hour of a human's hand, on testbed1");
   app.add_option("--noise_probe", flags.suite.noise_probe,
                  "velocity noise [rad/s] behind the column noise, for ideal sensors")
       ->capture_default_str();
