@@ -110,6 +110,13 @@ Model with_scaled_body(const Model& model, const std::string& body, double facto
   return with_constants(m);
 }
 
+Model without_dry_friction(const Model& model) {
+  mjModel* const m = mj_copyModel(nullptr, model.get());
+  std::fill_n(m->dof_frictionloss, m->nv, 0.);
+  std::fill_n(m->tendon_frictionloss, m->ntendon, 0.);
+  return with_constants(m);
+}
+
 Model testbed1_absorbed(std::string_view scene) {
   const Model printed = load_robot("testbed1", scene);
   mjModel* const m = mj_copyModel(nullptr, printed.get());

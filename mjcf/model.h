@@ -30,6 +30,9 @@ Model load_robot(std::string_view name, std::string_view scene = "");
 /// @throws std::invalid_argument for an unknown body or a factor that is not positive and finite
 Model with_scaled_body(const Model& model, const std::string& body, double factor);
 
+/// A copy of the model without dry friction.
+Model without_dry_friction(const Model& model);
+
 /// testbed1 with g inside theta_2 and theta_3, Testbed1::Parameters::absorbed(): its first moments
 /// divided by 9.81, its inertia and friction as they are.
 Model testbed1_absorbed(std::string_view scene = "");
