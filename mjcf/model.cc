@@ -87,10 +87,13 @@ Model load_robot(std::string_view name, std::string_view scene) {
   const std::string_view robot = find(kEmbeddedRobots, "robot", name);
   Vfs files;
   add(files, fmt::format("{}.xml", name), robot);
+  std::string include = fmt::format("<include file=\"{}.xml\"/>", name);
+  if (!scene.empty()) {
+    add(files, "scene.xml", find(kEmbeddedScenes, "scene", scene));
+    include += "<include file=\"scene.xml\"/>";
+  }
   const std::string main = "main.xml";
-  add(files, main,
-      fmt::format("<mujoco><include file=\"{}.xml\"/>{}</mujoco>", name,
-                  scene.empty() ? "" : find(kEmbeddedScenes, "scene", scene)));
+  add(files, main, fmt::format("<mujoco>{}</mujoco>", include));
   char error[1000] = "";
   mjModel* m = mj_loadXML(main.c_str(), files.vfs.get(), error, sizeof error);
   if (m == nullptr) throw std::runtime_error(fmt::format("{} {}: {}", name, scene, error));
