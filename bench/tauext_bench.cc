@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -132,7 +134,14 @@ int run(const Flags& flags) {
     if (time != reporter.cpu_ns().end()) row.score.metrics["cpu_ns"] = time->second;
   }
   std::FILE* const to = flags.format == "json" ? stderr : stdout;
-  fmt::print(to, "{}\n\n{}\n{}", build_line(suite), format_table(rows), table_legend());
+  fmt::print(to, "{}\n\n", build_line(suite));
+  for (const Robot& r : robots()) {  // a table each: their scenarios ask for other columns
+    std::vector<Row> own;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(own),
+                 [&](const Row& row) { return row.entry.robot == r.name; });
+    if (!own.empty()) fmt::print(to, "{}\n", format_table(own));
+  }
+  fmt::print(to, "{}", table_legend());
   if (flags.paper) fmt::print(to, "\n{}", format_table3());
   if (flags.out) {
     AtomicFile file(*flags.out);

@@ -60,6 +60,16 @@ TEST_F(Speed, TheEkfIsSixTimesFasterThanTheDenseTextbookForm) {
   EXPECT_GE(r, 5.5) << "6.1 where it was measured; the rest is for code layout and neighbours";
 }
 
+TEST_F(Speed, TheTestbedsEkfTakesLessThanHalfOfWallmobot3s) {
+  // which takes up to 230 ns: so one joint stays below 100
+  const Scenario& s = scenario("testbed1", "model_check");
+  const Trace trace = record(load_for("testbed1", s), s);
+  const auto one = robot("testbed1").runner("ekf", "", trace);
+  const double r = ratio(*runner("ekf"), *one, 2.3);
+  std::printf("wallmobot3's ekf / testbed1's: %.2f\n", r);
+  EXPECT_GE(r, 2.3);
+}
+
 TEST_F(Speed, TheNdobIsFiveTimesFasterThanTheEkf) {
   const double r = ratio(*runner("ekf"), *runner("ndob"), 5);
   std::printf("ekf / ndob: %.2f\n", r);
