@@ -26,27 +26,34 @@ inline void store(double* to, const Lanes& x) noexcept {
   std::memcpy(to, &x, sizeof x);
 }
 
+// Lanes go by reference, inlined as all of this is: a vector as a value would warn of its ABI wherever
+// a program is built without AVX.
+
 /// Four elements of v from `first` on, with copies of the first one beyond its end; `first` must fold
 /// to a constant.
 template <int N>
-[[gnu::always_inline]] inline Lanes gather(const Vec<N>& v, int first) noexcept {
+[[gnu::always_inline]] inline void gather(const Vec<N>& v, int first, Lanes& x) noexcept {
   const auto at = [&](int i) { return v[i < N ? i : first]; };
-  return Lanes{at(first), at(first + 1), at(first + 2), at(first + 3)};
+  x = Lanes{at(first), at(first + 1), at(first + 2), at(first + 3)};
 }
 
 /// The same with zeros beyond its end.
 template <int N>
-[[gnu::always_inline]] inline Lanes gather_zeros(const Vec<N>& v, int first) noexcept {
-  const Lanes x = gather<N>(v, first), zero = {};
+[[gnu::always_inline]] inline void gather_zeros(const Vec<N>& v, int first, Lanes& x) noexcept {
+  gather<N>(v, first, x);
+  const Lanes zero = {};
   switch (N - first) {
     case 1:
-      return __builtin_shufflevector(x, zero, 0, 4, 4, 4);
+      x = __builtin_shufflevector(x, zero, 0, 4, 4, 4);
+      break;
     case 2:
-      return __builtin_shufflevector(x, zero, 0, 1, 4, 4);
+      x = __builtin_shufflevector(x, zero, 0, 1, 4, 4);
+      break;
     case 3:
-      return __builtin_shufflevector(x, zero, 0, 1, 2, 4);
+      x = __builtin_shufflevector(x, zero, 0, 1, 2, 4);
+      break;
     default:
-      return x;
+      break;
   }
 }
 
@@ -55,7 +62,11 @@ template <int N>
 [[gnu::always_inline]] inline Vec<kPadded<N>> pad_vector(const Vec<N>& v) noexcept {
   if constexpr (kPadded<N> == N) return v;
   Vec<kPadded<N>> p;
-  for (int i = 0; i < N; i += 4) store(&p[i], gather_zeros<N>(v, i));
+  for (int i = 0; i < N; i += 4) {
+    Lanes x;
+    gather_zeros<N>(v, i, x);
+    store(&p[i], x);
+  }
   return p;
 }
 
@@ -68,10 +79,8 @@ template <int N>
   return b;
 }
 
-inline Lanes load(const double* from) noexcept {
-  Lanes x;
+[[gnu::always_inline]] inline void load(const double* from, Lanes& x) noexcept {
   std::memcpy(&x, from, sizeof x);
-  return x;
 }
 
 /// b^T by tiles of 4 x 4.
@@ -83,8 +92,8 @@ template <int Rows>
   for (int i = 0; i < Rows; i += 4) {
 #pragma GCC unroll 2
     for (int j = 0; j < Rows; j += 4) {
-      const Lanes c0 = load(&b(i, j)), c1 = load(&b(i, j + 1));
-      const Lanes c2 = load(&b(i, j + 2)), c3 = load(&b(i, j + 3));
+      Lanes c0, c1, c2, c3;
+      load(&b(i, j), c0), load(&b(i, j + 1), c1), load(&b(i, j + 2), c2), load(&b(i, j + 3), c3);
       const Lanes even01 = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
       const Lanes odd01 = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
       const Lanes even23 = __builtin_shufflevector(c2, c3, 0, 4, 2, 6);

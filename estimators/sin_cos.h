@@ -50,8 +50,9 @@ namespace detail {
 template <int N>
 [[gnu::always_inline]] inline void sin_cos(const Vec<N>& x, Vec<N>& sin, Vec<N>& cos) noexcept {
   for (int first = 0; first < N; first += 4) {
-    detail::Lanes s, c;
-    detail::sin_cos(detail::gather<N>(x, first), s, c);
+    detail::Lanes angle, s, c;
+    detail::gather<N>(x, first, angle);
+    detail::sin_cos(angle, s, c);
     for (int i = 0; i < 4 && first + i < N; ++i) sin[first + i] = s[i], cos[first + i] = c[i];
   }
 }

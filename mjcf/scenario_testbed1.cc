@@ -17,14 +17,21 @@ constexpr double kHold = 0.5;                          // [rad] of section 6.2
 constexpr double kArm = 0.7, kHingeHeight = 1.0;       // [m] of testbed1.xml
 constexpr Tracking kScrewDrive{.Kp = 4e4, .Kd = 400};  // a position-controlled screw is stiff
 
-// up and down buttons: each press drives the arm to that limit, where it stops
-Moves<Trapezium> buttons(double start, const std::vector<double>& presses, double speed) {
+// the up and the down button: a press drives the arm to that limit, where it stops; it has to have
+// stopped before the next press
+enum class Button { kUp, kDown };
+struct Press {
+  double t;  // [s]
+  Button button;
+};
+
+Moves<Trapezium> buttons(double start, const std::vector<Press>& presses, double speed) {
   std::vector<Trapezium> moves;
-  double q = start, to = start == kUpper ? kLower : kUpper;
-  for (const double t : presses) {
-    moves.push_back({.begin = t, .from = q, .to = to, .speed = speed, .acceleration = 2});
+  double q = start;
+  for (const Press& p : presses) {
+    const double to = p.button == Button::kUp ? kUpper : kLower;
+    moves.push_back({.begin = p.t, .from = q, .to = to, .speed = speed, .acceleration = 2});
     q = to;
-    to = to == kUpper ? kLower : kUpper;
   }
   return Moves<Trapezium>(moves);
 }
@@ -136,7 +143,8 @@ std::vector<Scenario> scenarios_of_testbed1() {
 
   Scenario model_check =
       base("model_check", "no load; down and up between the limits, 0.2 rad/s (Fig. 10)");
-  model_check.reference = buttons(kUpper, {1, 8, 15, 22}, 0.2);
+  model_check.reference = buttons(
+      kUpper, {{1, Button::kDown}, {8, Button::kUp}, {15, Button::kDown}, {22, Button::kUp}}, 0.2);
   all.push_back(model_check);
 
   all.push_back(manual_of_testbed1(1));
@@ -152,7 +160,13 @@ std::vector<Scenario> scenarios_of_testbed1() {
 
   Scenario button =
       base("button", "up and down by buttons, 0.25 rad/s; 1.2 kg hung on at 8 s, moving (Fig. 14)");
-  button.reference = buttons(kLower, {1, 6, 11, 16, 21}, 0.25);
+  button.reference = buttons(kLower,
+                             {{1, Button::kUp},
+                              {6, Button::kDown},
+                              {11, Button::kUp},
+                              {16, Button::kDown},
+                              {21, Button::kUp}},
+                             0.25);
   button.scene = "load";
   button.load = Load{.mass = 1.2, .hang_at = 8};
   all.push_back(button);
@@ -161,7 +175,7 @@ std::vector<Scenario> scenarios_of_testbed1() {
       base("collision", "upwards at 0.3 rad/s into an obstacle; a mark stops the motor (Fig. 15)");
   collision.duration = 8;
   collision.response = Response::kDetection;
-  collision.reference = buttons(kLower, {2}, 0.3);
+  collision.reference = buttons(kLower, {{2, Button::kUp}}, 0.3);
   collision.scene = "obstacle";
   collision.reacts = true;
   all.push_back(collision);

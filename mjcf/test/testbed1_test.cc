@@ -176,5 +176,22 @@ TEST(Obstacle, HitsWithAForceThatDoesNotDependOnTheStep) {
   EXPECT_NEAR(peak(1), peak(4), 1e-3 * peak(4));
 }
 
+// section 6.1: "the robot end-effector moves upward until it reaches the upper limit position and stops"
+TEST(Buttons, DriveTheArmToItsLimitWhereItStops) {
+  const Scenario& s = scenario("testbed1", "button");
+  const Trace t = record(load_for("testbed1", s), s);
+  constexpr double kUpper = 0.6, kLower = -0.4;  // [rad]
+  const auto q = [&](double at) { return t.q(0, std::lround(at * 1000)); };
+  const auto qd = [&](double at) { return t.qd(0, std::lround(at * 1000)); };
+  // pressed at 1, 6, 11, 16, 21 s; 1 rad at 0.25 rad/s takes 4.1 s; 8 N m hang on some 17 kN m/rad
+  EXPECT_NEAR(q(0.9), kLower, 1e-3);
+  EXPECT_NEAR(qd(3), 0.25, 1e-3);
+  for (const double at : {5.5, 15.5, 29.}) EXPECT_NEAR(q(at), kUpper, 2e-3) << at;
+  for (const double at : {10.5, 20.5}) EXPECT_NEAR(q(at), kLower, 2e-3) << at;
+  for (const double at : {5.5, 10.5, 15.5, 20.5, 29.}) EXPECT_NEAR(qd(at), 0, 2e-3) << at;
+  EXPECT_LT(t.q.maxCoeff(), kUpper + 2e-3);
+  EXPECT_GT(t.q.minCoeff(), kLower - 2e-3);
+}
+
 }  // namespace
 }  // namespace tauext::test
