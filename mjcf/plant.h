@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "mjcf/layout.h"
 #include "mjcf/model.h"
-#include "mjcf/screw.h"
 
 namespace tauext {
 
@@ -19,14 +19,8 @@ struct Point {
   Eigen::Vector3d velocity;  ///< [m/s]
 };
 
-/// A simulated arm, and what stands around it. MuJoCo's coordinates rho of the arm are mapped to
-/// q = S rho, S constant. Actuators, in this order:
-///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its force
-///    tau_i. Generalised forces map by rho_force = S^T force.
-///  - none, or one motor of unit gain on a spatial tendon for each joint: a linear screw, which is
-///    never driven here but says what a loadcell at its end feels.
-///  - with the scene "load", the switch of the tether.
-/// Further degrees of freedom are the scene's: bodies that meet the arm by contacts and tethers only.
+/// A simulated arm, and what stands around it, as mjcf/layout.h reads them from the model. MuJoCo's
+/// coordinates rho of the arm are mapped to q = S rho; generalised forces by rho_force = S^T force.
 ///
 /// Everything but `step` speaks of the present state and input, and equation (3) holds there:
 ///     B qdd + bias + friction + tau_ext = tau.
@@ -35,12 +29,12 @@ class Plant {
   /// @throws std::invalid_argument if the model's actuators do not give such coordinates
   explicit Plant(Model model);
 
-  int dof() const { return dof_; }
+  int dof() const { return layout_.dof; }
   const mjModel& model() const { return *model_; }
   const mjData& data() const { return *data_; }
 
   /// The screws of the joints, in their order; empty if the robot has none.
-  const std::vector<Screw>& screws() const { return screws_; }
+  const std::vector<Screw>& screws() const { return layout_.screws; }
 
   /// Puts the arm at q [rad], qd [rad/s], at rest from inputs, and the scene at its begin: a load is
   /// held beside the arm.
@@ -87,8 +81,6 @@ class Plant {
  private:
   enum class LoadState { kNone, kHeld, kHung, kDropped };
 
-  void find_coordinates();
-  void find_scene();
   void apply_to_load();
   int site_id(const std::string& name) const;
   Eigen::VectorXd of_arm(const double* force) const;  // a generalised force, in joint coordinates
@@ -97,16 +89,12 @@ class Plant {
 
   Model model_;
   std::unique_ptr<mjData, decltype(&mj_deleteData)> data_;
-  int dof_ = 0;
-  std::vector<int> arm_;  // dofs of rho
-  std::vector<Screw> screws_;
-  Eigen::MatrixXd S_;                           // q = S rho + q0
+  Layout layout_;
   Eigen::PartialPivLU<Eigen::MatrixXd> S_lu_;   // of S
   Eigen::PartialPivLU<Eigen::MatrixXd> St_lu_;  // of S^T
   Eigen::VectorXd q0_;
   Eigen::VectorXd tau_ext_;  // of set_input
   LoadState load_ = LoadState::kNone;
-  int load_dof_ = -1, tether_ = -1;  // its first dof, its actuator
   Eigen::Vector3d push_ = Eigen::Vector3d::Zero();
 };
 
