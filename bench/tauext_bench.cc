@@ -2,6 +2,7 @@
 // tauext-bench: scores, then times every entry of the roster inside Google Benchmark.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,6 +42,15 @@ std::optional<std::string> take_flag(std::vector<std::string>& args, const std::
   return std::nullopt;
 }
 
+// the metrics that were asked for and have no value, for the JSON, in which NaN cannot stand
+std::string never_label(const Score& score) {
+  std::vector<std::string> never;
+  for (const auto& [key, value] : score.metrics) {
+    if (std::isnan(value)) never.push_back(key);
+  }
+  return never.empty() ? "" : fmt::format("never: {}", fmt::join(never, " "));
+}
+
 // score first; a wrong answer is an error and is not timed
 void run_entry(benchmark::State& state, Suite& suite, Row& row) {
   if (row.score.metrics.empty()) row.score = suite.score(row.entry);
@@ -54,6 +64,7 @@ void run_entry(benchmark::State& state, Suite& suite, Row& row) {
     benchmark::ClobberMemory();
   }
   for (const auto& [key, value] : row.score.metrics) state.counters[key] = value;
+  state.SetLabel(never_label(row.score));
   using C = benchmark::Counter;
   state.counters["cpu_ns"] = C(Runner::kBatch * 1e-9, C::kIsIterationInvariantRate | C::kInvert);
 }
