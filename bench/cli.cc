@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 
 #include "bench/robot.h"
@@ -39,6 +41,15 @@ void parse_loadcell(const std::vector<std::string>& items, Loadcell& l) {
   }
 }
 
+// CLI11 takes a number that does not fit for the largest that does
+std::string whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size()) return "";
+  return fmt::format("{} is not a whole number from 0 to {}", text,
+                     std::numeric_limits<std::uint64_t>::max());
+}
+
 }  // namespace
 
 void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
@@ -49,7 +60,7 @@ void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
   app.add_option("--loadcell_noise", s.loadcell_noise, "standard deviation [N m], on tau itself")
       ->capture_default_str();
   app.add_option("--seed", s.seed, "of the sensors' noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number, "WHOLE")
       ->capture_default_str();
   app.add_option_function<std::vector<std::string>>(
          "--loadcell", [&s](const std::vector<std::string>& v) { parse_loadcell(v, s.loadcell); },

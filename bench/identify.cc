@@ -6,6 +6,7 @@
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -109,6 +110,9 @@ std::vector<Term> find_terms(const std::vector<std::string>& names) {
       throw std::invalid_argument(
           fmt::format("unknown term '{}'; known: {}", name, fmt::join(known, ", ")));
     }
+    if (std::count(names.begin(), names.end(), name) > 1) {
+      throw std::invalid_argument(fmt::format("term '{}' is named twice", name));
+    }
     found.push_back(terms()[it - known.begin()]);
   }
   return found;
@@ -135,8 +139,8 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   if (m < 3 * n) {
     throw std::invalid_argument(fmt::format(
         "{} usable windows of {} s for {} parameters, at least {} are needed; {} were left out as "
-        "slower than {} rad/s or across a gap",
-        m, w.length, n, 3 * n, id.left_out, w.min_speed));
+        "slower than {} rad/s or across a gap, in a log of {:.3g} s",
+        m, w.length, n, 3 * n, id.left_out, w.min_speed, log.t.back() - log.t.front()));
   }
 
   MatrixXd A(m, n);

@@ -82,12 +82,12 @@ int main(int argc, char** argv) {
     const Trace trace = read_csv(log, &skipped);
     report_skipped(skipped, log);
     const Identification id = identify(trace, model, windows);
-    fmt::print(out == "-" ? stderr : stdout, "{}", as_table(model, id));
     if (!out.empty()) {
       AtomicFile file(out);
       file.write(as_csv(model, id));
       file.commit();
     }
+    fmt::print(out == "-" ? stderr : stdout, "{}", as_table(model, id));
     return kGood;
   });
 }

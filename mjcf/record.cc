@@ -25,11 +25,6 @@ VectorXd computed_torque(const Plant& plant, const VectorXd& q_ref, const Refere
   return plant.inertia() * a + plant.bias() + plant.damping();
 }
 
-// tau = g(q): what bias is where nothing moves; on one joint it is all of it
-VectorXd float_torque(const Plant& plant) {
-  return plant.bias();
-}
-
 void check(const Scenario& s, const Recording& r) {
   if (!(r.Ts > 0 && r.Ts <= 0.1) || r.substeps < 1 || r.substeps > 1000) {
     throw std::invalid_argument(
@@ -101,8 +96,7 @@ Trace simulate(const Model& model, const Scenario& s, const Recording& r, const 
     const Reference ref = stopped ? Reference{} : s.reference(t);
     const VectorXd q_ref = stopped ? *stopped : VectorXd::Constant(n, ref.q);
     plant.set_input(
-        s.floats && !stopped ? float_torque(plant) : computed_torque(plant, q_ref, ref, control),
-        tau_ext);
+        s.floats && !stopped ? plant.bias() : computed_torque(plant, q_ref, ref, control), tau_ext);
 
     trace.t[k] = t;
     trace.q.col(k) = plant.q();

@@ -49,7 +49,7 @@ struct Scenario {
   double score_from = 0;    ///< [s] errors before this are not counted
   Response response = Response::kNone;
   bool start_on_reference = false;  ///< else the arm starts at rest at q = 0
-  bool floats = false;  ///< manual mode: tau = g(q) alone, so that a hand can move the arm
+  bool floats = false;  ///< manual mode: tau = C qd + g alone, so that a hand can move the arm
   Tracking tracking;
   std::function<Reference(double)> reference;  ///< of every joint
   std::function<double(double)> tau_ext;       ///< [N m] on every joint, sign of (3)

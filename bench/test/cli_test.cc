@@ -93,8 +93,9 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
 
 TEST_F(Programs, WrongFlagsExitWith2) {
   for (const std::string command :
-       {"tauext-bench --nonsense", "tauext-bench --benchmark_nonsense=1", "tauext-record --seed x",
-        "tauext-record", "tauext-replay", "tauext-bench --benchmark_format=csv",
+       {"tauext-bench --nonsense", "tauext-record --seed 99999999999999999999", "tauext-identify",
+        "tauext-bench --benchmark_nonsense=1", "tauext-record --seed x", "tauext-record",
+        "tauext-replay", "tauext-bench --benchmark_format=csv",
         "tauext-bench --benchmark_out_format=csv",
         "tauext-bench --benchmark_repetitions=0 --benchmark_filter=free/zero",
         "tauext-bench --list > /dev/full",
