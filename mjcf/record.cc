@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace tauext {
 namespace {
@@ -69,58 +70,95 @@ class LoadHandler {
   bool hung_ = false;
 };
 
-}  // namespace
+// one run of a scenario, sample by sample
+class Run {
+ public:
+  Run(const Model& model, const Scenario& s, const Recording& r, const Sensors& sensors)
+      : plant_(model),
+        s_(s),
+        r_(r),
+        control_(tracking(s, r)),
+        stream_(sensors, plant_.dof(), plant_.screws()),
+        load_(s.load),
+        trace_(empty_trace(plant_.dof(), static_cast<int>(std::lround(s.duration / r.Ts)))) {
+    trace_.screws = plant_.screws();
+    const Reference start = s.start_on_reference ? s.reference(0) : Reference{};
+    plant_.set_state(everywhere(start.q), everywhere(start.qd));
+  }
 
-Trace simulate(const Model& model, const Scenario& s, const Recording& r, const Sensors& sensors,
-               const Supervisor& supervisor) {
-  check(s, r);
-  Plant plant(model);
-  const int n = plant.dof();
-  const int samples = static_cast<int>(std::lround(s.duration / r.Ts));
-  const Tracking control = tracking(s, r);
-  Trace trace = empty_trace(n, samples);
-  trace.screws = plant.screws();
-  SensorStream stream(sensors, n, plant.screws());
-  LoadHandler load(s.load);
-  std::optional<VectorXd> stopped;  // where
-
-  const Reference start = s.start_on_reference ? s.reference(0) : Reference{};
-  plant.set_state(VectorXd::Constant(n, start.q), VectorXd::Constant(n, start.qd));
-  for (int k = 0; k < samples; ++k) {
-    const double t = k * r.Ts;
-    load.apply(plant, t);
-    VectorXd tau_ext = VectorXd::Constant(n, s.tau_ext(t));
-    if (const Vector3d f = s.force(t, plant.site(kEndEffector)); !f.isZero(0)) {
-      tau_ext += plant.tau_ext_of(f, kEndEffector);
+  Trace operator()(const Supervisor& supervisor) {
+    for (int k = 0; k < trace_.size(); ++k) {
+      trace_.t[k] = k * r_.Ts;
+      apply_input(trace_.t[k]);
+      take_sample(k);
+      if (supervisor && !stopped_) ask(supervisor, k);
+      step();
     }
-    const Reference ref = stopped ? Reference{} : s.reference(t);
-    const VectorXd q_ref = stopped ? *stopped : VectorXd::Constant(n, ref.q);
-    plant.set_input(
-        s.floats && !stopped ? plant.bias() : computed_torque(plant, q_ref, ref, control), tau_ext);
+    return std::move(trace_);
+  }
 
-    trace.t[k] = t;
-    trace.q.col(k) = plant.q();
-    trace.qd.col(k) = plant.qd();
-    trace.tau.col(k) = plant.tau();
-    trace.tau_ext.col(k) = plant.tau_ext();
-    trace.qdd.col(k) = plant.qdd();
-    trace.friction.col(k) = plant.friction();
-    trace.contact_force[k] = plant.contact_force();
-    trace.contact[k] = s.contact(t) || trace.contact_force[k] > 0;
-    if (supervisor && !stopped &&
-        supervisor(stream.read({t, trace.q.col(k), trace.qd.col(k), trace.tau.col(k)}))) {
-      stopped = plant.q();
-      trace.stopped_at = k;
+ private:
+  VectorXd everywhere(double x) const { return VectorXd::Constant(plant_.dof(), x); }
+
+  void apply_input(double t) {
+    load_.apply(plant_, t);
+    VectorXd tau_ext = everywhere(s_.tau_ext(t));
+    if (const Vector3d f = s_.force(t, plant_.site(kEndEffector)); !f.isZero(0)) {
+      tau_ext += plant_.tau_ext_of(f, kEndEffector);
     }
+    if (stopped_) {
+      plant_.set_input(computed_torque(plant_, *stopped_, {}, control_), tau_ext);
+    } else if (s_.floats) {
+      plant_.set_input(plant_.bias(), tau_ext);
+    } else {
+      const Reference ref = s_.reference(t);
+      plant_.set_input(computed_torque(plant_, everywhere(ref.q), ref, control_), tau_ext);
+    }
+  }
+
+  void take_sample(int k) {
+    trace_.q.col(k) = plant_.q();
+    trace_.qd.col(k) = plant_.qd();
+    trace_.tau.col(k) = plant_.tau();
+    trace_.tau_ext.col(k) = plant_.tau_ext();
+    trace_.qdd.col(k) = plant_.qdd();
+    trace_.friction.col(k) = plant_.friction();
+    trace_.contact_force[k] = plant_.contact_force();
+    trace_.contact[k] = s_.contact(trace_.t[k]) || trace_.contact_force[k] > 0;
+  }
+
+  void ask(const Supervisor& supervisor, int k) {
+    if (!supervisor(stream_.read({trace_.t[k], plant_.q(), plant_.qd(), plant_.tau()}))) return;
+    stopped_ = plant_.q();
+    trace_.stopped_at = k;
+  }
+
+  void step() {
     try {
-      for (int i = 0; i < r.substeps; ++i) plant.step(r.Ts / r.substeps);
+      for (int i = 0; i < r_.substeps; ++i) plant_.step(r_.Ts / r_.substeps);
     } catch (const std::runtime_error& e) {
       throw std::runtime_error(fmt::format(
           "scenario {}: {} Tracking may be too stiff for Ts = {} s: Kp = {} 1/s^2, Kd = {} 1/s",
-          s.name, e.what(), r.Ts, control.Kp, control.Kd));
+          s_.name, e.what(), r_.Ts, control_.Kp, control_.Kd));
     }
   }
-  return trace;
+
+  Plant plant_;
+  const Scenario& s_;
+  const Recording& r_;
+  Tracking control_;
+  SensorStream stream_;
+  LoadHandler load_;
+  Trace trace_;
+  std::optional<VectorXd> stopped_;  // where a mark stopped the arm
+};
+
+}  // namespace
+
+Trace simulate(const Model& model, const Scenario& scenario, const Recording& recording,
+               const Sensors& sensors, const Supervisor& supervisor) {
+  check(scenario, recording);
+  return Run(model, scenario, recording, sensors)(supervisor);
 }
 
 Trace record(const Model& model, const Scenario& scenario, const Sensors& sensors,
