@@ -8,6 +8,7 @@
 #include "estimators/detectors/pan_tompkins.h"
 #include "estimators/ekf.h"
 #include "estimators/inverse_dynamics.h"
+#include "estimators/momentum_observer.h"
 #include "estimators/ndob.h"
 #include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
@@ -57,6 +58,7 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   visit([](const Trace& trace) { return Truth<N>(trace); });
   visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
   visit([=](const Trace&) { return InverseDynamics<M>(model); });
+  visit([=](const Trace&) { return MomentumObserver<M>(model); });
 }
 
 /// Calls visit(make) for every estimator of wallmobot3.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// First-order generalised momentum observer: De Luca and Mattone, "Actuator failure detection and
+/// isolation using generalized momenta", ICRA 2003; Haddadin, De Luca and Albu-Schaeffer, "Robot
+/// collisions: a survey on detection, isolation, and identification", T-RO 2017, eq. (31).
+///
+///     p = B qd,   pdot = n - tau_ext,   n = tau - F - g + C^T qd                           (i)
+///     ddot = K (n - pdot - d):  every joint follows tau_ext as a low-pass of K, whatever the pose
+/// The residual r of the literature is -d: it has the opposite sign of (3).
+///
+/// Discretised exactly over [t_k-1, t_k), as Bledt et al., IROS 2018, do, so that it is stable for every
+/// K h and no initial momentum has to be kept:
+///     d_k = a d_k-1 + (1 - a) (n - (p_k - p_k-1) / h),   a = exp(-K h)                     (ii)
+/// tau is tau_k-1 (held over the interval); the other terms of n are the mean of both ends.
+#pragma once
+
+#include <cmath>
+
+#include "estimators/concepts.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Momentum observer over a robot model M.
+template <RobotModel M>
+class MomentumObserver {
+ public:
+  static constexpr const char* kName = "mo1";
+  static constexpr int kDof = M::kDof;
+
+  struct Parameters {
+    /// [rad/s] bandwidth of every joint, positive: larger is faster and noisier; 90 % of a step after
+    /// ln 10 / K, a ramp is followed slope / K behind
+    Vec<kDof> K = Vec<kDof>::Constant(30);
+    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+
+    /// Bandwidth w [rad/s] on every joint.
+    static Parameters for_bandwidth(double w) { return {.K = Vec<kDof>::Constant(w)}; }
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit MomentumObserver(const M& model, const Parameters& p = {})
+      : model_(model), p_(p), sampling_(p.max_gap) {
+    require(p.K.minCoeff() > 0, "the bandwidth K [rad/s] of mo1 must be positive");
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    tau_ext_.setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    const Vec<kDof> p = model_.inertia(y.q) * y.qd;  // (i)
+    const Vec<kDof> n = model_.momentum_bias(y.q, y.qd) - model_.friction(y.qd);
+    if (status == Status::kOk) {
+      const double h = sampling_.h();
+      const Vec<kDof> follows = tau_ + 0.5 * (n + n_) - (p - p_before_) / h;
+      const Vec<kDof> share = (-h * p_.K).unaryExpr([](double x) { return -std::expm1(x); });
+      tau_ext_ += share.cwiseProduct(follows - tau_ext_);  // (ii)
+      if (!within(tau_ext_, kEstimateLimit)) {
+        tau_ext_.setZero();
+        status = Status::kDiverged;
+      }
+    }
+    p_before_ = p;
+    n_ = n;
+    tau_ = y.tau;
+    return {tau_ext_, status};
+  }
+
+ private:
+  M model_;
+  Parameters p_;
+  Sampling sampling_;
+  Vec<kDof> p_before_ = Vec<kDof>::Zero();  // [N m s] at the last used sample
+  Vec<kDof> n_ = Vec<kDof>::Zero();         // [N m] of (i) without tau there
+  Vec<kDof> tau_ = Vec<kDof>::Zero();       // [N m] there
+  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();   // [N m] the last estimate
+};
+
+}  // namespace tauext
