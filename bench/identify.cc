@@ -152,7 +152,7 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   const VectorXd norm = A.colwise().norm();
   const MatrixXd scaled = A * norm.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd s = svd.singularValues();
+  const auto& s = svd.singularValues();
   const VectorXd own = own_shares(scaled);
   id.condition = s[0] / s[n - 1];
   if (!(id.condition < 1e6)) {

@@ -113,6 +113,13 @@ int run_reliability(const Sensors& sensors) {
 }
 
 int run(const Flags& flags) {
+  const std::string filter = benchmark::GetBenchmarkFilter();
+  const bool all = filter.empty() || filter == "." || filter == "all";
+  if (flags.reliability && (flags.out || flags.list || !all)) {
+    throw std::invalid_argument(
+        "--reliability runs instead of the suite: no --benchmark_filter, --benchmark_out or "
+        "--list");
+  }
   if (flags.reliability) return run_reliability(flags.suite.sensors);
   if (flags.list) {
     for (const Entry& e : entries()) fmt::print("{}\n", e.name());
@@ -129,8 +136,6 @@ int run(const Flags& flags) {
                                  [&suite, &row](benchmark::State& s) { run_entry(s, suite, row); });
   }
   benchmark::AddCustomContext("tauext", build_line(suite));
-  const std::string filter = benchmark::GetBenchmarkFilter();
-  const bool all = filter.empty() || filter == "." || filter == "all";
   Reporter reporter(display.get(), ::isatty(STDERR_FILENO) == 1,
                     all ? static_cast<int>(rows.size()) : 0);
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {

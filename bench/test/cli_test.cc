@@ -59,7 +59,8 @@ constexpr const char* kQuick = " --benchmark_min_time=0.001";
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
   for (const std::string name :
-       {"tauext-bench", "tauext-identify", "tauext-record", "tauext-replay"}) {
+       {"tauext-bench", "tauext-identify", "tauext-bench --reliability --benchmark_out=r.json",
+        "tauext-record", "tauext-replay"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;
@@ -94,9 +95,9 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
 TEST_F(Programs, WrongFlagsExitWith2) {
   for (const std::string command :
        {"tauext-bench --nonsense", "tauext-record --seed 99999999999999999999", "tauext-identify",
-        "tauext-bench --benchmark_nonsense=1", "tauext-record --seed x", "tauext-record",
-        "tauext-replay", "tauext-bench --benchmark_format=csv",
-        "tauext-bench --benchmark_out_format=csv",
+        "tauext-bench --reliability --benchmark_out=r.json", "tauext-bench --benchmark_nonsense=1",
+        "tauext-record --seed x", "tauext-record", "tauext-replay",
+        "tauext-bench --benchmark_format=csv", "tauext-bench --benchmark_out_format=csv",
         "tauext-bench --benchmark_repetitions=0 --benchmark_filter=free/zero",
         "tauext-bench --list > /dev/full",
         "tauext-record --robot wallmobot3 --scenario free --velocity_noise -1 --out x.csv"}) {
