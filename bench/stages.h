@@ -54,7 +54,7 @@ class DetectorStageOf final : public DetectorStage<D::kDof> {
   void reset() override { d_.reset(); }
   void run(std::span<const Measurement<D::kDof>> at, std::span<const Estimate<D::kDof>> in,
            std::span<Detection> out) override {
-    for (std::size_t k = 0; k < in.size(); ++k) out[k] = d_.update(at[k].t, in[k].tau_ext);
+    for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k].tau_ext);
   }
 
  private:

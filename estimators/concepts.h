@@ -75,15 +75,45 @@ concept TorqueEstimator = requires(E e, const Measurement<E::kDof>& y) {
   noexcept->std::same_as<Estimate<E::kDof>>;
 };
 
-/// Turns estimates of tau_ext at times t [s] into fiducial marks.
+/// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext alone or with the whole
+/// sample (speed, for example).
 template <class D>
-concept CollisionDetector = requires(D d, double t, const Vec<D::kDof>& tau_ext) {
+concept CollisionDetector = requires(D d) {
   { D::kName } -> std::convertible_to<std::string_view>;
   { D::kDof } -> std::convertible_to<int>;
   { d.reset() }
   noexcept;
-  { d.update(t, tau_ext) }
-  noexcept->std::same_as<Detection>;
+}
+&&(
+    requires(D d, double t, const Vec<D::kDof>& tau_ext) {
+      { d.update(t, tau_ext) }
+      noexcept->std::same_as<Detection>;
+    } ||
+    requires(D d, const Measurement<D::kDof>& y, const Vec<D::kDof>& tau_ext) {
+      { d.update(y, tau_ext) }
+      noexcept->std::same_as<Detection>;
+    });
+
+/// One step of either kind of detector.
+template <CollisionDetector D>
+Detection detect(D& d, const Measurement<D::kDof>& y, const Vec<D::kDof>& tau_ext) noexcept {
+  if constexpr (requires { d.update(y, tau_ext); }) {
+    return d.update(y, tau_ext);
+  } else {
+    return d.update(y.t, tau_ext);
+  }
+}
+
+/// A detector whose thresholds can be set from data: joint i marks where statistic()[i] of the last
+/// update reaches Parameters::threshold[i]. Twice the tau_ext gives 2^kDegree times the statistic.
+template <class D>
+concept CalibratableDetector = CollisionDetector<D> &&
+    requires(const D& d, typename D::Parameters p) {
+  { D::kDegree } -> std::convertible_to<int>;
+  { d.statistic() }
+  noexcept->std::convertible_to<Vec<D::kDof>>;
+  { p.threshold } -> std::convertible_to<Vec<D::kDof>>;
+  D(p);
 };
 
 }  // namespace tauext

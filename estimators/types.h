@@ -48,10 +48,20 @@ struct Estimate {
   Status status = Status::kOk;
 };
 
+/// What a detector takes a contact for.
+enum class Contact : std::uint8_t {
+  kNone,         ///< nobody touches the arm
+  kIntentional,  ///< a human guides or pushes it
+  kCollision,    ///< a blow: forces that rise within tens of milliseconds
+  kClamping,     ///< something is caught: a force that rises slowly and beyond any push
+};
+
 /// A detector's answer to one estimate.
 struct Detection {
-  bool mark = false;  ///< the fiducial mark: true on the one sample where a collision is declared
+  bool mark = false;  ///< the fiducial mark: true on the one sample where the robot should react
   double score = 0;   ///< [1] decision quantity over its threshold: marks begin at 1
+  /// With a mark, what for. A classifier says it at every sample, others kNone without a mark.
+  Contact contact = Contact::kNone;
 };
 
 }  // namespace tauext

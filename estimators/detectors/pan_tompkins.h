@@ -26,6 +26,7 @@ class PanTompkins {
  public:
   static constexpr const char* kName = "pan_tompkins";
   static constexpr int kDof = N;
+  static constexpr int kDegree = 2;  ///< the energy is a square
   static constexpr int kMaxStride = 16;
 
   struct Parameters {
@@ -73,8 +74,11 @@ class PanTompkins {
       marked_at_ = t;
     }
     score_ = score;
-    return {mark, score};
+    return {mark, score, mark ? Contact::kCollision : Contact::kNone};
   }
+
+  /// [(N m/s)^2] held energy of each joint.
+  const Vec<N>& statistic() const noexcept { return held_; }
 
  private:
   static constexpr int kHistory = 4 * kMaxStride + 1;
@@ -107,6 +111,6 @@ class PanTompkins {
   bool marked_ = false;
 };
 
-static_assert(CollisionDetector<PanTompkins<3>>);
+static_assert(CalibratableDetector<PanTompkins<3>>);
 
 }  // namespace tauext
