@@ -11,35 +11,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "bench/degradation.h"
 #include "bench/robot.h"
 
 namespace tauext {
 
 namespace {
-
-// "noise=1,offset=2" into the fields of these names
-void parse_loadcell(const std::vector<std::string>& items, Loadcell& l) {
-  const std::pair<const char*, double*> fields[] = {
-      {"scale", &l.scale},           {"offset", &l.offset},
-      {"hysteresis", &l.hysteresis}, {"nonlinearity", &l.nonlinearity},
-      {"noise", &l.noise},           {"step", &l.step},
-      {"full_scale", &l.full_scale}};
-  for (const std::string& item : items) {
-    const auto equals = item.find('=');
-    const auto field = std::find_if(std::begin(fields), std::end(fields), [&](const auto& f) {
-      return item.substr(0, equals) == f.first;
-    });
-    if (equals == std::string::npos || field == std::end(fields) ||
-        !CLI::detail::lexical_cast(item.substr(equals + 1), *field->second)) {
-      throw CLI::ValidationError(
-          "--loadcell",
-          fmt::format("'{}' is not KEY=NUMBER with a KEY of scale, offset [N], "
-                      "hysteresis, nonlinearity [of full scale], noise [N], step [N], "
-                      "full_scale [N]",
-                      item));
-    }
-  }
-}
 
 // CLI11 takes a number that does not fit for the largest that does
 std::string whole_number(const std::string& text) {
@@ -52,22 +29,42 @@ std::string whole_number(const std::string& text) {
 
 }  // namespace
 
-void add_recording_flags(CLI::App& app, Sensors& s, Recording& r) {
-  app.add_option("--velocity_noise", s.velocity_noise, "standard deviation [rad/s]")
+void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r) {
+  const auto list = [&](const char* name, auto& fields, const char* help) {
+    app.add_option_function<std::vector<std::string>>(
+           name,
+           [&fields, name](const std::vector<std::string>& items) {
+             try {
+               set_fields(items, fields);
+             } catch (const std::invalid_argument& error) {
+               throw CLI::ValidationError(name, error.what());
+             }
+           },
+           help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE,..");
+  };
+  // first, so that flags have the last word
+  app.add_option_function<std::string>(
+         "--degrade",
+         [&s, &e](const std::string& path) {
+           Degradation d{s, e};
+           read_degradation(path, d);
+           s = d.sensors, e = d.model_error;
+         },
+         "sensor faults and model errors of a JSON file")
+      ->type_name("FILE");
+  list("--sensors", s, "their faults: velocity_noise=1e-3,latency=0.002,dropped=0.01,..");
+  list("--loadcell", s.loadcell, "faults of the loadcells, like noise=1,offset=5 [N]");
+  list("--model_error", e, "what estimators do not know: mass=1.05,com=0.01,friction=2,..");
+  app.add_option("--velocity_noise", s.velocity_noise, "the same as in --sensors [rad/s]")
       ->capture_default_str();
-  app.add_option("--encoder_step", s.encoder_step, "quantisation of q [rad]")
-      ->capture_default_str();
-  app.add_option("--loadcell_noise", s.loadcell_noise, "standard deviation [N m], on tau itself")
-      ->capture_default_str();
-  app.add_option("--seed", s.seed, "of the sensors' noise")
+  app.add_option("--encoder_step", s.encoder_step)->group("");  // likewise
+  app.add_option("--loadcell_noise", s.loadcell_noise)->group("");
+  app.add_option("--seed", s.seed, "of the sensors' faults")
       ->check(whole_number, "WHOLE")
       ->capture_default_str();
-  app.add_option_function<std::vector<std::string>>(
-         "--loadcell", [&s](const std::vector<std::string>& v) { parse_loadcell(v, s.loadcell); },
-         "faults of a screw's loadcell, like noise=1,offset=5 [N]")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE,..");
   app.add_option("--kp", r.Kp, "tracking stiffness [1/s^2], else the scenario's own");
   app.add_option("--kd", r.Kd, "tracking damping [1/s], else the scenario's own");
 }
@@ -80,6 +77,9 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
     fmt::print(stderr, "{0}: {1}\n{0}: see {0} --help\n", app.get_name(), e.what());
+    return kCouldNotRun;
+  } catch (const std::exception& e) {  // of a flag that reads a file
+    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
     return kCouldNotRun;
   }
   try {

@@ -18,8 +18,8 @@ enum ExitCode : int {
   kCouldNotRun = 2,  ///< wrong flags, unreadable input, unwritable output
 };
 
-/// Adds --velocity_noise, --encoder_step, --loadcell_noise, --loadcell, --seed, --kp and --kd.
-void add_recording_flags(CLI::App& app, Sensors& sensors, Recording& recording);
+/// Adds the flags of the sensors' faults, the model's errors, a file of both, --seed, --kp and --kd.
+void add_recording_flags(CLI::App& app, Sensors& sensors, ModelError& error, Recording& recording);
 
 /// Parses and runs; prints help, version and errors as "<program>: <what>"; returns the exit code.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);

@@ -47,6 +47,12 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 /// shorter run, and if no delay below 2 s fits best.
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
+/// [rad/s] -3 dB: the frequency at which the estimate's answer to a swept sine first falls below
+/// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's own
+/// spectrum, each a mean over a band of 10 %. NaN if it does not fall or already has at 0.7 rad/s, if the
+/// truth does not cover these frequencies, or if samples are not evenly spaced (within 1 %).
+double bandwidth(const Times& t, const Signal& truth, const Signal& estimate);
+
 /// Marks against the true contact. A collision lasts from the first to the last sample of a run of
 /// contact = 1. It is detected by the first mark from its begin until 0.2 s after its end; any mark
 /// outside these windows is a false alarm.

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <type_traits>
 
 #include "bench/allocations.h"
 #include "bench/metrics.h"
@@ -13,13 +15,15 @@
 namespace tauext {
 namespace {
 
-// the largest of a metric over the joints; NaN, which says "never", counts as larger than any
+// the largest of a metric over the joints (the smallest with less<>); NaN, which says "never", is worse
+template <class Worse>
 double worst(const Eigen::VectorXd& per_joint) {
-  return per_joint.hasNaN() ? std::numeric_limits<double>::quiet_NaN() : per_joint.maxCoeff();
+  if (per_joint.hasNaN()) return std::numeric_limits<double>::quiet_NaN();
+  return std::is_same_v<Worse, std::less<>> ? per_joint.minCoeff() : per_joint.maxCoeff();
 }
 
 // `key`_<unit> of every joint, with the joint's number, and the worst one without
-template <class Metric>
+template <class Worse = std::greater<>, class Metric>
 void add_per_joint(int dof, const std::string& quantity, const std::string& unit, Score& score,
                    Metric&& metric) {
   Eigen::VectorXd values(dof);
@@ -27,7 +31,7 @@ void add_per_joint(int dof, const std::string& quantity, const std::string& unit
     values[j] = metric(j);
     score.metrics[fmt::format("{}{}_{}", quantity, j + 1, unit)] = values[j];
   }
-  score.metrics[quantity + "_" + unit] = worst(values);
+  score.metrics[quantity + "_" + unit] = worst<Worse>(values);
 }
 
 const char* name_of(Status s) {
@@ -142,6 +146,11 @@ void add_response_metrics(const Trace& trace, const Output& out, const Scenario&
       return lag(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), scenario.score_from);
     });
   }
+  if (scenario.response == Response::kBandwidth) {
+    add_per_joint<std::less<>>(n, "bandwidth", "rad_s", score, [&](int j) {
+      return bandwidth(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j));
+    });
+  }
 }
 
 void add_detection_metrics(const Trace& trace, const Output& out, Score& score) {
@@ -171,8 +180,9 @@ const Suite::Traces& Suite::traces(const Entry& e) {
   if (it != traces_.end()) return it->second;
   Traces t;
   const Scenario& s = scenario(e.robot, e.scenario);
-  t.ideal = simulate(load_for(e.robot, s), s, options_.recording, options_.sensors,
-                     closed_loop(e) ? robot(e.robot).supervisor(e.estimator, e.detector) : nullptr);
+  t.ideal =
+      simulate(load_for(e.robot, s, options_.model_error), s, options_.recording, options_.sensors,
+               closed_loop(e) ? robot(e.robot).supervisor(e.estimator, e.detector) : nullptr);
   Sensors sensors = options_.sensors;
   if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
   t.noisy = measure(t.ideal, sensors);
@@ -196,7 +206,9 @@ Score Suite::score(const Entry& e) {
   const Output noisy = r.runner(e.estimator, e.detector, recorded.noisy)->run();
 
   Score score;
-  score.error = failure(recorded.ideal, ideal, s.score_from);
+  // with a wrong model an estimate may be as wrong as that: then it only has to be one
+  score.error = options_.model_error.none() ? failure(recorded.ideal, ideal, s.score_from)
+                                            : bad_status(recorded.ideal, ideal);
   if (const std::string bad = bad_status(recorded.noisy, noisy);
       score.error.empty() && !bad.empty()) {
     score.error = "under sensor noise: " + bad;
@@ -211,9 +223,11 @@ Score Suite::score(const Entry& e) {
     free.detector = "";
     add_reaction_metrics(recorded.ideal, traces(free).ideal, score);
   }
-  add_per_joint(r.dof, "noise", "Nm", score, [&](int j) {
-    return noise(trace.t, ideal.tau_ext.row(j), noisy.tau_ext.row(j), s.score_from);
-  });
+  if (ideal.status.size() == noisy.status.size()) {  // else samples were dropped
+    add_per_joint(r.dof, "noise", "Nm", score, [&](int j) {
+      return noise(trace.t, ideal.tau_ext.row(j), noisy.tau_ext.row(j), s.score_from);
+    });
+  }
   if (allocations_are_counted()) score.metrics["allocs"] = allocations_per_step(*ideal_runner);
   return score;
 }

@@ -39,7 +39,8 @@ struct Score {
 
 /// What is the same for all entries of a run.
 struct SuiteOptions {
-  Sensors sensors;  ///< of the scored trace
+  Sensors sensors;         ///< of the scored trace
+  ModelError model_error;  ///< of the robot that is scored
   Recording recording;
   double noise_probe = 1e-3;  ///< [rad/s] velocity noise behind noise_Nm when `sensors` are ideal
 };

@@ -14,7 +14,8 @@ struct Column {
   const char* key;
   const char* title;
   const char* unit;
-  int digits;  // after the point
+  int digits;                  // after the point
+  bool less_is_better = true;  // else nobody is best: a bandwidth is a choice
 };
 
 constexpr Column kColumns[] = {
@@ -26,6 +27,7 @@ constexpr Column kColumns[] = {
     {"overshoot_percent", "overshoot", "%", 1},
     {"final_Nm", "final", "N m", 3},
     {"lag_s", "lag", "s", 3},
+    {"bandwidth_rad_s", "bandwidth", "rad/s", 1, false},
     {"delay_s", "delay", "s", 3},
     {"false_alarms", "false", "alarms", 0},
     {"overtravel_rad", "overtravel", "rad", 4},
@@ -47,6 +49,7 @@ bool competes(const Row& r) {
 
 // the smallest value that a competitor of the row's group reached, if two of them differ
 std::optional<double> best(const std::vector<Row>& rows, const Row& row, const Column& c) {
+  if (!c.less_is_better) return std::nullopt;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Row& r : rows) {
     const auto value = r.score.get(c.key);

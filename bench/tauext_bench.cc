@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/cli.h"
+#include "bench/degradation.h"
 #include "bench/reliability.h"
 #include "bench/reporter.h"
 #include "bench/suite.h"
@@ -84,6 +85,8 @@ std::string build_line(const Suite& suite) {
                                  TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(), o.sensors.seed);
   if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
   if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
+  const std::string degraded = describe({o.sensors, o.model_error});
+  if (!degraded.empty()) line += "\ndegraded: " + degraded;
   return line;
 }
 
@@ -188,7 +191,7 @@ int main(int argc, char** argv) {
   app.add_option("--noise_probe", flags.suite.noise_probe,
                  "velocity noise [rad/s] behind the column noise, for ideal sensors")
       ->capture_default_str();
-  add_recording_flags(app, flags.suite.sensors, flags.suite.recording);
+  add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
   app.footer(
       "Google Benchmark's: --benchmark_filter=REGEX --benchmark_out=FILE (JSON)\n"
       "  --benchmark_repetitions=N --benchmark_min_time=SECONDS --benchmark_format=console|json");

@@ -14,13 +14,14 @@ int main(int argc, char** argv) {
       "tauext-record");
   std::string robot_name, scenario_name, out, stop;
   Sensors sensors;
+  ModelError model_error;
   Recording recording;
   bool list = false;
   app.add_option("--robot", robot_name, "robot (see --list)");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_option("--stop", stop, "ESTIMATOR+DETECTOR whose first mark stops the motor");
-  add_recording_flags(app, sensors, recording);
+  add_recording_flags(app, sensors, model_error, recording);
   app.add_flag("--list", list, "list robots and scenarios, and stop");
   return run_program(app, argc, argv, [&] {
     if (list) {
@@ -40,8 +41,8 @@ int main(int argc, char** argv) {
     }
     const Supervisor supervisor =
         stop.empty() ? nullptr : r.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
-    const Trace trace =
-        measure(simulate(load_for(r.name, s), s, recording, sensors, supervisor), sensors);
+    const Trace trace = measure(
+        simulate(load_for(r.name, s, model_error), s, recording, sensors, supervisor), sensors);
     write_csv(trace, out);
     fmt::print(stderr, "{}: {} samples of {}/{}{}\n", out, trace.size(), robot_name, scenario_name,
                trace.stopped_at < 0 ? stop.empty() ? "" : "; nothing stopped it"

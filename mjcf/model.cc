@@ -63,13 +63,6 @@ void add(Vfs& files, const std::string& name, std::string_view text) {
             static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
 }
 
-// recomputes what MuJoCo derives from masses
-Model with_constants(mjModel* m) {
-  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(m), mj_deleteData);
-  mj_setConst(m, d.get());
-  return own(m);
-}
-
 }  // namespace
 
 std::string mujoco_version() {
@@ -100,6 +93,23 @@ Model load_robot(std::string_view name, std::string_view scene) {
   return own(m);
 }
 
+Model load_mjcf(const std::string& path) {
+  install_handlers();
+  char error[1000] = "";
+  mjModel* const m = mj_loadXML(path.c_str(), nullptr, error, sizeof error);
+  if (m == nullptr) throw std::runtime_error(fmt::format("{}: {}", path, error));
+  return own(m);
+}
+
+Model changed(const Model& model, const std::function<void(mjModel&)>& change) {
+  mjModel* const m = mj_copyModel(nullptr, model.get());
+  Model copy = own(m);
+  change(*m);
+  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(m), mj_deleteData);
+  mj_setConst(m, d.get());
+  return copy;
+}
+
 Model with_scaled_body(const Model& model, const std::string& body, double factor) {
   const int id = mj_name2id(model.get(), mjOBJ_BODY, body.c_str());
   if (id < 0) throw std::invalid_argument(fmt::format("the robot has no body '{}'", body));
@@ -107,30 +117,29 @@ Model with_scaled_body(const Model& model, const std::string& body, double facto
     throw std::invalid_argument(
         fmt::format("body '{}': a mass factor must be positive, not {}", body, factor));
   }
-  mjModel* m = mj_copyModel(nullptr, model.get());
-  m->body_mass[id] *= factor;
-  for (int i = 0; i < 3; ++i) m->body_inertia[3 * id + i] *= factor;
-  return with_constants(m);
+  return changed(model, [&](mjModel& m) {
+    m.body_mass[id] *= factor;
+    for (int i = 0; i < 3; ++i) m.body_inertia[3 * id + i] *= factor;
+  });
 }
 
 Model without_dry_friction(const Model& model) {
-  mjModel* const m = mj_copyModel(nullptr, model.get());
-  std::fill_n(m->dof_frictionloss, m->nv, 0.);
-  std::fill_n(m->tendon_frictionloss, m->ntendon, 0.);
-  return with_constants(m);
+  return changed(model, [](mjModel& m) {
+    std::fill_n(m.dof_frictionloss, m.nv, 0.);
+    std::fill_n(m.tendon_frictionloss, m.ntendon, 0.);
+  });
 }
 
 Model testbed1_absorbed(std::string_view scene) {
-  const Model printed = load_robot("testbed1", scene);
-  mjModel* const m = mj_copyModel(nullptr, printed.get());
-  const int arm = mj_name2id(m, mjOBJ_BODY, "arm");
-  const double g = -m->opt.gravity[2];
-  const double mass = m->body_mass[arm] / g;
-  // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
-  const double* const r = m->body_ipos + 3 * arm;
-  m->body_inertia[3 * arm + 1] += (m->body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
-  m->body_mass[arm] = mass;
-  return with_constants(m);
+  return changed(load_robot("testbed1", scene), [](mjModel& m) {
+    const int arm = mj_name2id(&m, mjOBJ_BODY, "arm");
+    const double g = -m.opt.gravity[2];
+    const double mass = m.body_mass[arm] / g;
+    // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
+    const double* const r = m.body_ipos + 3 * arm;
+    m.body_inertia[3 * arm + 1] += (m.body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
+    m.body_mass[arm] = mass;
+  });
 }
 
 Model wallmobot3_with_panel(double panel) {

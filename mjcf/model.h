@@ -5,6 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,6 +26,13 @@ std::vector<std::string> robot_names();
 /// @param scene what stands around it: "" for nothing, "load" (a mass on a tether) or "obstacle"
 /// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
 Model load_robot(std::string_view name, std::string_view scene = "");
+
+/// A robot of your own: an MJCF file, laid out as mjcf/layout.h says.
+/// @throws std::runtime_error naming the path, with MuJoCo's own message
+Model load_mjcf(const std::string& path);
+
+/// A copy of the model with the changes that `change` makes, and what MuJoCo derives from them.
+Model changed(const Model& model, const std::function<void(mjModel&)>& change);
 
 /// A copy of the model whose body has `factor` times its mass and its inertia.
 /// @throws std::invalid_argument for an unknown body or a factor that is not positive and finite

@@ -128,7 +128,8 @@ class Run {
   }
 
   void ask(const Supervisor& supervisor, int k) {
-    if (!supervisor(stream_.read({trace_.t[k], plant_.q(), plant_.qd(), plant_.tau()}))) return;
+    const auto y = stream_.read({trace_.t[k], plant_.q(), plant_.qd(), plant_.tau()});
+    if (!y || !supervisor(*y)) return;
     stopped_ = plant_.q();
     trace_.stopped_at = k;
   }

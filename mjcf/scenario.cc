@@ -40,8 +40,8 @@ const Scenario& scenario(std::string_view robot, std::string_view name) {
       fmt::format("unknown scenario '{}' of {}; known: {}", name, robot, fmt::join(known, ", ")));
 }
 
-Model load_for(std::string_view robot, const Scenario& s) {
-  const Model m = load_robot(robot, s.scene);
+Model load_for(std::string_view robot, const Scenario& s, const ModelError& error) {
+  const Model m = with_errors(load_robot(robot, s.scene), error);
   return s.load ? with_scaled_body(m, "load", s.load->mass) : m;  // it weighs 1 kg in the scene
 }
 

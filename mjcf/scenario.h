@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mjcf/model_error.h"
 #include "mjcf/motion.h"
 #include "mjcf/plant.h"
 
@@ -23,6 +24,7 @@ enum class Response {
   kStep,       ///< rise, settling and overshoot, from the largest jump of the truth
   kLag,        ///< the delay of the estimate behind a truth that moves all the time
   kDetection,  ///< marks against the recorded contact
+  kBandwidth,  ///< where the estimate of a swept sine falls to -3 dB
 };
 
 /// The tracking controller: computed torque, tau = B (qdd_ref + Kp e + Kd edot) + C qd + D qd + g with
@@ -56,9 +58,9 @@ struct Scenario {
   /// [N] world, on the end effector, which is where the second argument says
   std::function<Eigen::Vector3d(double, const Point&)> force;
   std::function<bool(double)> contact;  ///< whether a collision acts; the obstacle's adds to it
-  std::string scene;                    ///< what stands around the arm: "", "load", "obstacle"
-  std::optional<Load> load;             ///< with the scene "load"
-  bool reacts = false;  ///< whether a detector's mark stops the motor: a closed loop
+  std::string scene;         ///< what stands around the arm: a name of mjcf/scene_*.xml, or ""
+  std::optional<Load> load;  ///< with the scene "load"
+  bool reacts = false;       ///< whether a detector's mark stops the motor: a closed loop
 };
 
 /// All scenarios of a robot, in the order in which they are listed.
@@ -69,8 +71,10 @@ const std::vector<Scenario>& scenarios(std::string_view robot);
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Scenario& scenario(std::string_view robot, std::string_view name);
 
-/// The robot as the scenario needs it: with its scene, and the load as heavy as it says.
-Model load_for(std::string_view robot, const Scenario& scenario);
+/// The robot as the scenario needs it: with its scene, and the load as heavy as it says; and with errors
+/// that its estimators do not know of.
+/// @throws std::invalid_argument for an error out of range
+Model load_for(std::string_view robot, const Scenario& scenario, const ModelError& error = {});
 
 /// `manual` of testbed1 with other moves of the hand; seed 1 is the one in the list.
 Scenario manual_of_testbed1(std::uint64_t seed);

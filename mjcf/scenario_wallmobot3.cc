@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Section 5.2 of the paper, and a start in motion.
+// Section 5.2 of the paper, and what it leaves out.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "mjcf/scenario_lists.h"
+#include "mjcf/touch.h"
 
 namespace tauext {
 namespace {
@@ -16,6 +18,19 @@ double paper_sine(double t) {
 constexpr double kHitAt = 5, kHitFor = 0.02, kHitForce = 200;  // [s], [s], [N]
 bool hit(double t) {
   return t >= kHitAt && t < kHitAt + kHitFor;
+}
+
+// a sine whose frequency grows exponentially, faded in and out, so that it begins and ends at rest
+double swept_sine(double t) {
+  constexpr double kBegin = 2, kEnd = 38, kFade = 1;  // [s]
+  constexpr double kSlowest = 0.5, kFastest = 300;    // [rad/s]
+  constexpr double kAmplitude = 10;                   // [N m]
+  if (t < kBegin || t >= kEnd) return 0;
+  const double octaves = std::log(kFastest / kSlowest), duration = kEnd - kBegin;
+  const double phase =
+      kSlowest * duration / octaves * std::expm1(octaves * (t - kBegin) / duration);
+  const double edge = std::min({1., (t - kBegin) / kFade, (kEnd - t) / kFade});
+  return kAmplitude * 0.5 * (1 - std::cos(std::numbers::pi * edge)) * std::sin(phase);
 }
 
 }  // namespace
@@ -63,6 +78,49 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
       add("in_motion", "no contact; starts at 0.6 rad/s on q_ref = 0.3 sin 2t rad");
   in_motion.start_on_reference = true;
   in_motion.reference = [](double t) { return sine_motion(0.3, 2, t); };
+
+  // slanted, so that every joint feels them
+  const Eigen::Vector3d slanted = Eigen::Vector3d(-0.8, 0, 0.6);
+
+  Scenario& push =
+      add("push", "slow pushes of 80 N at 5, 12 and 20 s, up in 1 s, held 1 s, and back");
+  push.response = Response::kDetection;
+  std::vector<Touch> pushes;
+  for (const double begin : {5., 12., 20.}) {
+    pushes.push_back({TouchKind::kSlowPush, begin, 1, 1, 1, 80 * slanted});
+  }
+  push = with_touches(push, pushes);
+
+  Scenario& brisk = add(
+      "brisk_push", "pushes of 100 N at 5, 12 and 20 s, up in 0.1 s, held 0.3 s, back in 0.3 s");
+  brisk.response = Response::kDetection;
+  for (Touch& p : pushes) {
+    p = {TouchKind::kBriskPush, p.begin, 0.1, 0.3, 0.3, 100 * slanted};
+  }
+  brisk = with_touches(brisk, pushes);
+
+  Scenario& clamp =
+      add("clamp",
+          "something is caught at 10 s: 200 N, straight up in 0.75 s, held 3 s, back in 0.5 s");
+  clamp.response = Response::kDetection;
+  clamp = with_touches(clamp, {{TouchKind::kClamp, 10, 0.75, 3, 0.5, 200 * slanted}});
+
+  Scenario& payload = add("payload", "15 kg hung on the panel by a tether at 8 s, dropped at 20 s");
+  payload.scene = "load";
+  payload.load = Load{.mass = 15, .hang_at = 8, .drop_at = 20};
+
+  Scenario& contact =
+      add("contact", "the panel runs into a ball on a spring near 3.6 s; a mark stops the motors");
+  contact.duration = 8;
+  contact.response = Response::kDetection;
+  contact.scene = "panel_obstacle";
+  contact.reacts = true;
+
+  Scenario& chirp =
+      add("chirp", "10 N m on every joint, swept from 0.5 to 300 rad/s between 2 and 38 s");
+  chirp.duration = 40;
+  chirp.response = Response::kBandwidth;
+  chirp.tau_ext = swept_sine;
   return all;
 }
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "mjcf/random.h"
@@ -13,15 +15,16 @@ namespace tauext {
 
 /// A loadcell at the end of each screw. Its faults act on the force along the screw, and reach tau
 /// through (33)-(34), pose by pose: the true force is tau / (a sin Theta) at the true q, and the
-/// measured tau is the measured force times a sin Theta at the measured q. In this order:
+/// measured tau is the measured force times a sin Theta at the measured q. On a robot without screws it
+/// is a torque sensor in each joint, and N below stands for N m. In this order:
 struct Loadcell {
-  double scale = 1;          ///< [1] gain error: the true force times this
-  double offset = 0;         ///< [N]
-  double hysteresis = 0;     ///< [1] of full scale: width of the loop (play)
-  double nonlinearity = 0;   ///< [1] of full scale: largest deviation, at half scale; 0 at its ends
-  double noise = 0;          ///< [N] standard deviation, white
-  double step = 0;           ///< [N] the reading is rounded to whole steps
-  double full_scale = 1000;  ///< [N] of either sign
+  double scale = 1;         ///< [1] gain error: the true force times this
+  double offset = 0;        ///< [N]
+  double hysteresis = 0;    ///< [1] of full scale: width of the loop (play)
+  double nonlinearity = 0;  ///< [1] of full scale: largest deviation, at half scale; 0 at its ends
+  double noise = 0;         ///< [N] standard deviation, white
+  double step = 0;          ///< [N] the reading is rounded to whole steps
+  double full_scale = 0;    ///< [N] of either sign; 0: 1000 N of a screw, 3000 N m of a joint
 
   bool ideal() const {
     return scale == 1 && offset == 0 && hysteresis == 0 && nonlinearity == 0 && noise == 0 &&
@@ -33,35 +36,50 @@ struct Loadcell {
 struct Sensors {
   double velocity_noise = 0;  ///< [rad/s] standard deviation, on qd
   double encoder_step = 0;    ///< [rad] q is rounded to whole steps
-  double loadcell_noise =
-      0;                   ///< [N m] standard deviation, on tau itself, for a robot without screws
-  Loadcell loadcell;       ///< for a robot with screws
+  double loadcell_noise = 0;  ///< [N m] standard deviation, on tau itself, with or without screws
+  Loadcell loadcell;
+  double latency = 0;      ///< [s] how old q, qd and tau are at their time stamp
+  double tau_latency = 0;  ///< [s] how much older tau is than q and qd
+  double jitter = 0;       ///< [s] time stamps are wrong by up to this, uniformly; order is kept
+  double dropped = 0;      ///< [1] share of the samples that never arrive
+  double repeated = 0;     ///< [1] share that repeats the values before it, with a new time stamp
   std::uint64_t seed = 1;  ///< same seed, same bits; every channel has a generator of its own
 
+  /// Nothing between truth and reading.
   bool ideal() const {
-    return velocity_noise == 0 && encoder_step == 0 && loadcell_noise == 0 && loadcell.ideal();
+    return velocity_noise == 0 && encoder_step == 0 && loadcell_noise == 0 && loadcell.ideal() &&
+           latency == 0 && tau_latency == 0 && jitter == 0 && dropped == 0 && repeated == 0;
   }
 };
 
 /// Sensors at work, sample by sample.
 class SensorStream {
  public:
-  /// @throws std::invalid_argument for an imperfection out of range, or a loadcell without screws
+  /// @throws std::invalid_argument for an imperfection out of range
   SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws);
 
-  /// What they read of the true q, qd and tau of the next sample.
-  Sample read(Sample truth);
+  /// What they read of the next true sample; nothing if it is lost.
+  std::optional<Sample> read(const Sample& truth);
 
  private:
+  const Sample& delayed(double by) const;
+  double lever(int joint, double q) const;
   double force(int joint, double true_force);
+  void keep_past(const Sample& truth);
+  Sample values(const Sample& truth);
 
   Sensors s_;
   std::vector<Screw> screws_;
   std::vector<Random> velocity_, torque_, force_;
-  std::vector<double> play_;  // [N] of each loadcell's hysteresis
+  Random clock_, line_;
+  std::vector<double> play_;    // [N] of each loadcell's hysteresis
+  std::deque<Sample> past_;     // as far back as the latencies reach, the newest last
+  std::optional<Sample> last_;  // values of the last reading
+  double stamp_;                // [s] its time stamp
 };
 
-/// The trace as these sensors would have recorded it; the truth in it stays the truth.
+/// The trace as these sensors would have recorded it; the truth in it stays the truth, sample by sample:
+/// a dropped sample is missing in both.
 /// @throws std::invalid_argument as SensorStream does
 Trace measure(const Trace& truth, const Sensors& sensors);
 

@@ -129,6 +129,24 @@ Eigen::MatrixXd gather(const std::vector<std::vector<double>>& rows,
 
 }  // namespace
 
+Trace select(const Trace& trace, const std::vector<int>& samples) {
+  Trace s = trace;
+  const auto of_vector = [&](auto& v) {
+    if (v.empty()) return;
+    for (std::size_t i = 0; i < samples.size(); ++i) v[i] = v[samples[i]];
+    v.resize(samples.size());
+  };
+  of_vector(s.t);
+  of_vector(s.contact);
+  of_vector(s.contact_force);
+  for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.qdd, &s.friction}) {
+    if (m->cols() > 0) *m = Eigen::MatrixXd((*m)(Eigen::all, samples));
+  }
+  const auto stop = std::lower_bound(samples.begin(), samples.end(), trace.stopped_at);
+  if (trace.stopped_at >= 0) s.stopped_at = static_cast<int>(stop - samples.begin());
+  return s;
+}
+
 void write_csv(const Trace& trace, const std::string& path) {
   const Eigen::MatrixXd* const matrices[] = {&trace.q, &trace.qd, &trace.tau, &trace.tau_ext};
   AtomicFile file(path);

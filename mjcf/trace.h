@@ -49,6 +49,9 @@ struct Trace {
   }
 };
 
+/// The samples of these indices alone, in increasing order.
+Trace select(const Trace& trace, const std::vector<int>& samples);
+
 /// Rows that read_csv left out, by the reason.
 struct SkippedRows {
   int not_finite = 0;              ///< a field was NaN or infinite

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "mjcf/scenario.h"
+
 namespace tauext::test {
 namespace {
 
@@ -166,6 +168,43 @@ TEST(Metrics, OvertravelIsTheWayOnInTheDirectionOfTheMotion) {
 TEST(Metrics, PeakIsTheLargestForce) {
   EXPECT_EQ(peak({1, 7, 3}), 7);
   EXPECT_EQ(peak({}), 0);
+}
+
+// a swept sine through a first-order low-pass K, exactly discretised for a held input
+struct Swept {
+  Times t;
+  Eigen::RowVectorXd truth, estimate;
+  explicit Swept(double K, double h = 1e-3) {
+    const Scenario& chirp = scenario("wallmobot3", "chirp");
+    const int n = static_cast<int>(chirp.duration / h);
+    truth.resize(n);
+    estimate.resize(n);
+    double y = 0;
+    for (int k = 0; k < n; ++k) {
+      t.push_back(k * h);
+      estimate[k] = y;
+      truth[k] = chirp.tau_ext(t[k]);
+      y += -std::expm1(-K * h) * (truth[k] - y);
+    }
+  }
+};
+
+TEST(Bandwidth, OfAFirstOrderLowPassIsItsPole) {
+  for (const double K : {2., 10., 30., 100., 200.}) {
+    const Swept s(K);
+    EXPECT_NEAR(bandwidth(s.t, s.truth, s.estimate), K, 0.02 * K);
+  }
+}
+
+TEST(Bandwidth, DoesNotExistWhereNothingFallsOrNothingIsSwept) {
+  const Swept s(10);
+  const Row nothing = Row::Zero(s.truth.size());
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, s.truth)));
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, nothing)));
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, nothing, s.estimate)));
+  Times uneven = s.t;
+  uneven[100] += 0.5e-3;
+  EXPECT_TRUE(std::isnan(bandwidth(uneven, s.truth, s.estimate)));
 }
 
 }  // namespace

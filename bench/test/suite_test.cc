@@ -5,6 +5,8 @@
 
 #include <set>
 
+#include "estimators/wallmobot3.h"
+
 namespace tauext::test {
 namespace {
 
@@ -86,12 +88,29 @@ TEST(Suite, ATruthCannotStopAMotor) {
   EXPECT_THROW(robot("testbed1").supervisor("ekf", "ear"), std::invalid_argument);
 }
 
-TEST(Suite, ALoadcellWithoutAScrewIsRefused) {
+TEST(Suite, AnErrorOfTheLoadcellIsAnErrorOfTheEstimate) {
   SuiteOptions options;
-  options.sensors.loadcell.noise = 1;
+  options.sensors.loadcell.offset = 7;
   Suite degraded(options);
-  EXPECT_THROW(degraded.score({"wallmobot3", "free", "ekf", ""}), std::invalid_argument);
+  // tau is 7 N m too large on every joint of wallmobot3, so tau_ext is, too: (3)
+  EXPECT_NEAR(*degraded.score({"wallmobot3", "free", "mo1", ""}).get("bias_Nm"), 7, 0.1);
   EXPECT_EQ(degraded.score({"testbed1", "hold", "ekf", ""}).error, "");
+}
+
+TEST(Suite, AnUnknownMassIsABiasAndNoFailure) {
+  SuiteOptions options;
+  options.model_error.mass = 1.05;
+  Suite degraded(options);
+  const Score score = degraded.score({"wallmobot3", "free", "mo1", ""});
+  EXPECT_EQ(score.error, "");
+  // 5 % of link 5's weight, 85 N m on joint 3 at q = 0: what the extra weight does in the middle of the motion
+  WallMoBot3::Parameters p;
+  p.m5 *= 1.05;
+  const double weight =
+      (WallMoBot3(p).gravity(Vec<3>::Zero()) - WallMoBot3().gravity(Vec<3>::Zero()))
+          .cwiseAbs()
+          .maxCoeff();
+  EXPECT_NEAR(*score.get("bias_Nm"), weight, 0.02 * weight);
 }
 
 TEST(Suite, NoiseIsWhatTheSensorsAdd) {

@@ -12,7 +12,7 @@ TEST(LoadRobot, AnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(error_of([] { load_robot("wallmobot9"); }),
             "unknown robot 'wallmobot9'; known: testbed1, wallmobot3");
   EXPECT_EQ(error_of([] { load_robot("wallmobot3", "garden"); }),
-            "unknown scene 'garden'; known: load, obstacle");
+            "unknown scene 'garden'; known: load, obstacle, panel_obstacle");
 }
 
 TEST(LoadRobot, EveryKnownRobotLoads) {

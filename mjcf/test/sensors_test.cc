@@ -143,14 +143,84 @@ TEST(Loadcell, AnEncoderErrorReachesTauByTheGeometryToo) {
 }
 
 TEST(Loadcell, RefusesFaultsOutOfRangeByName) {
-  EXPECT_EQ(error_of([] { read({1}, {.full_scale = 0}); }),
-            "loadcell full_scale [N] must be positive");
+  EXPECT_NE(error_of([] { read({1}, {.full_scale = -1}); }).find("loadcell full_scale [N]"),
+            std::string::npos);
   EXPECT_NE(error_of([] { read({1}, {.hysteresis = 2}); }).find("loadcell hysteresis"),
             std::string::npos);
-  Trace without = under_forces(0, {1});
-  without.screws.clear();
-  EXPECT_NE(error_of([&] { measure(without, {.loadcell = {.noise = 1}}); }).find("has no screw"),
-            std::string::npos);
+}
+
+TEST(Loadcell, OfARobotWithoutScrewsIsATorqueSensorInEachJoint) {
+  Trace t = still(3);
+  t.tau.row(1).setConstant(1500);  // half of 3000 N m
+  const Trace m = measure(t, {.loadcell = {.scale = 1.02, .offset = -30, .nonlinearity = 0.005}});
+  EXPECT_DOUBLE_EQ(m.tau(1, 2), 1500 + 15);
+  const Trace biased = measure(t, {.loadcell = {.scale = 1.1, .offset = 3}});
+  EXPECT_DOUBLE_EQ(biased.tau(1, 0), 1653);
+  EXPECT_DOUBLE_EQ(biased.tau(0, 0), 3);
+}
+
+// q, qd and tau say which sample they are of
+Trace counting(int samples) {
+  Trace t = still(samples);
+  for (int k = 0; k < samples; ++k) {
+    t.q.col(k).setConstant(k);
+    t.qd.col(k).setConstant(k);
+    t.tau.col(k).setConstant(k);
+    t.tau_ext.col(k).setConstant(k);
+  }
+  return t;
+}
+
+TEST(Latency, ReadingsAreAsOldAsItSaysAndTauOlderStill) {
+  const Trace m = measure(counting(20), {.latency = 3e-3, .tau_latency = 2e-3});
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_EQ(m.q(0, k), std::max(0, k - 3));
+    EXPECT_EQ(m.qd(1, k), std::max(0, k - 3));
+    EXPECT_EQ(m.tau(2, k), std::max(0, k - 5));
+    EXPECT_EQ(m.tau_ext(0, k), k) << "the truth is not late";
+    EXPECT_EQ(m.t[k], k * 1e-3);
+  }
+}
+
+TEST(Jitter, MovesTimeStampsWithinItsRangeAndKeepsTheirOrder) {
+  const Trace t = counting(20000), m = measure(t, {.jitter = 0.9e-3});
+  double least = 1, most = -1;
+  for (int k = 0; k < t.size(); ++k) {
+    least = std::min(least, m.t[k] - t.t[k]);
+    most = std::max(most, m.t[k] - t.t[k]);
+    if (k > 0) ASSERT_GT(m.t[k], m.t[k - 1]);
+  }
+  EXPECT_GT(least, -0.9e-3);
+  EXPECT_LT(least, -0.85e-3);
+  EXPECT_GT(most, 0.85e-3);
+  EXPECT_EQ(m.q, t.q);
+}
+
+TEST(DroppedSamples, AreMissingWithTheirTruthAndAsManyAsStated) {
+  const Trace t = counting(20000), m = measure(t, {.dropped = 0.1});
+  EXPECT_NEAR(m.size(), 18000, 5 * std::sqrt(20000 * 0.1 * 0.9));
+  for (int k = 0; k < m.size(); ++k) {
+    ASSERT_EQ(m.q(0, k), m.tau_ext(0, k));
+    ASSERT_EQ(m.t[k], 1e-3 * m.q(0, k));
+  }
+}
+
+TEST(RepeatedSamples, RepeatTheValuesBeforeThemUnderANewTimeStamp) {
+  const Trace t = counting(20000), m = measure(t, {.repeated = 0.2});
+  int repeated = 0;
+  for (int k = 1; k < m.size(); ++k) {
+    ASSERT_EQ(m.t[k], t.t[k]);
+    if (m.q(0, k) == k) continue;
+    ASSERT_EQ(m.q(0, k), m.q(0, k - 1));
+    ASSERT_EQ(m.tau(0, k), m.tau(0, k - 1));
+    ++repeated;
+  }
+  EXPECT_NEAR(repeated, 4000, 5 * std::sqrt(20000 * 0.2 * 0.8));
+}
+
+TEST(Sensors, RefusesALinkThatLosesEverything) {
+  EXPECT_EQ(error_of([] { measure(still(2), {.dropped = 1}); }),
+            "dropped [1] must be 0 to 0.99, not 1");
 }
 
 }  // namespace

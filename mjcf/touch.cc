@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/touch.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "mjcf/random.h"
+#include "mjcf/scenario_lists.h"
+
+namespace tauext {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kPi = std::numbers::pi;
+constexpr double kFirstTouch =
+    4;  // [s] estimators have settled by then, with an unknown panel, too
+
+// 0 to 1 as x goes from 0 to 1
+double minimum_jerk(double x) {
+  return at(MinimumJerk{.begin = 0, .duration = 1, .from = 0, .to = 1}, x).q;
+}
+
+Touch draw(TouchKind kind, double begin, Random& random) {
+  Touch t{.kind = kind, .begin = begin};
+  double size = 0;
+  switch (kind) {
+    case TouchKind::kBlow:
+      size = random.uniform(100, 300);
+      t.rise = random.uniform(0.01, 0.05);
+      break;
+    case TouchKind::kSlowPush:
+      size = random.uniform(30, 80);
+      t.rise = random.uniform(0.8, 2);
+      t.hold = random.uniform(0, 1);
+      t.fall = random.uniform(0.8, 2);
+      break;
+    case TouchKind::kBriskPush:
+      size = 100;
+      t.rise = 0.1;
+      t.hold = random.uniform(0.2, 0.5);
+      t.fall = 0.3;
+      break;
+    case TouchKind::kClamp:
+      size = 200;
+      t.rise = random.uniform(0.5, 1);
+      t.hold = 2;
+      t.fall = 0.5;
+      break;
+  }
+  const double direction = random.uniform(0, 2 * kPi);
+  t.force = size * Vector3d(std::cos(direction), 0, std::sin(direction));
+  return t;
+}
+
+}  // namespace
+
+Vector3d Touch::operator()(double t) const {
+  if (!on(t)) return Vector3d::Zero();
+  const double since = t - begin;
+  if (kind == TouchKind::kBlow) return force * std::sin(kPi * since / rise);
+  const double way = since < rise ? since / rise : since < rise + hold ? 1 : (end() - t) / fall;
+  return force * (kind == TouchKind::kClamp ? way : minimum_jerk(way));
+}
+
+std::vector<Touch> draw_touches(TouchKind kind, std::uint64_t seed, double from, double until) {
+  Random random(seed, 1000 + static_cast<std::uint64_t>(kind));
+  const double pause = kind == TouchKind::kClamp ? 2 : 1;  // [s]
+  std::vector<Touch> all;
+  for (double t = from;;) {
+    const Touch next = draw(kind, t + random.uniform(0, 1), random);
+    t = next.end() + pause;
+    if (t > until) return all;
+    all.push_back(next);
+  }
+}
+
+Scenario with_touches(Scenario s, const std::vector<Touch>& touches) {
+  s.force = [=](double t, const Point&) -> Vector3d {
+    Vector3d sum = Vector3d::Zero();
+    for (const Touch& touch : touches) sum += touch(t);
+    return sum;
+  };
+  s.contact = [=](double t) {
+    for (const Touch& touch : touches) {
+      const bool counts = touch.kind == TouchKind::kBlow || touch.kind == TouchKind::kClamp;
+      if (counts && touch.on(t)) return true;
+    }
+    return false;
+  };
+  return s;
+}
+
+std::vector<Touch> touches_of_wallmobot3(TouchKind kind, std::uint64_t seed) {
+  return draw_touches(kind, seed, kFirstTouch, quiet().duration);
+}
+
+Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed) {
+  Random random(seed, 999);
+  const double amplitude = random.uniform(0.05, 0.1), w = random.uniform(0.5, 1);
+  Scenario s = quiet();
+  s.name = "touched";
+  s.description = "drawn touches of one kind";
+  s.response = Response::kDetection;
+  s.reference = [=](double t) { return sine_motion(amplitude, w, t); };
+  return with_touches(s, touches_of_wallmobot3(kind, seed));
+}
+
+}  // namespace tauext

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// How the outside touches an arm at its end effector: blows, pushes, clampings, one by one or drawn
+/// at random. The forces are prescribed, in the plane of x and z.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "mjcf/scenario.h"
+
+namespace tauext {
+
+/// What a touch is.
+enum class TouchKind : std::uint8_t {
+  kBlow,       ///< a half sine of 10 to 50 ms, 100 to 300 N: a collision
+  kSlowPush,   ///< a human's push: minimum jerk to 30 to 80 N in 0.8 to 2 s, held, and back
+  kBriskPush,  ///< a push on purpose that is as fast as some blows: 100 N in 0.1 s, held, and back
+  kClamp,      ///< something soft is caught: a straight line to 200 N in 0.5 to 1 s, held for 2 s
+};
+
+/// One touch.
+struct Touch {
+  TouchKind kind = TouchKind::kBlow;
+  double begin = 0;                                 ///< [s]
+  double rise = 0.02;                               ///< [s] of a blow: all of it
+  double hold = 0;                                  ///< [s]
+  double fall = 0;                                  ///< [s]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] at its largest, on the arm, world frame
+
+  double end() const { return begin + rise + hold + fall; }
+  bool on(double t) const { return t >= begin && t < end(); }
+  /// [N] at time t.
+  Eigen::Vector3d operator()(double t) const;
+};
+
+/// Touches of one kind, one after the other, at random times, directions and sizes within the ranges
+/// of TouchKind, all between `from` and `until` [s]; 1 to 2 s apart, clampings 2 to 3 s.
+std::vector<Touch> draw_touches(TouchKind kind, std::uint64_t seed, double from, double until);
+
+/// The scenario with these forces on its end effector. `contact` says where a blow or a clamping acts.
+Scenario with_touches(Scenario scenario, const std::vector<Touch>& touches);
+
+/// A run of wallmobot3 for studies: q_ref of 0.05 to 0.1 rad and 0.5 to 1 rad/s as the seed draws them,
+/// 30 s, with touches of one kind from 4 s on. The panel and the rest of the robot are the model's.
+Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed);
+
+/// The touches in that run.
+std::vector<Touch> touches_of_wallmobot3(TouchKind kind, std::uint64_t seed);
+
+}  // namespace tauext
