@@ -221,4 +221,27 @@ double peak(const std::vector<double>& force) {
   return force.empty() ? 0 : *std::max_element(force.begin(), force.end());
 }
 
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return kNaN;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];
+}
+
+double poisson_upper(int count) {
+  // P(at most `count`) falls with the mean
+  const auto probability = [&](double mean) {
+    double sum = 0;
+    for (int k = 0; k <= count; ++k)
+      sum += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
+    return sum;
+  };
+  double least = count + 1e-9, most = count + 10 + 5 * std::sqrt(count + 1.);
+  for (int i = 0; i < 60; ++i) {
+    const double mean = (least + most) / 2;
+    (probability(mean) > 0.05 ? least : most) = mean;
+  }
+  return least;
+}
+
 }  // namespace tauext

@@ -73,4 +73,11 @@ double overtravel(const Trace& trace);
 /// [N] the largest force of a contact; 0 without a sample.
 double peak(const std::vector<double>& force);
 
+/// Smallest of the values that at least `share` of them do not exceed; NaN without a value.
+double quantile(std::vector<double> values, double share);
+
+/// The rate that can be excluded at 95 % if `count` events were seen: with a mean of poisson_upper(count)
+/// so few or fewer are seen in 5 % of all trials (Garwood 1936). 3.0 for none.
+double poisson_upper(int count);
+
 }  // namespace tauext

@@ -20,14 +20,6 @@ Trace run_of(const Scenario& s, Sensors sensors, std::uint64_t seed) {
   return record(load_for(kRobot, s), s, sensors);
 }
 
-// smallest of the values that at least `share` of them do not exceed; NaN without one
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];
-}
-
 std::string milliseconds(double s) {
   return std::isnan(s) ? "-" : fmt::format("{:.0f}", 1e3 * s);
 }

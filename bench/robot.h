@@ -7,28 +7,60 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bench/stages.h"
+#include "bench/thresholds.h"
 #include "mjcf/record.h"
 
 namespace tauext {
 
-/// A robot with the estimators and detectors that run on it.
-struct Robot {
+/// How the detectors behind an estimator are set.
+struct DetectorSettings {
+  DetectorThresholds thresholds;  ///< of those that are in it; the others keep their defaults
+  double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
+};
+
+/// A robot with the estimators and detectors that run on it. Every call throws std::invalid_argument
+/// for an unknown name, listing the known ones, and for a trace of another number of joints.
+class Robot {
+ public:
   std::string name;
   int dof = 0;
   std::vector<std::string> estimators;
+  std::vector<std::string> tunable;  ///< estimators that can be set to a bandwidth
   std::vector<std::string> detectors;
+  std::vector<std::string> calibratable;  ///< detectors with thresholds of their own, from data
+
   /// Binds an estimator, and a detector unless it is "", to a trace's samples.
-  /// @throws std::invalid_argument for an unknown name, listing the known ones; for a trace of
-  /// another number of joints; for an estimator that needs a truth which the trace does not have
-  std::function<std::unique_ptr<Runner>(std::string_view estimator, std::string_view detector,
-                                        const Trace& trace)>
-      runner;
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
+                                 const Trace& trace, const DetectorSettings& settings = {}) const;
+
+  /// A tunable estimator at bandwidth w [rad/s] of its own formula.
+  std::unique_ptr<Runner> tuned(std::string_view estimator, double w, const Trace& trace) const;
+
   /// The pair as the one who stops the motor: at the first mark. It never sees a truth.
-  /// @throws std::invalid_argument for an unknown name, or an estimator that copies the truth
-  std::function<Supervisor(std::string_view estimator, std::string_view detector)> supervisor;
+  /// @throws std::invalid_argument for an estimator that copies the truth
+  Supervisor supervisor(std::string_view estimator, std::string_view detector,
+                        const DetectorSettings& settings = {}) const;
+
+  /// What a detector says of estimates that an estimator made of the trace, sample by sample.
+  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                const Output& estimates, const DetectorSettings& settings) const;
+
+  /// The largest statistic of a calibratable detector, joint by joint, over samples with t >= from [s].
+  Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
+                                    const Output& estimates, const DetectorSettings& settings,
+                                    double from) const;
+
+  /// The power of tau_ext that a calibratable detector's statistic grows with.
+  int degree(std::string_view detector) const;
+
+  /// The same behind the degrees of freedom, which are compile-time; bench/robot.cc.
+  struct Stages;
+  std::shared_ptr<const Stages> stages;
 };
 
 /// Every robot of bench/roster.h.
@@ -37,6 +69,9 @@ const std::vector<Robot>& robots();
 /// The robot of that name.
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Robot& robot(std::string_view name);
+
+/// wallmobot3 whose estimators believe in a panel of so many kg; 150 is what robot("wallmobot3") believes.
+Robot wallmobot3_believing(double panel);
 
 /// Whether the estimator is one of bench/baselines.h, which stand outside the competition.
 bool is_baseline(std::string_view estimator);

@@ -32,6 +32,8 @@ class DetectorStage {
   virtual void reset() = 0;
   virtual void run(std::span<const Measurement<N>> at, std::span<const Estimate<N>> in,
                    std::span<Detection> out) = 0;
+  /// Of the last sample; zero for a detector that cannot be calibrated.
+  virtual Vec<N> statistic() const = 0;
 };
 
 template <TorqueEstimator E>
@@ -55,6 +57,13 @@ class DetectorStageOf final : public DetectorStage<D::kDof> {
   void run(std::span<const Measurement<D::kDof>> at, std::span<const Estimate<D::kDof>> in,
            std::span<Detection> out) override {
     for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k].tau_ext);
+  }
+  Vec<D::kDof> statistic() const override {
+    if constexpr (CalibratableDetector<D>) {
+      return d_.statistic();
+    } else {
+      return Vec<D::kDof>::Zero();
+    }
   }
 
  private:

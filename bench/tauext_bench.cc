@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/bandwidth_study.h"
 #include "bench/cli.h"
 #include "bench/degradation.h"
 #include "bench/reliability.h"
@@ -92,13 +93,25 @@ std::string build_line(const Suite& suite) {
 
 struct Flags {
   SuiteOptions suite;
-  bool list = false, list_tests = false, paper = false, reliability = false;
+  bool list = false, list_tests = false, paper = false, reliability = false, pareto = false;
+  std::optional<double> equal_bandwidth;  // [rad/s]
   std::optional<std::string> out, format;
+
+  // what runs instead of the suite
+  bool study() const { return reliability || pareto || equal_bandwidth; }
 };
 
+// the share that is done, on a terminal; nothing elsewhere
+std::function<void(double)> share_done() {
+  if (::isatty(STDERR_FILENO) != 1) return nullptr;
+  return [](double share) {
+    fmt::print(stderr, "\r\033[K");
+    if (share < 1) fmt::print(stderr, "{:.0f} %", 100 * share);
+  };
+}
+
 // at the noise that was asked for, or at a good and at a poor encoder's
-int run_reliability(const Sensors& sensors) {
-  const bool show = ::isatty(STDERR_FILENO) == 1;
+void run_reliability(const Sensors& sensors) {
   std::vector<Trials> all(sensors.ideal() ? 2 : 1);
   for (Trials& trials : all) trials.sensors = sensors;
   if (sensors.ideal()) {
@@ -106,24 +119,35 @@ int run_reliability(const Sensors& sensors) {
     all[1].sensors.velocity_noise = 1e-3;
   }
   for (const Trials& trials : all) {
-    const auto rows = reliability(trials, [&](double share) {
-      if (show) fmt::print(stderr, "\r\033[K{:.0f} %", 100 * share);
-    });
-    if (show) fmt::print(stderr, "\r\033[K");
-    fmt::print("{}\n", format_reliability(trials, rows));
+    fmt::print("{}\n", format_reliability(trials, reliability(trials, share_done())));
   }
+}
+
+int run_study(const Flags& f) {
+  const SuiteOptions& o = f.suite;
+  const bool degraded = !o.sensors.ideal() || !o.model_error.none();
+  if (degraded && !f.reliability) {
+    throw std::invalid_argument(
+        "--equal-bandwidth and --pareto bring their own sensors and errors");
+  }
+  if (f.reliability) run_reliability(o.sensors);
+  if (f.equal_bandwidth) {
+    const auto rows = at_equal_bandwidth(*f.equal_bandwidth, 0, share_done());
+    fmt::print("{}", format_equal_bandwidth(*f.equal_bandwidth, rows));
+  }
+  if (f.pareto) fmt::print("{}", format_pareto(pareto(0, share_done())));
   return kGood;
 }
 
 int run(const Flags& flags) {
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
-  if (flags.reliability && (flags.out || flags.list || !all)) {
+  if (flags.study() && (flags.out || flags.list || !all)) {
     throw std::invalid_argument(
-        "--reliability runs instead of the suite: no --benchmark_filter, --benchmark_out or "
-        "--list");
+        "--reliability, --equal-bandwidth and --pareto run instead of the suite: no "
+        "--benchmark_filter, --benchmark_out or --list");
   }
-  if (flags.reliability) return run_reliability(flags.suite.sensors);
+  if (flags.study()) return run_study(flags);
   if (flags.list) {
     for (const Entry& e : entries()) fmt::print("{}\n", e.name());
     return kGood;
@@ -188,6 +212,10 @@ int main(int argc, char** argv) {
                "print Table III of the paper beside ours, too, after wallmobot3/step");
   app.add_flag("--reliability", flags.reliability,
                "instead: 200 blows and an hour of a human's hand, on testbed1");
+  app.add_option("--equal-bandwidth", flags.equal_bandwidth,
+                 "instead: every estimator at so many rad/s, 1 to 200")
+      ->type_name("W");
+  app.add_flag("--pareto", flags.pareto, "instead: noise against delay at every bandwidth");
   app.add_option("--noise_probe", flags.suite.noise_probe,
                  "velocity noise [rad/s] behind the column noise, for ideal sensors")
       ->capture_default_str();

@@ -207,5 +207,20 @@ TEST(Bandwidth, DoesNotExistWhereNothingFallsOrNothingIsSwept) {
   EXPECT_TRUE(std::isnan(bandwidth(uneven, s.truth, s.estimate)));
 }
 
+TEST(PoissonUpper, IsThatOfTheTables) {
+  // Garwood's limits: half the 95 % quantile of chi squared with 2 (n + 1) degrees of freedom
+  EXPECT_NEAR(poisson_upper(0), -std::log(0.05), 1e-6);
+  EXPECT_NEAR(poisson_upper(1), 4.744, 1e-3);
+  EXPECT_NEAR(poisson_upper(10), 16.962, 1e-3);
+  EXPECT_NEAR(poisson_upper(100), 118.08, 0.01);
+}
+
+TEST(Quantile, IsTheSmallestThatEnoughDoNotExceed) {
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.5), 2);
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.95), 4);
+  EXPECT_EQ(quantile({7}, 0), 7);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
 }  // namespace
 }  // namespace tauext::test

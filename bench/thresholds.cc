@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/thresholds.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/robot.h"
+#include "mjcf/atomic_file.h"
+
+namespace tauext {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "tauext-thresholds-1";
+
+Json to_json(const Eigen::VectorXd& v) {
+  return std::vector<double>(v.begin(), v.end());
+}
+
+void require_known(const std::vector<std::string>& known, const char* what,
+                   const std::string& name) {
+  if (std::count(known.begin(), known.end(), name) > 0) return;
+  throw std::runtime_error(
+      fmt::format("unknown {} '{}'; known: {}", what, name, fmt::join(known, ", ")));
+}
+
+Eigen::VectorXd vector_of(const Json& j, int dof, const std::string& where) {
+  const auto values = j.get<std::vector<double>>();
+  if (static_cast<int>(values.size()) != dof) {
+    throw std::runtime_error(
+        fmt::format("{}: {} thresholds for {} joints", where, values.size(), dof));
+  }
+  for (const double x : values) {
+    if (!(x > 0)) throw std::runtime_error(fmt::format("{}: {} is not positive", where, x));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), dof);
+}
+
+ThresholdSet set_of(const Json& j) {
+  ThresholdSet set;
+  set.robot = j.at("robot").get<std::string>();
+  set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
+  const Robot& r = robot(set.robot);
+  for (const auto& [estimator, detectors] : j.at("thresholds").items()) {
+    require_known(r.estimators, "estimator", estimator);
+    for (const auto& [detector, values] : detectors.items()) {
+      require_known(r.detectors, "detector", detector);
+      set.by_estimator[estimator][detector] =
+          vector_of(values, r.dof, fmt::format("{}/{}+{}", set.robot, estimator, detector));
+    }
+  }
+  return set;
+}
+
+}  // namespace
+
+ThresholdSet Thresholds::of(const std::string& robot, double velocity_noise) const {
+  const ThresholdSet* best = nullptr;
+  for (const ThresholdSet& s : sets) {
+    if (s.robot != robot) continue;
+    const bool enough = s.velocity_noise >= velocity_noise;
+    const bool had_enough = best != nullptr && best->velocity_noise >= velocity_noise;
+    const bool better =
+        best == nullptr || (enough && !had_enough) ||
+        (enough == had_enough && (s.velocity_noise < best->velocity_noise) == enough);
+    if (better) best = &s;
+  }
+  return best == nullptr ? ThresholdSet{.robot = robot} : *best;
+}
+
+void write_thresholds(const Thresholds& t, const std::string& path) {
+  Json j;
+  j["format"] = kFormat;
+  j["trained_on"] = t.trained_on;
+  j["margin"] = t.margin;
+  j["units"] = "each detector's statistic, see estimators/detectors/; one value per joint";
+  j["sets"] = Json::array();
+  for (const ThresholdSet& s : t.sets) {
+    Json set;
+    set["robot"] = s.robot;
+    set["velocity_noise_rad_s"] = s.velocity_noise;
+    for (const auto& [estimator, detectors] : s.by_estimator) {
+      for (const auto& [detector, values] : detectors) {
+        set["thresholds"][estimator][detector] = to_json(values);
+      }
+    }
+    j["sets"].push_back(set);
+  }
+  AtomicFile file(path);
+  file.write(j.dump(2) + "\n");
+  file.commit();
+}
+
+Thresholds read_thresholds(const std::string& path) {
+  try {
+    std::ifstream in(path);
+    if (!in) throw std::runtime_error("cannot open");
+    const Json j = Json::parse(in);
+    if (j.at("format") != kFormat) {
+      throw std::runtime_error(
+          fmt::format("\"format\" is {}, not \"{}\"; write it with "
+                      "tauext-detect --calibrate",
+                      j.at("format").dump(), kFormat));
+    }
+    Thresholds t;
+    t.trained_on = j.at("trained_on").get<std::string>();
+    t.margin = j.at("margin").get<double>();
+    for (const Json& set : j.at("sets")) t.sets.push_back(set_of(set));
+    return t;
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+  }
+}
+
+}  // namespace tauext
