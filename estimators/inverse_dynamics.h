@@ -27,6 +27,9 @@ class InverseDynamics {
     double bandwidth =
         30;  ///< [rad/s] of the filter: larger is faster and noisier (ours; (4) has none)
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
+
+    /// Bandwidth w [rad/s] on every joint, in every pose.
+    static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
@@ -50,7 +53,8 @@ class InverseDynamics {
       const Vec<kDof> qdd = (y.qd - qd_) / h;
       const Vec<kDof> raw =
           tau_ - 0.5 * ((now.B + before_.B) * qdd + now.bias + before_.bias);  // (4)
-      tau_ext_ += -std::expm1(-p_.bandwidth * h) * (raw - tau_ext_);
+      if (new_step_(h)) share_ = -std::expm1(-p_.bandwidth * h);
+      tau_ext_ += share_ * (raw - tau_ext_);
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
         status = Status::kDiverged;
@@ -66,6 +70,8 @@ class InverseDynamics {
   M model_;
   Parameters p_;
   Sampling sampling_;
+  StepChange new_step_;
+  double share_ = 0;                       // [1] 1 - a
   Dynamics<kDof> before_;                  // at the last used sample, bias with friction
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
   Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there

@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-#include "estimators/concepts.h"
+#include "estimators/momentum.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
@@ -34,13 +34,13 @@ class MomentumObserver {
     Vec<kDof> K = Vec<kDof>::Constant(30);
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
-    /// Bandwidth w [rad/s] on every joint.
-    static Parameters for_bandwidth(double w) { return {.K = Vec<kDof>::Constant(w)}; }
+    /// Bandwidth w [rad/s] on every joint, in every pose.
+    static Parameters for_bandwidth(const M&, double w) { return {.K = Vec<kDof>::Constant(w)}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit MomentumObserver(const M& model, const Parameters& p = {})
-      : model_(model), p_(p), sampling_(p.max_gap) {
+      : p_(p), sampling_(p.max_gap), momentum_(model) {
     require(p.K.minCoeff() > 0, "the bandwidth K [rad/s] of mo1 must be positive");
   }
 
@@ -52,32 +52,26 @@ class MomentumObserver {
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
     if (status == Status::kBadMeasurement) return {tau_ext_, status};
-    const Vec<kDof> p = model_.inertia(y.q) * y.qd;  // (i)
-    const Vec<kDof> n = model_.momentum_bias(y.q, y.qd) - model_.friction(y.qd);
+    const MomentumStep<kDof> step = momentum_.advance(y);
     if (status == Status::kOk) {
       const double h = sampling_.h();
-      const Vec<kDof> follows = tau_ + 0.5 * (n + n_) - (p - p_before_) / h;
-      const Vec<kDof> share = (-h * p_.K).unaryExpr([](double x) { return -std::expm1(x); });
-      tau_ext_ += share.cwiseProduct(follows - tau_ext_);  // (ii)
+      if (new_step_(h)) share_ = (-h * p_.K).unaryExpr([](double x) { return -std::expm1(x); });
+      tau_ext_ += share_.cwiseProduct(step.n - step.dp / h - tau_ext_);  // (ii)
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
         status = Status::kDiverged;
       }
     }
-    p_before_ = p;
-    n_ = n;
-    tau_ = y.tau;
     return {tau_ext_, status};
   }
 
  private:
-  M model_;
   Parameters p_;
   Sampling sampling_;
-  Vec<kDof> p_before_ = Vec<kDof>::Zero();  // [N m s] at the last used sample
-  Vec<kDof> n_ = Vec<kDof>::Zero();         // [N m] of (i) without tau there
-  Vec<kDof> tau_ = Vec<kDof>::Zero();       // [N m] there
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();   // [N m] the last estimate
+  Momentum<M> momentum_;
+  StepChange new_step_;
+  Vec<kDof> share_ = Vec<kDof>::Zero();    // [1] 1 - a of (ii)
+  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

@@ -65,6 +65,26 @@ class Sampling {
   bool started_ = false;
 };
 
+/// Whether a step [s] needs anew what was made for the last one. Time stamps on a grid differ in
+/// their last bits, so steps alike to 1e-9 count as one.
+class StepChange {
+ public:
+  bool operator()(double h) noexcept {
+    if (std::abs(h - h_) <= 1e-9 * h_) return false;
+    h_ = h;
+    return true;
+  }
+
+ private:
+  double h_ = 0;
+};
+
+/// How a nonlinear model is stepped from k-1 to k.
+enum class Integration : std::uint8_t {
+  kSecondOrder,  ///< an error of h^2: the mean of both ends, or the Taylor terms of h^2
+  kEuler,  ///< from the values at k-1 alone, as the paper prints: in motion an error of h/2 B qddd
+};
+
 /// What an observer assumes before its first sample.
 enum class Start : std::uint8_t {
   kFirstMeasurement,  ///< the arm moves as first measured and nothing touches it

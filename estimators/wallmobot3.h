@@ -70,8 +70,12 @@ class BasicWallMoBot3 {
 
   const Parameters& parameters() const noexcept { return p_; }
 
+  // inertia and momentum_bias are inlined so that a momentum observer takes the sines once for both
+
   /// B(q) [kg m^2].
-  Mat3 inertia(const Vec3& q) const noexcept { return to_joints(coupling(q)); }
+  [[gnu::always_inline]] Mat3 inertia(const Vec3& q) const noexcept {
+    return to_joints(coupling(q));
+  }
 
   /// g(q) [N m].
   Vec3 gravity(const Vec3& q) const noexcept { return to_joints(gravity(coupling(q))); }
@@ -96,7 +100,7 @@ class BasicWallMoBot3 {
   }
 
   /// C^T qd - g [N m].
-  Vec3 momentum_bias(const Vec3& q, const Vec3& qd) const noexcept {
+  [[gnu::always_inline]] Vec3 momentum_bias(const Vec3& q, const Vec3& qd) const noexcept {
     const Coupling c = coupling(q);
     const Vec3 wd = to_links(qd);
     const Scalar p24 = c.d24 * wd[0] * wd[1];

@@ -21,7 +21,7 @@ Vec<3> step(double t) {
 
 TEST(Mo1, Reaches90PercentOfAStepAfterLn10OverK) {
   for (const double K : {5., 30., 100.}) {
-    ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(K));
+    ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), K));
     Vec<3> reached = Vec<3>::Constant(-1);
     for (const auto& y : simulate(grid(2, 0.25e-3), step)) {
       const Vec<3> d = mo1.update(y).tau_ext;
@@ -38,7 +38,7 @@ TEST(Mo1, Reaches90PercentOfAStepAfterLn10OverK) {
 
 TEST(Mo1, FollowsARampASlopeOverKBehind) {
   constexpr double kSlope = 20;  // [N m/s]
-  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(30));
+  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 30));
   Vec<3> behind = Vec<3>::Zero();
   const auto ramp = [](double t) -> Vec<3> { return Vec<3>::Constant(kSlope * t); };
   for (const auto& y : simulate(grid(3, 1e-3), ramp)) behind = ramp(y.t) - mo1.update(y).tau_ext;
@@ -48,7 +48,7 @@ TEST(Mo1, FollowsARampASlopeOverKBehind) {
 }
 
 TEST(Mo1, AtEqualBandwidthIsFilteredInverseDynamics) {
-  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(30));
+  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 30));
   InverseDynamics<WallMoBot3> other(WallMoBot3(), {.bandwidth = 30});
   double worst = 0;
   for (const auto& y : simulate(grid(3, 1e-3), step, {.amplitude = 0.3, .w = 2})) {
@@ -68,7 +68,7 @@ TEST(Mo1, StartedInMotionItIsRightFromTheFirstSample) {
 }
 
 TEST(Mo1, IsStableForEveryStepOfItsBandwidth) {
-  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(1e6));
+  ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 1e6));
   double worst = 0;
   for (const auto& y : simulate(grid(3, 1e-3), step)) {
     const Vec<3> d = mo1.update(y).tau_ext;
@@ -78,7 +78,8 @@ TEST(Mo1, IsStableForEveryStepOfItsBandwidth) {
 }
 
 TEST(Mo1, RefusesABandwidthOfZero) {
-  EXPECT_THROW(ArmMo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(0)), std::invalid_argument);
+  EXPECT_THROW(ArmMo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 0)),
+               std::invalid_argument);
 }
 
 }  // namespace

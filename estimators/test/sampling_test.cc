@@ -60,6 +60,15 @@ TEST(Sampling, RefusesWhatNoSensorSays) {
   }
 }
 
+TEST(StepChange, TakesTheLastBitsOfTimeStampsForNoChange) {
+  StepChange changed;
+  int changes = 0;
+  for (int k = 1; k < 100000; ++k) changes += changed(k * 1e-3 - (k - 1) * 1e-3);
+  EXPECT_EQ(changes, 1);
+  EXPECT_TRUE(changed(1.00001e-3));
+  EXPECT_FALSE(changed(1.00001e-3));
+}
+
 TEST(Parameters, OutOfRangeAreRefusedWhenAnEstimatorIsBuilt) {
   const WallMoBot3 arm;
   using ArmEkf = Ekf<WallMoBot3>;

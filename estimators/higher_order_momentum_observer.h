@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Momentum observers of second and third order: Ruggiero, Cacace, Sadeghian and Lippiello,
+/// "Passivity-based control of VTOL UAVs with a momentum-based estimator of external wrench and
+/// unmodeled dynamics", Robotics and Autonomous Systems 2015, where every joint's estimate is an
+/// all-pole low-pass of tau_ext with unit gain. The gains here are Butterworth's, from one bandwidth w
+/// (-3 dB at w):
+///     mo2:                    d'' / w^2 + sqrt2 d' / w + d = u
+///     mo3:  d''' / w^3 + 2 d'' / w^2   +   2 d' / w   + d = u,   u = n - pdot                (i)
+/// with p and n of momentum.h. Noise beyond w falls with w^-2 (w^-3), a ramp is followed slope sqrt2 / w
+/// (slope 2 / w) behind; a step overshoots by 4 % (8 %).
+///
+/// Discretised exactly for u constant over [t_k-1, t_k), where it is n - (p_k - p_k-1) / h, so stable for
+/// every w h. With x = (d, d'/w, d''/w^2) and a = w h, A the companion matrix of (i), and g the impulse
+/// response of (i) in normalised time,
+///     x_k = u e_1 + Phi (x_k-1 - u e_1),   Phi = exp(A a)                                  (ii)
+///     mo2: Phi = g'(a) I + g(a) (A + sqrt2 I)
+///     mo3: Phi = g''(a) I + g'(a) (A + 2 I) + g(a) (A^2 + 2 A + 2 I)                       (iii)
+#pragma once
+
+#include <cmath>
+
+#include "estimators/momentum.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Momentum observer of the given order over a robot model M.
+template <RobotModel M, int Order>
+requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
+ public:
+  static constexpr const char* kName = Order == 2 ? "mo2" : "mo3";
+  static constexpr int kDof = M::kDof;
+
+  struct Parameters {
+    double bandwidth = 30;  ///< [rad/s] -3 dB, positive: larger is faster and noisier
+    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+
+    /// Bandwidth w [rad/s] on every joint, in every pose.
+    static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit HigherOrderMomentumObserver(const M& model, const Parameters& p = {})
+      : p_(p), sampling_(p.max_gap), momentum_(model) {
+    require(p.bandwidth > 0, "the bandwidth [rad/s] of mo2 and mo3 must be positive");
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    x_.setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return {x_.col(0), status};
+    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (status == Status::kStarted) {
+      x_.template rightCols<Order - 1>().setZero();
+      return {x_.col(0), status};
+    }
+    const double h = sampling_.h();
+    if (new_step_(h)) Phi_ = transition(p_.bandwidth * h);
+    const Vec<kDof> u = step.n - step.dp / h;
+    x_.col(0) -= u;
+    x_ = (x_ * Phi_.transpose()).eval();  // (ii), a joint a row
+    x_.col(0) += u;
+    if (!within(x_, kEstimateLimit)) {
+      x_.setZero();
+      status = Status::kDiverged;
+    }
+    return {x_.col(0), status};
+  }
+
+ private:
+  // (iii)
+  static Mat<Order> transition(double a) noexcept {
+    const Mat<Order> I = Mat<Order>::Identity();
+    Mat<Order> A;
+    if constexpr (Order == 2) {
+      constexpr double kRoot2 = 1.4142135623730951;
+      A << 0, 1, -1, -kRoot2;
+      const double e = std::exp(-a / kRoot2), c = std::cos(a / kRoot2), s = std::sin(a / kRoot2);
+      return e * (c - s) * I + kRoot2 * e * s * (A + kRoot2 * I);
+    } else {
+      // partial fractions of 1 / ((s + 1) (s^2 + s + 1)), whose roots are -1 and -1/2 +- i root
+      constexpr double kRoot = 0.8660254037844386;
+      A << 0, 1, 0, 0, 0, 1, -1, -2, -2;
+      const double e1 = std::exp(-a), e2 = std::exp(-a / 2);
+      const double c = e2 * std::cos(kRoot * a), s = e2 * std::sin(kRoot * a) / (2 * kRoot);
+      return (e1 - 2 * s) * I + (c + s - e1) * (A + 2 * I) + (e1 - c + s) * (A * A + 2 * A + 2 * I);
+    }
+  }
+
+  Parameters p_;
+  Sampling sampling_;
+  Momentum<M> momentum_;
+  StepChange new_step_;
+  Mat<Order> Phi_ = Mat<Order>::Identity();
+  Eigen::Matrix<double, kDof, Order> x_ = x_.Zero();  // [N m] d, d'/w, d''/w^2; row: joint
+};
+
+template <RobotModel M>
+using MomentumObserver2 = HigherOrderMomentumObserver<M, 2>;
+template <RobotModel M>
+using MomentumObserver3 = HigherOrderMomentumObserver<M, 3>;
+
+}  // namespace tauext
