@@ -182,7 +182,7 @@ std::vector<ParetoPoint> pareto(int threads, const std::function<void(double)>& 
   std::vector<ParetoPoint> points;
   const Robot& r = robot(kRobot);
   for (const std::string& e : r.tunable) {
-    for (const double w : {3., 6., 12., 25., 50., 100., 200.}) points.push_back({e, w});
+    for (const double w : {3., 6., 12., 25., 50., 100., 200., 400.}) points.push_back({e, w});
   }
   for (const std::string& e : r.estimators) {
     if (!is_baseline(e)) points.push_back({e, 0});

@@ -25,6 +25,7 @@ constexpr double kWindow = 0.2;      // [s] after a blow in which a mark still b
 constexpr double kRefractory = 0.2;  // [s] between two crossings of a level
 constexpr double kTrainingPanels[] = {0, 50, 150};  // [kg]
 constexpr int kTrainingRuns = 20;                   // for each of them
+constexpr double kFloor = 0.05;  // of a default threshold: no calibrated one is lower
 
 Degradation noise(double velocity_noise) {
   Degradation d;
@@ -198,6 +199,11 @@ void count(const Job& job, const Trace& t, const std::vector<Detection>& d,
     case TouchKind::kClamp:
       return count_clampings(t, d, touches, cell);
   }
+}
+
+// thresholds that nothing reaches, so that nothing saturates at them
+DetectorSettings out_of_reach(const std::string& detector, int dof) {
+  return {{{detector, Eigen::VectorXd::Constant(dof, 1e12)}}, kStartUp};
 }
 
 // what one run adds to a cell
@@ -394,7 +400,7 @@ Thresholds calibrate(double margin, int threads, const std::function<void(double
         const Output estimates = r.runner(e, "", t)->run();
         for (const std::string& d : detectors) {
           const Eigen::VectorXd largest =
-              r.largest_statistic(d, t, estimates, {.start_up = kStartUp}, kScoreFrom);
+              r.largest_statistic(d, t, estimates, out_of_reach(d, r.dof), kScoreFrom);
           const std::lock_guard lock(mutex);
           Eigen::VectorXd& kept = set.by_estimator[e][d];
           kept = kept.size() == 0 ? largest : Eigen::VectorXd(kept.cwiseMax(largest));
@@ -406,7 +412,9 @@ Thresholds calibrate(double margin, int threads, const std::function<void(double
   for (ThresholdSet& set : result.sets) {
     for (auto& [estimator, by_detector] : set.by_estimator) {
       for (auto& [detector, threshold] : by_detector) {
-        threshold *= std::pow(margin, robot(kRobot).degree(detector));
+        const Calibration& c = robot(kRobot).calibration(detector);
+        // a statistic that training leaves at 0, like a sum below its drift, would have no threshold
+        threshold = (threshold * std::pow(margin, c.degree)).cwiseMax(kFloor * c.threshold);
       }
     }
   }

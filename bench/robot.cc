@@ -6,214 +6,29 @@
 
 #include <stdexcept>
 
-#include "bench/roster.h"
+#include "bench/registry.h"
+#include "bench/robot_of.h"
 
 namespace tauext {
 namespace {
 
-template <class List>
-const auto& find(const List& list, const char* what, std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [key, make] : list) {
-    if (key == name) return make;
-    known.push_back(key);
-  }
-  throw std::invalid_argument(
-      fmt::format("unknown {} '{}'; known: {}", what, name, fmt::join(known, ", ")));
+std::vector<std::function<Robot()>>& registered_robots() {
+  static std::vector<std::function<Robot()>> all;
+  return all;
 }
 
-template <class List>
-std::vector<std::string> names_of(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& entry : list) names.push_back(entry.first);
-  return names;
-}
-
-// sets the thresholds of Parameters p that are known
-template <class P>
-void set_threshold(P& p, const char* name, const DetectorThresholds& known) {
-  const auto it = known.find(name);
-  if (it != known.end()) p.threshold = it->second;
-}
-
-template <class D>
-D make_detector(const DetectorSettings& settings) {
-  constexpr int N = D::kDof;
-  if constexpr (requires { typename D::Parameters; }) {
-    typename D::Parameters p;
-    if constexpr (requires { p.collision.threshold, p.clamping.threshold; }) {
-      set_threshold(p.collision, PanTompkins<N>::kName, settings.thresholds);
-      set_threshold(p.clamping, "clamping", settings.thresholds);
-      p.collision.start_up = p.clamping.start_up = settings.start_up;
-    } else {
-      if constexpr (requires { p.threshold; }) set_threshold(p, D::kName, settings.thresholds);
-      if constexpr (requires { p.start_up; }) p.start_up = settings.start_up;
-    }
-    return D(p);
-  } else {
-    return D();
-  }
-}
+bool in_use = false;  // whether the list of robots has been made
 
 }  // namespace
 
-// one robot's factories, for its N joints
-struct Robot::Stages {
-  virtual ~Stages() = default;
-  virtual std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
-                                         const Trace& trace, const DetectorSettings& s) const = 0;
-  virtual std::unique_ptr<Runner> tuned(std::string_view estimator, double w,
-                                        const Trace& trace) const = 0;
-  virtual Supervisor supervisor(std::string_view estimator, std::string_view detector,
-                                const DetectorSettings& s) const = 0;
-  virtual std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                        const Output& estimates,
-                                        const DetectorSettings& s) const = 0;
-  virtual Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
-                                            const Output& estimates, const DetectorSettings& s,
-                                            double from) const = 0;
-  virtual int degree(std::string_view detector) const = 0;
-};
-
-namespace {
-
-template <class Make>
-using Named = std::vector<std::pair<std::string, Make>>;
-
-template <int N>
-struct StagesOf final : Robot::Stages {
-  using EstimatorPtr = std::unique_ptr<EstimatorStage<N>>;
-  using DetectorPtr = std::unique_ptr<DetectorStage<N>>;
-
-  std::string robot;
-  Named<std::function<EstimatorPtr(const Trace&)>> estimators;
-  Named<std::function<EstimatorPtr(double)>> tunable;
-  Named<std::function<DetectorPtr(const DetectorSettings&)>> detectors;
-  Named<int> calibratable;  // with their degrees
-
-  template <RobotModel M>
-  StagesOf(const char* name, const M& model) : robot(name) {
-    for_each_estimator(model, [&](auto make) {
-      using E = decltype(make(std::declval<const Trace&>()));
-      using Stage = EstimatorStageOf<E>;
-      estimators.emplace_back(
-          E::kName, [make](const Trace& trace) { return std::make_unique<Stage>(make(trace)); });
-      if constexpr (requires { E(model, E::Parameters::for_bandwidth(model, 1.)); }) {
-        tunable.emplace_back(E::kName, [model](double w) {
-          return std::make_unique<Stage>(E(model, E::Parameters::for_bandwidth(model, w)));
-        });
-      }
-    });
-    for_each_detector<N>([&](auto make) {
-      using D = decltype(make());
-      detectors.emplace_back(D::kName, [](const DetectorSettings& s) {
-        return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s));
-      });
-      if constexpr (CalibratableDetector<D>) calibratable.emplace_back(D::kName, D::kDegree);
-    });
-  }
-
-  void check(const Trace& trace) const {
-    if (trace.dof() == N) return;
-    throw std::invalid_argument(
-        fmt::format("{} has {} joints, the samples have {}", robot, int{N}, trace.dof()));
-  }
-
-  DetectorPtr detector(std::string_view name, const DetectorSettings& s) const {
-    return name.empty() ? nullptr : find(detectors, "detector", name)(s);
-  }
-
-  std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector_name,
-                                 const Trace& trace, const DetectorSettings& s) const override {
-    check(trace);
-    const auto& make = find(estimators, "estimator", estimator);
-    if (needs_truth(estimator) && !trace.has_truth()) {
-      throw std::invalid_argument(
-          fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", estimator));
-    }
-    return std::make_unique<RunnerOf<N>>(make(trace), detector(detector_name, s), trace);
-  }
-
-  std::unique_ptr<Runner> tuned(std::string_view estimator, double w,
-                                const Trace& trace) const override {
-    check(trace);
-    return std::make_unique<RunnerOf<N>>(find(tunable, "tunable estimator", estimator)(w), nullptr,
-                                         trace);
-  }
-
-  Supervisor supervisor(std::string_view estimator, std::string_view detector_name,
-                        const DetectorSettings& s) const override {
-    if (needs_truth(estimator)) {
-      throw std::invalid_argument(
-          fmt::format("estimator '{}' copies the truth: it cannot stop a motor", estimator));
-    }
-    const std::shared_ptr<EstimatorStage<N>> e = find(estimators, "estimator", estimator)(Trace());
-    const std::shared_ptr<DetectorStage<N>> d = find(detectors, "detector", detector_name)(s);
-    return [=](const Sample& y) {
-      const Measurement<N> in{y.t, y.q, y.qd, y.tau};
-      Estimate<N> estimate;
-      Detection detection;
-      e->run({&in, 1}, {&estimate, 1});
-      d->run({&in, 1}, {&estimate, 1}, {&detection, 1});
-      return detection.mark;
-    };
-  }
-
-  std::vector<Detection> detect(std::string_view name, const Trace& trace, const Output& estimates,
-                                const DetectorSettings& s) const override {
-    const DetectorPtr d = find(detectors, "detector", name)(s);
-    const auto [samples, values] = in_order(trace, estimates);
-    std::vector<Detection> out(samples.size());
-    d->run(samples, values, out);
-    return out;
-  }
-
-  Eigen::VectorXd largest_statistic(std::string_view name, const Trace& trace,
-                                    const Output& estimates, const DetectorSettings& s,
-                                    double from) const override {
-    const DetectorPtr d = find(detectors, "detector", name)(s);
-    const auto [samples, values] = in_order(trace, estimates);
-    Vec<N> largest = Vec<N>::Zero();
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      Detection ignored;
-      d->run({&samples[k], 1}, {&values[k], 1}, {&ignored, 1});
-      if (samples[k].t >= from) largest = largest.cwiseMax(d->statistic());
-    }
-    return largest;
-  }
-
-  int degree(std::string_view detector_name) const override {
-    return find(calibratable, "calibratable detector", detector_name);
-  }
-
-  std::pair<std::vector<Measurement<N>>, std::vector<Estimate<N>>> in_order(
-      const Trace& trace, const Output& estimates) const {
-    check(trace);
-    std::vector<Measurement<N>> samples;
-    std::vector<Estimate<N>> values;
-    for (int k = 0; k < trace.size(); ++k) {
-      samples.push_back(trace.measurement<N>(k));
-      values.push_back({estimates.tau_ext.col(k), estimates.status[k]});
-    }
-    return {std::move(samples), std::move(values)};
-  }
-};
-
-template <RobotModel M>
-Robot make_robot(const char* name, const M& model) {
-  auto stages = std::make_shared<StagesOf<M::kDof>>(name, model);
-  Robot r;
-  r.name = name;
-  r.dof = M::kDof;
-  r.estimators = names_of(stages->estimators);
-  r.tunable = names_of(stages->tunable);
-  r.detectors = names_of(stages->detectors);
-  r.calibratable = names_of(stages->calibratable);
-  r.stages = std::move(stages);
-  return r;
+void detail::require_unused() {
+  if (!in_use) return;
+  throw std::logic_error("register at the begin of main(), before the robots are asked for");
 }
 
-}  // namespace
+void detail::add_robot(std::function<Robot()> make) {
+  registered_robots().push_back(std::move(make));
+}
 
 std::unique_ptr<Runner> Robot::runner(std::string_view estimator, std::string_view detector,
                                       const Trace& trace, const DetectorSettings& s) const {
@@ -241,15 +56,17 @@ Eigen::VectorXd Robot::largest_statistic(std::string_view detector, const Trace&
   return stages->largest_statistic(detector, trace, estimates, s, from);
 }
 
-int Robot::degree(std::string_view detector) const {
-  return stages->degree(detector);
+const Calibration& Robot::calibration(std::string_view detector) const {
+  return stages->calibration(detector);
 }
 
 const std::vector<Robot>& robots() {
   static const std::vector<Robot> all = [] {
+    in_use = true;
     std::vector<Robot> list;
     for_each_robot(
         [&](const char* name, const auto& model) { list.push_back(make_robot(name, model)); });
+    for (const auto& make : registered_robots()) list.push_back(make());
     return list;
   }();
   return all;

@@ -22,6 +22,12 @@ struct DetectorSettings {
   double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
 };
 
+/// What calibrating a detector needs to know.
+struct Calibration {
+  int degree = 1;             ///< power of tau_ext that its statistic grows with
+  Eigen::VectorXd threshold;  ///< its default, in the unit of its statistic
+};
+
 /// A robot with the estimators and detectors that run on it. Every call throws std::invalid_argument
 /// for an unknown name, listing the known ones, and for a trace of another number of joints.
 class Robot {
@@ -55,8 +61,8 @@ class Robot {
                                     const Output& estimates, const DetectorSettings& settings,
                                     double from) const;
 
-  /// The power of tau_ext that a calibratable detector's statistic grows with.
-  int degree(std::string_view detector) const;
+  /// How a calibratable detector's thresholds are set.
+  const Calibration& calibration(std::string_view detector) const;
 
   /// The same behind the degrees of freedom, which are compile-time; bench/robot.cc.
   struct Stages;

@@ -5,8 +5,16 @@
 #pragma once
 
 #include "bench/baselines.h"
+#include "estimators/detectors/band_pass.h"
+#include "estimators/detectors/clamping.h"
+#include "estimators/detectors/contact_classifier.h"
+#include "estimators/detectors/cusum.h"
+#include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/high_pass.h"
 #include "estimators/detectors/pan_tompkins.h"
+#include "estimators/detectors/threshold.h"
 #include "estimators/ekf.h"
+#include "estimators/higher_order_momentum_observer.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/momentum_observer.h"
 #include "estimators/ndob.h"
@@ -59,6 +67,14 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
   visit([=](const Trace&) { return InverseDynamics<M>(model); });
   visit([=](const Trace&) { return MomentumObserver<M>(model); });
+  visit([=](const Trace&) { return MomentumObserver2<M>(model); });
+  visit([=](const Trace&) { return MomentumObserver3<M>(model); });
+}
+
+/// Calls visit(make) for every estimator of a robot that is not named below.
+template <RobotModel M, class Visit>
+void for_each_estimator(const M& model, Visit&& visit) {
+  for_each_common_estimator(model, visit);
 }
 
 /// Calls visit(make) for every estimator of wallmobot3.
@@ -86,6 +102,13 @@ void for_each_estimator(const Testbed1& arm, Visit&& visit) {
 template <int N, class Visit>
 void for_each_detector(Visit&& visit) {
   visit([] { return PanTompkins<N>(); });
+  visit([] { return ContactClassifier<N>(); });
+  visit([] { return Clamping<N>(); });
+  visit([] { return Threshold<N>(); });
+  visit([] { return DynamicThreshold<N>(); });
+  visit([] { return HighPass<N>(); });
+  visit([] { return BandPass<N>(); });
+  visit([] { return Cusum<N>(); });
 }
 
 /// Calls visit(name, model) for every robot; the MJCF of that name is its truth.

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -63,6 +65,12 @@ void add(Vfs& files, const std::string& name, std::string_view text) {
             static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
 }
 
+// robots that came from files
+std::map<std::string, Model, std::less<>>& registered() {
+  static std::map<std::string, Model, std::less<>> all;
+  return all;
+}
+
 }  // namespace
 
 std::string mujoco_version() {
@@ -72,11 +80,19 @@ std::string mujoco_version() {
 std::vector<std::string> robot_names() {
   std::vector<std::string> names;
   for (const EmbeddedFile& r : kEmbeddedRobots) names.emplace_back(r.name);
+  for (const auto& [name, model] : registered()) names.push_back(name);
   return names;
 }
 
 Model load_robot(std::string_view name, std::string_view scene) {
   install_handlers();
+  if (const auto own = registered().find(name); own != registered().end()) {
+    if (scene.empty()) return own->second;
+    throw std::invalid_argument(
+        fmt::format("robot '{}' is registered from a file and stands in no scene; '{}' was asked "
+                    "for",
+                    name, scene));
+  }
   const std::string_view robot = find(kEmbeddedRobots, "robot", name);
   Vfs files;
   add(files, fmt::format("{}.xml", name), robot);
@@ -99,6 +115,14 @@ Model load_mjcf(const std::string& path) {
   mjModel* const m = mj_loadXML(path.c_str(), nullptr, error, sizeof error);
   if (m == nullptr) throw std::runtime_error(fmt::format("{}: {}", path, error));
   return own(m);
+}
+
+void register_mjcf(const std::string& name, const std::string& path) {
+  const std::vector<std::string> taken = robot_names();
+  if (name.empty() || std::count(taken.begin(), taken.end(), name) > 0) {
+    throw std::invalid_argument(fmt::format("the name '{}' of a robot is taken, or empty", name));
+  }
+  registered().emplace(name, load_mjcf(path));
 }
 
 Model changed(const Model& model, const std::function<void(mjModel&)>& change) {

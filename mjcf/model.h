@@ -19,7 +19,7 @@ using Model = std::shared_ptr<const mjModel>;
 /// MuJoCo's version, like "2.2.2".
 std::string mujoco_version();
 
-/// The names of the robots that come with tauext, sorted.
+/// The names of the robots that come with tauext, sorted; then the registered ones.
 std::vector<std::string> robot_names();
 
 /// One of these robots. Its MJCF is built into the library, so no file has to be found.
@@ -30,6 +30,10 @@ Model load_robot(std::string_view name, std::string_view scene = "");
 /// A robot of your own: an MJCF file, laid out as mjcf/layout.h says.
 /// @throws std::runtime_error naming the path, with MuJoCo's own message
 Model load_mjcf(const std::string& path);
+
+/// From now on load_robot(name) gives the robot of this MJCF file; it stands in no scene.
+/// @throws std::invalid_argument if the name is taken; std::runtime_error as load_mjcf does
+void register_mjcf(const std::string& name, const std::string& path);
 
 /// A copy of the model with the changes that `change` makes, and what MuJoCo derives from them.
 Model changed(const Model& model, const std::function<void(mjModel&)>& change);

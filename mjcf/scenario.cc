@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 
@@ -20,13 +21,38 @@ Scenario quiet() {
   return s;
 }
 
+namespace {
+
+using Lists = std::map<std::string, std::vector<Scenario>, std::less<>>;
+
+Lists& lists() {
+  static Lists all = {{"testbed1", scenarios_of_testbed1()},
+                      {"wallmobot3", scenarios_of_wallmobot3()}};
+  return all;
+}
+
+bool in_use = false;  // whether references into the lists have been given away
+
+}  // namespace
+
+void register_scenario(const std::string& robot, const Scenario& s) {
+  if (in_use) {
+    throw std::logic_error("register scenarios at the begin of main(), before any is asked for");
+  }
+  std::vector<Scenario>& list = lists()[robot];
+  const bool taken =
+      std::any_of(list.begin(), list.end(), [&](const Scenario& x) { return x.name == s.name; });
+  if (s.name.empty() || taken) {
+    throw std::invalid_argument(
+        fmt::format("the name '{}' of a scenario of {} is taken, or empty", s.name, robot));
+  }
+  list.push_back(s);
+}
+
 const std::vector<Scenario>& scenarios(std::string_view robot) {
-  static const std::map<std::string_view, std::vector<Scenario>> all = {
-      {"testbed1", scenarios_of_testbed1()},
-      {"wallmobot3", scenarios_of_wallmobot3()},
-  };
-  const auto it = all.find(robot);
-  if (it != all.end()) return it->second;
+  in_use = true;
+  const auto it = lists().find(robot);
+  if (it != lists().end()) return it->second;
   throw std::invalid_argument(fmt::format("no scenarios for robot '{}'", robot));
 }
 

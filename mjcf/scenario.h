@@ -71,6 +71,13 @@ const std::vector<Scenario>& scenarios(std::string_view robot);
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Scenario& scenario(std::string_view robot, std::string_view name);
 
+/// A scenario in which nothing happens: 30 s at rest at q = 0. Start from here for one of your own.
+Scenario quiet();
+
+/// Adds a scenario to a robot's list; before the list is first asked for, else std::logic_error.
+/// @throws std::invalid_argument if the name is empty or taken
+void register_scenario(const std::string& robot, const Scenario& scenario);
+
 /// The robot as the scenario needs it: with its scene, and the load as heavy as it says; and with errors
 /// that its estimators do not know of.
 /// @throws std::invalid_argument for an error out of range

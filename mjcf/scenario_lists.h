@@ -9,9 +9,6 @@
 
 namespace tauext {
 
-/// A scenario in which nothing happens: start from here.
-Scenario quiet();
-
 std::vector<Scenario> scenarios_of_wallmobot3();
 std::vector<Scenario> scenarios_of_testbed1();
 

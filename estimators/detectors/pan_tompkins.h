@@ -16,7 +16,7 @@
 #include <array>
 
 #include "estimators/concepts.h"
-#include "estimators/sampling.h"
+#include "estimators/detectors/marking.h"
 
 namespace tauext {
 
@@ -37,28 +37,29 @@ class PanTompkins {
     Vec<N> threshold = Vec<N>::Constant(3.6e5);
     double hold = 0.02;       ///< [s] how long an energy is kept
     double refractory = 0.2;  ///< [s] after a mark without another
+    double start_up = 0;      ///< [s] after the first sample without a mark
   };
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit PanTompkins(const Parameters& p = {}) : p_(p) {
+  explicit PanTompkins(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
     require(p.stride >= 1 && p.stride <= kMaxStride, "stride of pan_tompkins must be 1 to 16");
     require(p.threshold.minCoeff() > 0, "threshold [(N m/s)^2] of pan_tompkins must be positive");
-    require(p.hold >= 0 && p.refractory >= 0, "hold and refractory [s] must not be negative");
+    require(p.hold >= 0, "hold [s] of pan_tompkins must not be negative");
   }
 
   void reset() noexcept {
     count_ = 0;
     held_.setZero();
     held_at_.setZero();
-    score_ = 0;
-    marked_ = false;
+    marking_.reset();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    const int newest = count_++ % kHistory;
+    if (!marking_.accepts(t)) return marking_.held();
+    const int newest = static_cast<int>(count_++ % kHistory);
     t_[newest] = t;
     tau_ext_[newest] = tau_ext;
-    if (count_ <= 4 * p_.stride) return {};
+    if (count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
     const Vec<N> energy = slope(newest).cwiseAbs2();
     for (int i = 0; i < N; ++i) {  // (ii)
@@ -67,14 +68,7 @@ class PanTompkins {
         held_at_[i] = t;
       }
     }
-    const double score = held_.cwiseQuotient(p_.threshold).maxCoeff();
-    const bool mark = score >= 1 && score_ < 1 && (!marked_ || t - marked_at_ >= p_.refractory);
-    if (mark) {
-      marked_ = true;
-      marked_at_ = t;
-    }
-    score_ = score;
-    return {mark, score, mark ? Contact::kCollision : Contact::kNone};
+    return marking_(t, held_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);  // (iii)
   }
 
   /// [(N m/s)^2] held energy of each joint.
@@ -101,14 +95,12 @@ class PanTompkins {
   }
 
   Parameters p_;
+  Marking marking_;
   std::array<double, kHistory> t_{};
   std::array<Vec<N>, kHistory> tau_ext_{};
   long count_ = 0;
   Vec<N> held_ = Vec<N>::Zero();
   Vec<N> held_at_ = Vec<N>::Zero();
-  double score_ = 0;
-  double marked_at_ = 0;
-  bool marked_ = false;
 };
 
 static_assert(CalibratableDetector<PanTompkins<3>>);

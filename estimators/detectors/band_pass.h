@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A limit on a band of the estimate: as high_pass.h, and noise above the band is taken out, too.
+///     z = low-pass at w_high of the high-pass at w_low of tau_ext (filters.h)                (i)
+///     mark where max_i(|z_i| / threshold_i) rises through 1
+#pragma once
+
+#include "estimators/concepts.h"
+#include "estimators/detectors/filters.h"
+#include "estimators/detectors/marking.h"
+
+namespace tauext {
+
+/// Band-pass and limit over N joints.
+template <int N>
+class BandPass {
+ public:
+  static constexpr const char* kName = "band_pass";
+  static constexpr int kDof = N;
+  static constexpr int kDegree = 1;
+
+  struct Parameters {
+    /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the origin
+    Vec<N> threshold = Vec<N>::Constant(45);
+    double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
+    double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
+    double refractory = 0.2;  ///< [s] after a mark without another
+    double start_up = 0;      ///< [s] after the first sample without a mark
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit BandPass(const Parameters& p = {})
+      : p_(p),
+        slow_(p.w_low, "w_low [rad/s] of band_pass must be positive"),
+        quick_(p.w_high, "w_high [rad/s] of band_pass must be positive"),
+        marking_(p.refractory, p.start_up) {
+    require(p.threshold.minCoeff() > 0, "threshold [N m] of band_pass must be positive");
+    require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
+  }
+
+  void reset() noexcept {
+    marking_.reset();
+    statistic_.setZero();
+  }
+
+  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+    if (!marking_.accepts(t)) return marking_.held();
+    if (marking_.silent(t)) {
+      slow_.start(t, tau_ext);
+      quick_.start(t, Vec<N>::Zero());
+    } else {
+      const Vec<N> high = tau_ext - slow_(t, tau_ext);
+      statistic_ = quick_(t, high).cwiseAbs();  // (i)
+    }
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+  }
+
+  /// [N m] |z|.
+  const Vec<N>& statistic() const noexcept { return statistic_; }
+
+ private:
+  Parameters p_;
+  LowPass<N> slow_, quick_;
+  Marking marking_;
+  Vec<N> statistic_ = Vec<N>::Zero();
+};
+
+static_assert(CalibratableDetector<BandPass<3>>);
+
+}  // namespace tauext

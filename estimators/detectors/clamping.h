@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Something is caught between the arm and a wall: the force rises slowly, over half a second or more,
+/// beyond any push, and stays. A derivative does not see that; a plain limit takes an unknown payload
+/// for it. So the limit is on what has changed within the last second or so:
+///     z = high-pass of tau_ext at w_baseline, low-pass at w_smooth (filters.h)              (i)
+///     lasting_i = smallest |z_i| of the last `duration`, by eight blocks of it              (ii)
+///     mark where max_i(lasting_i / threshold_i) rises through 1
+/// (ii) lets a blow pass: it is over before `duration` is. Known limits: what rises much slower than
+/// 1 / w_baseline passes, too; and a push that is as strong and as slow is a clamping to it.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "estimators/concepts.h"
+#include "estimators/detectors/filters.h"
+#include "estimators/detectors/marking.h"
+
+namespace tauext {
+
+/// Limit on slow, lasting changes over N joints.
+template <int N>
+class Clamping {
+ public:
+  static constexpr const char* kName = "clamping";
+  static constexpr int kDof = N;
+  static constexpr int kDegree = 1;
+
+  struct Parameters {
+    /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at 1.2 m
+    Vec<N> threshold = Vec<N>::Constant(120);
+    /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a clamping
+    /// that rises slowly
+    double w_baseline = 0.5;
+    double w_smooth = 100;    ///< [rad/s] smaller lets less noise pass, and marks later
+    double duration = 0.1;    ///< [s] larger lets longer blows pass, and marks later
+    double refractory = 0.5;  ///< [s] after a mark without another
+    double start_up = 0;      ///< [s] after the first sample without a mark
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit Clamping(const Parameters& p = {})
+      : p_(p),
+        baseline_(p.w_baseline, "w_baseline [rad/s] of clamping must be positive"),
+        smooth_(p.w_smooth, "w_smooth [rad/s] of clamping must be positive"),
+        marking_(p.refractory, p.start_up) {
+    require(p.threshold.minCoeff() > 0, "threshold [N m] of clamping must be positive");
+    require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
+    require(p.duration > 0, "duration [s] of clamping must be positive");
+    reset();
+  }
+
+  void reset() noexcept {
+    marking_.reset();
+    z_.setZero();
+    statistic_.setZero();
+    blocks_.fill(Vec<N>::Zero());
+  }
+
+  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+    if (!marking_.accepts(t)) return marking_.held();
+    if (marking_.silent(t)) {
+      baseline_.start(t, tau_ext);
+      smooth_.start(t, Vec<N>::Zero());
+      block_began_ = t;
+    } else {
+      const Vec<N> changed = tau_ext - baseline_(t, tau_ext);
+      z_ = smooth_(t, changed);  // (i)
+      last(t, z_.cwiseAbs());
+    }
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kClamping);
+  }
+
+  /// [N m] lasting |z|.
+  const Vec<N>& statistic() const noexcept { return statistic_; }
+
+  /// [N m] z of (i): how far tau_ext is from its baseline.
+  const Vec<N>& change() const noexcept { return z_; }
+
+ private:
+  static constexpr int kBlocks = 8;
+
+  // (ii)
+  void last(double t, const Vec<N>& x) noexcept {
+    if (t - block_began_ >= p_.duration / kBlocks) {
+      block_began_ = t;
+      newest_ = (newest_ + 1) % kBlocks;
+      blocks_[newest_] = x;
+    }
+    blocks_[newest_] = blocks_[newest_].cwiseMin(x);
+    statistic_ = blocks_[0];
+    for (const Vec<N>& b : blocks_) statistic_ = statistic_.cwiseMin(b);
+  }
+
+  Parameters p_;
+  LowPass<N> baseline_, smooth_;
+  Marking marking_;
+  std::array<Vec<N>, kBlocks> blocks_;
+  int newest_ = 0;
+  double block_began_ = 0;  // [s]
+  Vec<N> z_ = Vec<N>::Zero();
+  Vec<N> statistic_ = Vec<N>::Zero();
+};
+
+static_assert(CalibratableDetector<Clamping<3>>);
+
+}  // namespace tauext

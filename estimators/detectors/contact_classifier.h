@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What kind of contact it is. pan_tompkins.h sees a blow and no slow clamping, clamping.h sees a slow
+/// clamping and no blow, and neither knows a hand from nothing; together they do. At every sample, the
+/// first line that holds:
+///     within `hold` of a mark of pan_tompkins                          collision
+///     clamping's score is at least 1                                   clamping
+///     max_i(|z_i| / intentional_i) >= 1, z as in clamping.h            intentional
+///     else                                                             none
+/// A collision is marked where pan_tompkins marks, a clamping where its score rises through 1 (or is
+/// above it when a collision's `hold` ends: then the arm hit something and is caught there).
+#pragma once
+
+#include <algorithm>
+
+#include "estimators/detectors/clamping.h"
+#include "estimators/detectors/pan_tompkins.h"
+
+namespace tauext {
+
+/// Classifier over N joints.
+template <int N>
+class ContactClassifier {
+ public:
+  static constexpr const char* kName = "contact_classifier";
+  static constexpr int kDof = N;
+
+  struct Parameters {
+    typename PanTompkins<N>::Parameters collision{};
+    typename Clamping<N>::Parameters clamping{};
+    /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
+    /// default 15 N at 1 m
+    Vec<N> intentional = Vec<N>::Constant(15);
+    double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit ContactClassifier(const Parameters& p = {})
+      : p_(p), collision_(p.collision), clamping_(p.clamping) {
+    require(p.intentional.minCoeff() > 0,
+            "intentional [N m] of contact_classifier must be positive");
+    require(p.hold >= 0, "hold [s] of contact_classifier must not be negative");
+  }
+
+  void reset() noexcept {
+    collision_.reset();
+    clamping_.reset();
+    hit_ = clamped_ = false;
+  }
+
+  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+    const Detection hit = collision_.update(t, tau_ext);
+    const Detection clamp = clamping_.update(t, tau_ext);
+    const double score = std::max(hit.score, clamp.score);
+    if (hit.mark) {
+      hit_ = true;
+      hit_at_ = t;
+    }
+    if (hit_ && t - hit_at_ < p_.hold) {
+      clamped_ = false;
+      return {hit.mark, score, Contact::kCollision};
+    }
+    const bool clamped = clamp.score >= 1;
+    const bool mark = clamped && !clamped_;
+    clamped_ = clamped;
+    if (clamped) return {mark, score, Contact::kClamping};
+    const bool touched =
+        clamping_.change().cwiseAbs().cwiseQuotient(p_.intentional).maxCoeff() >= 1;
+    return {false, score, touched ? Contact::kIntentional : Contact::kNone};
+  }
+
+ private:
+  Parameters p_;
+  PanTompkins<N> collision_;
+  Clamping<N> clamping_;
+  bool hit_ = false, clamped_ = false;
+  double hit_at_ = 0;  // [s]
+};
+
+static_assert(CollisionDetector<ContactClassifier<3>>);
+
+}  // namespace tauext

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// First-order filters for detectors, exact for an input that is held between samples, whatever their
+/// spacing:
+///     low-pass   l_k = x_k-1 + e^(-w h) (l_k-1 - x_k-1)                                      (i)
+///     high-pass  x_k - l_k
+/// A unit step gives 1 - e^(-w t) and e^(-w t).
+#pragma once
+
+#include <cmath>
+
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Low-pass of N signals; the high-pass is what it leaves.
+template <int N>
+class LowPass {
+ public:
+  /// @param w [rad/s] cut-off
+  /// @throws std::invalid_argument(what) unless it is positive
+  LowPass(double w, const char* what) : w_(w) { require(w > 0, what); }
+
+  /// As if x had been there for ever.
+  void start(double t, const Vec<N>& x) noexcept {
+    t_ = t;
+    x_ = low_ = x;
+  }
+
+  /// (i) at t [s], which is later than the last one.
+  const Vec<N>& operator()(double t, const Vec<N>& x) noexcept {
+    const double h = t - t_;
+    if (new_step_(h)) decay_ = std::exp(-w_ * h);
+    low_ = x_ + decay_ * (low_ - x_);
+    t_ = t;
+    x_ = x;
+    return low_;
+  }
+
+ private:
+  double w_;
+  StepChange new_step_;
+  double decay_ = 0;
+  double t_ = 0;
+  Vec<N> x_ = Vec<N>::Zero();
+  Vec<N> low_ = Vec<N>::Zero();
+};
+
+}  // namespace tauext

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A limit on what is quick in the estimate: a first-order high-pass takes payloads, model errors and slow
+/// pushes out. After Cho, Kim, Lee and Song, "Collision detection algorithm to distinguish between
+/// intended contact and unexpected collision", Advanced Robotics 2012.
+///     z = high-pass of tau_ext at w (filters.h)                                             (i)
+///     mark where max_i(|z_i| / threshold_i) rises through 1
+#pragma once
+
+#include "estimators/concepts.h"
+#include "estimators/detectors/filters.h"
+#include "estimators/detectors/marking.h"
+
+namespace tauext {
+
+/// High-pass and limit over N joints.
+template <int N>
+class HighPass {
+ public:
+  static constexpr const char* kName = "high_pass";
+  static constexpr int kDof = N;
+  static constexpr int kDegree = 1;
+
+  struct Parameters {
+    /// [N m] per joint: larger misses more and alarms less; by default twice what a push of 80 N in
+    /// 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
+    Vec<N> threshold = Vec<N>::Constant(45);
+    double w = 10;            ///< [rad/s] cut-off: larger lets less of a push pass, and of a blow
+    double refractory = 0.2;  ///< [s] after a mark without another
+    double start_up = 0;      ///< [s] after the first sample without a mark
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit HighPass(const Parameters& p = {})
+      : p_(p),
+        low_(p.w, "w [rad/s] of high_pass must be positive"),
+        marking_(p.refractory, p.start_up) {
+    require(p.threshold.minCoeff() > 0, "threshold [N m] of high_pass must be positive");
+  }
+
+  void reset() noexcept {
+    marking_.reset();
+    statistic_.setZero();
+  }
+
+  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+    if (!marking_.accepts(t)) return marking_.held();
+    if (marking_.silent(t)) {
+      low_.start(t, tau_ext);
+    } else {
+      statistic_ = (tau_ext - low_(t, tau_ext)).cwiseAbs();  // (i)
+    }
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+  }
+
+  /// [N m] |z|.
+  const Vec<N>& statistic() const noexcept { return statistic_; }
+
+ private:
+  Parameters p_;
+  LowPass<N> low_;
+  Marking marking_;
+  Vec<N> statistic_ = Vec<N>::Zero();
+};
+
+static_assert(CalibratableDetector<HighPass<3>>);
+
+}  // namespace tauext
