@@ -2,9 +2,12 @@
 /// @file
 /// Extended Kalman filter of x = [q; qd; d], d = tau_ext assumed constant: the paper (6)-(16).
 ///
-/// Time update over h from k-1 to k, with qdd and its Jacobians at the last estimate:
+/// Time update over h from k-1 to k, with qdd and its Jacobians Jq, Jv at the last estimate:
 ///     q += h qd,  qd += h qdd,  P' = F P F^T + Q,
 ///     F = I + h [ 0  I  0 ; Jq  Jv  -B^-1 ; 0  0  0 ]                                   (10), (15)
+/// and, unless Integration::kEuler asks for (10) as printed, the second-order terms of Taylor's series
+///     q += h^2/2 qdd,   qd += h^2/2 (Jq qd + Jv qdd),                                       (iii)
+/// without which the filter takes h/2 B qddd for a load: 0.14 N m rms on wallmobot3 in motion at 1 ms.
 /// (10) says that tau_k-1 drives this step; (13) prints tau_k, a sample late: Alignment::kPaper.
 /// F is the identity but for its middle rows, so with G = h [Jq Jv -B^-1] (N x 3N) and U = P G^T,
 /// in blocks U_q, U_v, U_d, these blocks of the symmetric P change:
@@ -43,13 +46,17 @@ class Ekf {
   using Vec2 = Vec<2 * kDof>;
   using Vec3 = Vec<3 * kDof>;
 
-  /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. Q is added once per step, of
-  /// whatever length. A larger Q_d or a smaller R is faster and noisier. P0, Q and R have no default
-  /// that fits every arm.
+  /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. A larger Q_d or a smaller R is
+  /// faster and noisier. P0, Q and R have no default that fits every arm.
   struct Parameters {
     Vec3 P0 = Vec3::Zero();  ///< of the state at the start, at least 0
     Vec3 Q = Vec3::Zero();   ///< of the process, per step, at least 0
     Vec2 R = Vec2::Zero();   ///< of the measured q and qd, positive
+    /// [s] 0: Q is added once per step and R belongs to every sample, whatever the step, as printed.
+    /// Otherwise both are meant for steps of Ts, and a step of h takes Q h / Ts and R Ts / h, white
+    /// noise of constant density, so that the answer does not depend on the sampling time.
+    double Ts = 0;
+    Integration integration = Integration::kSecondOrder;  ///< (iii), or (10) alone
     Alignment alignment = Alignment::kHeld;
     Start start = Start::kFirstMeasurement;
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
@@ -69,6 +76,35 @@ class Ekf {
         return p;
       }
     }
+
+    /// Noise that sensors have (velocity 1e-3 rad/s, angle 1e-5 rad) and next to none in the model,
+    /// per 1 ms; with (32) R is negligible, and what is left is an NDOB. Q_d is for wallmobot3.
+    static Parameters honest() requires(kDof == 3) { return honest(Vec<kDof>::Constant(0.02)); }
+
+    /// honest() with bandwidth w [rad/s] of every joint that moves alone at q = 0: there the load's
+    /// share of the velocity's spectrum, Q_d / (B w)^2, is as large as the rest, so for each kind of
+    /// noise alone the filter is Butterworth's with -3 dB at w: w^4 = Q_d / (B^2 R_v) for R_v.
+    static Parameters for_bandwidth(const M& model, double w) {
+      const Parameters p = honest(Vec<kDof>::Zero());
+      const double r_q = p.R[0] * p.Ts, r_v = p.R[kDof] * p.Ts;  // [rad^2 s], [(rad/s)^2 s]
+      const double q_q = p.Q[0] / p.Ts, q_v = p.Q[kDof] / p.Ts;  // [rad^2/s], [(rad/s)^2/s]
+      const double measured = 1 / (1 / r_v + 1 / (w * w * r_q + q_q));
+      const double q_d = w * w * (w * w * measured + q_v);  // [(rad/s^2)^2/s]
+      const Mat<kDof> B = model.inertia(Vec<kDof>::Zero());
+      return honest(q_d * p.Ts * B.diagonal().cwiseAbs2());
+    }
+
+   private:
+    static Parameters honest(const Vec<kDof>& Q_d) {
+      constexpr double kR_q = 1e-10, kR_v = 1e-6, kQ_q = 1e-14, kQ_v = 1e-10;
+      const Vec<kDof> ones = Vec<kDof>::Ones();
+      Parameters p;
+      p.P0 << kR_q * ones, kR_v * ones, 10 * Q_d;
+      p.Q << kQ_q * ones, kQ_v * ones, Q_d;
+      p.R << kR_q * ones, kR_v * ones;
+      p.Ts = 1e-3;
+      return p;
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
@@ -76,6 +112,7 @@ class Ekf {
     require(p.P0.minCoeff() >= 0, "P0 of the EKF must not be negative");
     require(p.Q.minCoeff() >= 0, "Q of the EKF must not be negative");
     require(p.R.minCoeff() > 0, "R of the EKF must be positive");
+    require(p.Ts >= 0, "Ts [s] of the EKF must not be negative");
     for (int b = 0; b < 3; ++b) Q_[b] = diagonal(p.Q, b);
     start({});
   }
@@ -93,11 +130,12 @@ class Ekf {
       return estimate(status);
     }
     const Vec<kDof>& tau = p_.alignment == Alignment::kHeld ? tau_ : y.tau;
-    if (!predict(sampling_.h(), tau)) {
+    const double steps = p_.Ts > 0 ? sampling_.h() / p_.Ts : 1;
+    if (!predict(sampling_.h(), tau, steps)) {
       sampling_.reset();
       return estimate(Status::kSingularInertia);
     }
-    correct(y);
+    correct(y, 1 / steps);
     tau_ = y.tau;
     if (!(x_[0].allFinite() && x_[1].allFinite() && within(x_[2], kEstimateLimit))) {
       x_[2].setZero();
@@ -151,37 +189,44 @@ class Ekf {
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
-  [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau) noexcept {
+  [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau, double Q_scale) noexcept {
     const ForwardDynamics<kDof> f =
         model_.forward_dynamics(x_[0].template head<kDof>(), x_[1].template head<kDof>(),
                                 tau - x_[2].template head<kDof>());
     if (!f.ok) return false;
-    x_[0] += h * x_[1];  // (10)
-    x_[1] += h * detail::pad_vector<kDof>(f.qdd);
+    const Column qdd = detail::pad_vector<kDof>(f.qdd);
+    const Column qd = x_[1];
+    x_[0] += h * qd;  // (10)
+    x_[1] += h * qdd;
+    if (p_.integration == Integration::kSecondOrder) {  // (iii)
+      const Vec<kDof> jerk = f.dqdd_dq * qd.template head<kDof>() + f.dqdd_dqd * f.qdd;
+      x_[0] += 0.5 * h * h * qdd;
+      x_[1] += 0.5 * h * h * detail::pad_vector<kDof>(jerk);
+    }
 
     // U and V of (i); G stands without its factor h, transposes are named by their letters
     const Mat<kDof>* const G[] = {&f.dqdd_dq, &f.dqdd_dqd, &f.dqdd_dtau_ext};
-    const Block qv = transposed(vq_), qd = transposed(dq_), vd = transposed(dv_);
-    const Block Uq = h * times_transposed(qq_, qv, qd, G);
+    const Block qv = transposed(vq_), q_d = transposed(dq_), vd = transposed(dv_);
+    const Block Uq = h * times_transposed(qq_, qv, q_d, G);
     const Block Uv = h * times_transposed(vq_, vv_, vd, G);
     const Block Ud = h * times_transposed(dq_, dv_, dd_, G);
     const Block Uv_t = transposed(Uv);
     const Block V_t = Uv_t + 0.5 * h * times_transposed(transposed(Uq), Uv_t, transposed(Ud), G);
 
-    qq_ += h * (qv + vq_) + h * h * vv_ + Q_[0];  // (i)
+    qq_ += h * (qv + vq_) + h * h * vv_ + Q_scale * Q_[0];  // (i)
     dq_ += h * dv_;
     vq_ = transposed(qv + h * vv_ + Uq + h * Uv);
-    vv_ += (V_t + transposed(V_t)) + Q_[1];
+    vv_ += (V_t + transposed(V_t)) + Q_scale * Q_[1];
     dv_ += Ud;
-    dd_ += Q_[2];
+    dd_ += Q_scale * Q_[2];
     return true;
   }
 
-  [[gnu::noinline]] void correct(const Measurement<kDof>& y) noexcept {
+  [[gnu::noinline]] void correct(const Measurement<kDof>& y, double R_scale) noexcept {
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
       const Column c[] = {qq_.col(i), vq_.col(i), dq_.col(i)};
-      const double s_inverse = 1 / (c[0][i] + p_.R[i]);
+      const double s_inverse = 1 / (c[0][i] + R_scale * p_.R[i]);
       update(c, s_inverse, y.q[i] - x_[0][i]);
       subtract(c[1], c[0], s_inverse, vq_);
     }
@@ -189,7 +234,7 @@ class Ekf {
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
       const Column c[] = {qv.col(i), vv_.col(i), dv_.col(i)};
-      const double s_inverse = 1 / (c[1][i] + p_.R[kDof + i]);
+      const double s_inverse = 1 / (c[1][i] + R_scale * p_.R[kDof + i]);
       update(c, s_inverse, y.qd[i] - x_[1][i]);
       subtract(c[0], c[1], s_inverse, qv);
     }

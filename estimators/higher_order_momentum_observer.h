@@ -48,6 +48,7 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
 
   void reset() noexcept {
     sampling_.reset();
+    new_step_ = {};
     x_.setZero();
   }
 

@@ -40,6 +40,7 @@ class InverseDynamics {
 
   void reset() noexcept {
     sampling_.reset();
+    new_step_ = {};
     tau_ext_.setZero();
   }
 

@@ -46,6 +46,7 @@ class MomentumObserver {
 
   void reset() noexcept {
     sampling_.reset();
+    new_step_ = {};
     tau_ext_.setZero();
   }
 

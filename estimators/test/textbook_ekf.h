@@ -17,7 +17,8 @@ class TextbookEkf {
   static constexpr int N = Arm::kDof, kDof = N;
 
   template <class Parameters>
-  explicit TextbookEkf(const Parameters& p) {
+  explicit TextbookEkf(const Parameters& p)
+      : second_order_(p.integration == Integration::kSecondOrder), Ts_(p.Ts) {
     P0_ = p.P0.template cast<S>().asDiagonal();
     Q_ = p.Q.template cast<S>().asDiagonal();
     R_ = p.R.template cast<S>().asDiagonal();
@@ -57,10 +58,14 @@ class TextbookEkf {
     F.template block<N, N>(N, 0) += h * f.dqdd_dq;
     F.template block<N, N>(N, N) += h * f.dqdd_dqd;
     F.template block<N, N>(N, 2 * N) += h * f.dqdd_dtau_ext;
-    x += h * xdot;  // (10)
-    P = Mat<3 * N, S>(F * P * F.transpose()) + Q_;
+    const S steps = Ts_ > 0 ? S(h / Ts_) : S(1);
+    x += h * xdot;        // (10)
+    if (second_order_) {  // F - I is h times the Jacobian of xdot
+      x += S(0.5) * h * ((F - Mat<3 * N, S>::Identity()) * xdot);
+    }
+    P = Mat<3 * N, S>(F * P * F.transpose()) + steps * Q_;
 
-    const Mat<2 * N, S> innovation = H_ * P * H_.transpose() + R_;  // (14)
+    const Mat<2 * N, S> innovation = H_ * P * H_.transpose() + R_ / steps;  // (14)
     const Eigen::LLT<Mat<2 * N, S>> factor(innovation);
     const Eigen::Matrix<S, 3 * N, 2 * N> K = factor.solve(H_ * P).transpose();
     x += K * (y - H_ * x);
@@ -68,6 +73,8 @@ class TextbookEkf {
     P = Mat<3 * N, S>(S(0.5) * (P + P.transpose()));  // without this it overflows within 30 s
   }
 
+  bool second_order_;
+  double Ts_;
   Arm arm_;
   Mat<3 * N, S> P0_, Q_;
   Mat<2 * N, S> R_;

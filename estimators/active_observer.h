@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Active observer in its lumped form, after the extended active observer of Chan, Naghdy and Stirling,
+/// "Extended active observer for force estimation and disturbance rejection of robotic manipulators",
+/// Robotics and Autonomous Systems 2013, and the active observer of Cortesao. We could not read the
+/// source, so what follows is ours: a computed torque makes the joints double integrators, and one extra
+/// ("active") state of a Kalman filter takes up what is left. Whether theirs weighs it alike is open.
+///     a = B^-1 (tau - C qd - g - F),   qdd = a - delta,   delta = B^-1 tau_ext                 (i)
+/// Over [t_k-1, t_k) a is the mean of both ends with tau_k-1 held. Every joint is the same linear system
+/// x = [q; qd; delta], so one 3 x 3 covariance serves them all, and the gains do not depend on data.
+///     deltadot = white noise of density Q_delta, qdd carries white noise of density Q_qdd
+///
+/// Exact over a step h (Van Loan), with P in scalars:
+///     q += h qd + h^2/2 (a - delta),   qd += h (a - delta)
+///     P' = Phi P Phi^T + Q,   Phi = [1 h -h^2/2; 0 1 -h; 0 0 1]                            (ii)
+///     Q = Q_delta [h^5/20 h^4/8 -h^3/6; . h^3/3 -h^2/2; . . h] + Q_qdd [h^3/3 h^2/2 0; . h 0; . . 0]
+/// then q and qd are measured in turn, with noise of R_q / h and R_qd / h:
+///     s = P_ii + R_i / h,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s         (iii)
+/// Densities make the answer independent of the sampling time. tau_ext = B(q_k) delta.
+#pragma once
+
+#include "estimators/concepts.h"
+#include "estimators/ldlt.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Active observer over a robot model M.
+template <RobotModel M>
+class ActiveObserver {
+ public:
+  static constexpr const char* kName = "eao";
+  static constexpr int kDof = M::kDof;
+
+  /// The same for all joints: they move alike.
+  struct Parameters {
+    double Q_delta =
+        1e-3;  ///< [(rad/s^2)^2/s] density of deltadot, positive: larger is faster, noisier
+    double Q_qdd =
+        1e-7;  ///< [(rad/s^2)^2 s] density of the model's error, at least 0; larger: slower
+    double R_q = 1e-13;  ///< [rad^2 s] density of the noise of q, positive; 1e-5 rad at 1 ms
+    double R_qd = 1e-9;  ///< [(rad/s)^2 s] density of the noise of qd, positive; 1e-3 rad/s at 1 ms
+    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+
+    /// Bandwidth w [rad/s] on every joint, in every pose: at w the load's share of the velocity's
+    /// spectrum, Q_delta / w^2, is as large as the rest; -3 dB at w for each noise alone.
+    static Parameters for_bandwidth(const M&, double w) {
+      Parameters p;
+      p.Q_delta = w * w * (w * w / (1 / p.R_qd + 1 / (w * w * p.R_q)) + p.Q_qdd);
+      return p;
+    }
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit ActiveObserver(const M& model, const Parameters& p = {})
+      : model_(model), p_(p), sampling_(p.max_gap) {
+    require(p.Q_delta > 0 && p.Q_qdd >= 0, "Q_delta of the eao must be positive, Q_qdd at least 0");
+    require(p.R_q > 0 && p.R_qd > 0, "R_q and R_qd of the eao must be positive");
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    tau_ext_.setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    const Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
+    const Ldlt<kDof> B(now.B);
+    if (!B.ok()) {
+      sampling_.reset();
+      return {tau_ext_, Status::kSingularInertia};
+    }
+    const Vec<kDof> rest = now.bias + model_.friction(y.qd);
+    if (status == Status::kStarted) {
+      start(y, B);
+    } else {
+      const Vec<kDof> a_end = B.solve(Vec<kDof>(tau_ - rest));
+      predict(sampling_.h(), 0.5 * (a_ + a_end));  // (i)
+      correct(sampling_.h(), y);
+      tau_ext_ = now.B * delta_;
+      if (!(q_.allFinite() && qd_.allFinite() && within(tau_ext_, kEstimateLimit))) {
+        tau_ext_.setZero();
+        start(y, B);
+        status = Status::kDiverged;
+      }
+    }
+    a_ = B.solve(Vec<kDof>(y.tau - rest));
+    tau_ = y.tau;
+    return {tau_ext_, status};
+  }
+
+  /// P [rad^2 ... (rad/s^2)^2] of [q; qd; delta] of every joint after the last sample.
+  Mat<3> covariance() const noexcept {
+    Mat<3> P;
+    P << qq_, vq_, dq_, vq_, vv_, dv_, dq_, dv_, dd_;
+    return P;
+  }
+
+ private:
+  // P0 is what a few steps of noise give: R at 1 ms, and a delta within what w lets through
+  void start(const Measurement<kDof>& y, const Ldlt<kDof>& B) noexcept {
+    q_ = y.q;
+    qd_ = y.qd;
+    delta_ = B.solve(tau_ext_);
+    qq_ = 1e3 * p_.R_q, vv_ = 1e3 * p_.R_qd, dd_ = 0.01 * p_.Q_delta;
+    vq_ = dq_ = dv_ = 0;
+  }
+
+  // (ii)
+  [[gnu::always_inline]] void predict(double h, const Vec<kDof>& a) noexcept {
+    const Vec<kDof> dv = h * (a - delta_);
+    q_ += h * qd_ + 0.5 * h * dv;
+    qd_ += dv;
+
+    const double h2 = 0.5 * h * h;
+    const double Pqq = qq_ + h * vq_ - h2 * dq_, Pqv = vq_ + h * vv_ - h2 * dv_;  // Phi P
+    const double Pqd = dq_ + h * dv_ - h2 * dd_, Pvv = vv_ - h * dv_, Pvd = dv_ - h * dd_;
+    const double Q_v = h * p_.Q_qdd, Q_d = h * p_.Q_delta;
+    qq_ = Pqq + h * Pqv - h2 * Pqd + h * h * (Q_v / 3 + h * h / 20 * Q_d);
+    vq_ = Pqv - h * Pqd + h * (0.5 * Q_v + h * h / 8 * Q_d);
+    dq_ = Pqd - h * h / 6 * Q_d;
+    vv_ = Pvv - h * Pvd + Q_v + h * h / 3 * Q_d;
+    dv_ = Pvd - 0.5 * h * Q_d;
+    dd_ += Q_d;
+  }
+
+  // (iii)
+  [[gnu::always_inline]] void correct(double h, const Measurement<kDof>& y) noexcept {
+    const double s_q = 1 / (qq_ + p_.R_q / h);
+    update(qq_, vq_, dq_, s_q, y.q - q_);
+    const double s_qd = 1 / (vv_ + p_.R_qd / h);
+    update(vq_, vv_, dv_, s_qd, y.qd - qd_);
+  }
+
+  [[gnu::always_inline]] void update(double c_q, double c_v, double c_d, double s_inverse,
+                                     const Vec<kDof>& innovation) noexcept {
+    const Vec<kDof> scaled = s_inverse * innovation;
+    q_ += c_q * scaled;
+    qd_ += c_v * scaled;
+    delta_ += c_d * scaled;
+    qq_ -= c_q * c_q * s_inverse;
+    vq_ -= c_v * c_q * s_inverse;
+    dq_ -= c_d * c_q * s_inverse;
+    vv_ -= c_v * c_v * s_inverse;
+    dv_ -= c_d * c_v * s_inverse;
+    dd_ -= c_d * c_d * s_inverse;
+  }
+
+  M model_;
+  Parameters p_;
+  Sampling sampling_;
+  Vec<kDof> q_ = Vec<kDof>::Zero();                             // [rad]
+  Vec<kDof> qd_ = Vec<kDof>::Zero();                            // [rad/s]
+  Vec<kDof> delta_ = Vec<kDof>::Zero();                         // [rad/s^2]
+  double qq_ = 0, vq_ = 0, dq_ = 0, vv_ = 0, dv_ = 0, dd_ = 0;  // of P
+  Vec<kDof> a_ = Vec<kDof>::Zero();        // [rad/s^2] of (i) at the last sample
+  Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
+  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+};
+
+}  // namespace tauext

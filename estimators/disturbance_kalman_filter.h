@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Disturbance Kalman filter on the momentum: Hu and Xiong, "Contact force estimation for robot
+/// manipulator using semiparametric model and disturbance Kalman filter", IEEE Transactions on
+/// Industrial Electronics 2018. With the p and n of momentum.h and d = tau_ext with the sign of (3),
+///     pdot = n - d + white noise of density Q_p,   ddot = white noise of density Q_d           (i)
+/// measured as B qd, where qd carries white noise of density Q_qd.
+///
+/// Exact over a step h (Van Loan): with x = [p; d], P in blocks,
+///     p += h (n - d)
+///     P_pp += h^2 P_dd - h (P_dp + P_dp^T) + h Q_p + h^3/3 Q_d                             (ii)
+///     P_dp -= h P_dd + h^2/2 Q_d,   P_dd += h Q_d
+///     R = B Q_qd B^T / h
+/// R / h and h Q keep the densities, so the answer does not depend on the sampling time. Then
+///     S = P_pp + R,   [p; d] += [P_pp; P_dp] S^-1 (B qd - p),   P -= [P_pp; P_dp] S^-1 [P_pp P_dp^T]   (iii)
+/// with S factorised and never inverted. Of the symmetric blocks one triangle is computed and mirrored.
+///
+/// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w.
+#pragma once
+
+#include "estimators/ldlt.h"
+#include "estimators/momentum.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// Disturbance Kalman filter over a robot model M.
+template <RobotModel M>
+class DisturbanceKalmanFilter {
+ public:
+  static constexpr const char* kName = "dkf";
+  static constexpr int kDof = M::kDof;
+
+  /// Q_d has no default that fits every arm.
+  struct Parameters {
+    Mat<kDof> Q_d =
+        Mat<kDof>::Zero();  ///< [(N m)^2/s] density of ddot, symmetric, positive definite:
+                            ///< larger is faster and noisier
+    Vec<kDof> Q_p =
+        Vec<kDof>::Zero();  ///< [(N m)^2 s] density of the model's error, at least 0: larger
+                            ///< is slower, as it explains what else would be d
+    Vec<kDof> Q_qd =
+        Vec<kDof>::Constant(1e-9);  ///< [(rad/s)^2 s] density of the noise of qd, positive,
+                                    ///< larger is slower; 1e-3 rad/s at 1 ms
+    Vec<kDof> P0_qd =
+        Vec<kDof>::Constant(1e-8);       ///< [(rad/s)^2] variance of the first qd, at least 0
+    Mat<kDof> P0_d = Mat<kDof>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
+    double max_gap = 0.05;               ///< [s] a longer gap restarts the filter
+
+    /// Q_d = w^4 B(0) Q_qd B(0)^T: at q = 0 every joint is Butterworth's of -3 dB at w [rad/s], however
+    /// B couples them, and in other poses about so. P0 is what the filter settles to.
+    static Parameters for_bandwidth(const M& model, double w) {
+      Parameters p;
+      const Mat<kDof> B = model.inertia(Vec<kDof>::Zero());
+      const Mat<kDof> R = B * p.Q_qd.asDiagonal() * B.transpose();
+      p.Q_d = w * w * w * w * R;
+      p.P0_qd = kRoot2 * w * p.Q_qd;
+      p.P0_d = kRoot2 * w * w * w * R;
+      return p;
+    }
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit DisturbanceKalmanFilter(const M& model, const Parameters& p)
+      : p_(p), sampling_(p.max_gap), momentum_(model) {
+    require(Ldlt<kDof>(p.Q_d).ok(), "Q_d of the dkf must be positive definite");
+    require(p.Q_p.minCoeff() >= 0, "Q_p of the dkf must not be negative");
+    require(p.Q_qd.minCoeff() > 0, "Q_qd of the dkf must be positive");
+    require(p.P0_qd.minCoeff() >= 0 && p.P0_d.diagonal().minCoeff() >= 0,
+            "P0 of the dkf must not be negative");
+    mirror(p_.Q_d);
+    mirror(p_.P0_d);
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    d_.setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return {d_, status};
+    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (status == Status::kStarted) {
+      start(step);
+      return {d_, status};
+    }
+    predict(sampling_.h(), step.n);
+    if (!correct(sampling_.h(), step)) {
+      sampling_.reset();
+      return {d_, Status::kSingularInertia};
+    }
+    if (!(p_hat_.allFinite() && within(d_, kEstimateLimit))) {
+      d_.setZero();
+      start(step);
+      status = Status::kDiverged;
+    }
+    return {d_, status};
+  }
+
+  /// P [(N m s)^2 ... (N m)^2] of [p; d] after the last sample; symmetric.
+  Mat<2 * kDof> covariance() const noexcept {
+    Mat<2 * kDof> P;
+    P << P_pp_, P_dp_.transpose(), P_dp_, P_dd_;
+    return P;
+  }
+
+ private:
+  static constexpr double kRoot2 = 1.4142135623730951;
+
+  void start(const MomentumStep<kDof>& step) noexcept {
+    p_hat_ = step.p;
+    P_pp_.noalias() = step.B * p_.P0_qd.asDiagonal() * step.B.transpose();
+    mirror(P_pp_);
+    P_dp_.setZero();
+    P_dd_ = p_.P0_d;
+  }
+
+  // (ii)
+  [[gnu::always_inline]] void predict(double h, const Vec<kDof>& n) noexcept {
+    p_hat_ += h * (n - d_);
+    P_pp_ += h * (h * P_dd_ - (P_dp_ + P_dp_.transpose()) + h * h / 3 * p_.Q_d);
+    P_pp_.diagonal() += h * p_.Q_p;
+    P_dp_ -= h * P_dd_ + 0.5 * h * h * p_.Q_d;
+    P_dd_ += h * p_.Q_d;
+  }
+
+  // (iii); false if S is not positive definite
+  [[gnu::always_inline]] bool correct(double h, const MomentumStep<kDof>& step) noexcept {
+    const Mat<kDof> R = step.B * (p_.Q_qd / h).asDiagonal() * step.B.transpose();
+    const Ldlt<kDof> S(P_pp_ + R);
+    if (!S.ok()) return false;
+    const Vec<kDof> innovation = S.solve(Vec<kDof>(step.p - p_hat_));
+    const Mat<kDof> G_p = S.solve(P_pp_), G_d = S.solve(Mat<kDof>(P_dp_.transpose()));
+    p_hat_ += P_pp_ * innovation;
+    d_ += P_dp_ * innovation;
+    P_pp_ -= P_pp_ * G_p;
+    P_dd_ -= P_dp_ * G_d;
+    P_dp_ -= P_dp_ * G_p;
+    mirror(P_pp_);
+    mirror(P_dd_);
+    return true;
+  }
+
+  // the lower triangle into the upper one
+  [[gnu::always_inline]] static void mirror(Mat<kDof>& m) noexcept {
+#pragma GCC unroll 8
+    for (int j = 1; j < kDof; ++j) {
+#pragma GCC unroll 8
+      for (int i = 0; i < j; ++i) m(i, j) = m(j, i);
+    }
+  }
+
+  Parameters p_;
+  Sampling sampling_;
+  Momentum<M> momentum_;
+  Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
+  Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate
+  Mat<kDof> P_pp_, P_dp_, P_dd_;         // of P
+};
+
+}  // namespace tauext

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Nonlinear disturbance observer with the gain X = w B(q): Mohammadi, Tavakoli, Marquez and
+/// Hashemzadeh, "Nonlinear disturbance observer design for robotic manipulators", Control Engineering
+/// Practice 2013, whose gain matrix it is with their free matrix a multiple of the unit.
+///
+///     d = z - w B qd                                                                   (17)
+///     zdot = w (tau + C^T qd - g - F - d),   because Bdot = C + C^T                        (18)
+/// where n = tau + C^T qd - g - F and p = B qd are those of momentum.h: no B^-1, and every joint follows
+/// tau_ext as a low-pass of w, whatever the pose. So it is the first-order momentum observer, but for how
+/// it is stepped. As in ndob.h everything but tau_k-1 is the mean of both ends, d_k too:
+///     (1 + h w / 2) (z_k - z_k-1) = h w (n - d_k-1 + w (p_k - p_k-1) / 2)                  (i)
+#pragma once
+
+#include "estimators/momentum.h"
+#include "estimators/sampling.h"
+
+namespace tauext {
+
+/// NDOB with X = w B(q) over a robot model M.
+template <RobotModel M>
+class NdobInertia {
+ public:
+  static constexpr const char* kName = "ndob_wb";
+  static constexpr int kDof = M::kDof;
+
+  struct Parameters {
+    double bandwidth = 30;  ///< [rad/s] w, positive: larger is faster and noisier
+    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+
+    /// Bandwidth w [rad/s] on every joint, in every pose.
+    static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
+  };
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit NdobInertia(const M& model, const Parameters& p = {})
+      : p_(p), sampling_(p.max_gap), momentum_(model) {
+    require(p.bandwidth > 0, "the bandwidth [rad/s] of ndob_wb must be positive");
+  }
+
+  void reset() noexcept {
+    sampling_.reset();
+    tau_ext_.setZero();
+  }
+
+  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+    Status status = sampling_.accept(y);
+    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    const MomentumStep<kDof> step = momentum_.advance(y);
+    const double w = p_.bandwidth;
+    if (status == Status::kStarted) {
+      z_ = tau_ext_ + w * step.p;
+    } else {
+      const double hw = sampling_.h() * w;
+      z_ += hw / (1 + 0.5 * hw) * (step.n - tau_ext_ + 0.5 * w * step.dp);  // (i)
+      tau_ext_ = z_ - w * step.p;                                           // (17)
+      if (!within(tau_ext_, kEstimateLimit)) {
+        tau_ext_.setZero();
+        z_ = w * step.p;
+        status = Status::kDiverged;
+      }
+    }
+    return {tau_ext_, status};
+  }
+
+ private:
+  Parameters p_;
+  Sampling sampling_;
+  Momentum<M> momentum_;
+  Vec<kDof> z_ = Vec<kDof>::Zero();        // [N m]
+  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+};
+
+}  // namespace tauext

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/disturbance_kalman_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <stdexcept>
+
+#include "estimators/higher_order_momentum_observer.h"
+#include "estimators/test/arm.h"
+#include "estimators/testbed1.h"
+
+namespace tauext::test {
+namespace {
+
+template <class Arm>
+using Dkf = DisturbanceKalmanFilter<Arm>;
+
+template <class Arm>
+Dkf<Arm> dkf(double w) {
+  return Dkf<Arm>(Arm(), Dkf<Arm>::Parameters::for_bandwidth(Arm(), w));
+}
+
+TEST(Dkf, WithAConstantBIsTheSecondOrderMomentumObserver) {
+  // the Kalman filter of (i) between samples has its poles and zeros; sampled it leads by about h/2
+  constexpr double kLoad = 50;
+  auto filter = dkf<Testbed1>(30);
+  MomentumObserver2<Testbed1> mo2(Testbed1(), {.bandwidth = 30});
+  const auto step = [](double t) -> Vec<1> { return Vec<1>(t < 1 ? 0 : kLoad); };
+  double worst = 0;
+  for (const auto& y : simulate<Testbed1>(grid(2, 0.1e-3), step)) {
+    worst = std::max(worst, std::abs(filter.update(y).tau_ext[0] - mo2.update(y).tau_ext[0]));
+  }
+  EXPECT_LT(worst, 0.01 * kLoad) << "N m";
+}
+
+TEST(Dkf, HeldAtQ0EveryJointIsTheSecondOrderMomentumObserver) {
+  // B(0) couples the joints by up to nine tenths, and Q_d undoes it
+  const WallMoBot3 arm;
+  auto filter = dkf<WallMoBot3>(30);
+  MomentumObserver2<WallMoBot3> mo2(arm, {.bandwidth = 30});
+  Measurement<3> y;
+  for (int k = 0; k < 10000; ++k) {
+    y.t = k * 0.1e-3;
+    y.tau = arm.gravity(y.q) + (k < 5000 ? Vec<3>(0, 0, 0) : Vec<3>(50, -20, 30));
+    const Vec<3> d = filter.update(y).tau_ext, e = mo2.update(y).tau_ext;
+    ASSERT_LT((d - e).norm(), 0.01 * 50) << "N m at t = " << y.t;
+  }
+}
+
+// (ii) and (iii) as a textbook has them, dense and with an inverse
+struct TextbookDkf {
+  const WallMoBot3 arm = WallMoBot3();
+  const Dkf<WallMoBot3>::Parameters p;
+  Vec<6> x;
+  Mat<6> P;
+  Measurement<3> before;
+  bool started = false;
+
+  Vec<3> rest(const Measurement<3>& y) const {
+    return arm.momentum_bias(y.q, y.qd) - arm.friction(y.qd);
+  }
+  Vec<3> update(const Measurement<3>& y) {
+    const Mat<3> B = arm.inertia(y.q), I = Mat<3>::Identity(), O = Mat<3>::Zero();
+    if (!started) {
+      started = true;
+      x << B * y.qd, Vec<3>::Zero();
+      P << B * p.P0_qd.asDiagonal() * B.transpose(), O, O, p.P0_d;
+    } else {
+      const double h = y.t - before.t;
+      Mat<6> Phi, Q;
+      Phi << I, -h * I, O, I;
+      Q << h * h * h / 3 * p.Q_d + h * Mat<3>(p.Q_p.asDiagonal()), -h * h / 2 * p.Q_d,
+          -h * h / 2 * p.Q_d, h * p.Q_d;
+      Eigen::Matrix<double, 3, 6> H;
+      H << I, O;
+      x = Phi * x;
+      x.head<3>() += h * (before.tau + 0.5 * (rest(y) + rest(before)));
+      P = Mat<6>(Phi * P * Phi.transpose()) + Q;
+      const Mat<3> S = H * P * H.transpose() + B * (p.Q_qd / h).asDiagonal() * B.transpose();
+      const Eigen::Matrix<double, 6, 3> K = P * H.transpose() * S.inverse();
+      x += K * (B * y.qd - H * x);
+      P = Mat<6>((Mat<6>::Identity() - K * H) * P);
+      P = Mat<6>(0.5 * (P + P.transpose()));
+    }
+    before = y;
+    return x.tail<3>();
+  }
+};
+
+TEST(Dkf, AgreesWithTheDenseTextbookFormFor30SecondsAndPStaysSymmetric) {
+  auto p = Dkf<WallMoBot3>::Parameters::for_bandwidth(WallMoBot3(), 30);
+  p.Q_p.setConstant(0.1);
+  Dkf<WallMoBot3> filter(WallMoBot3(), p);
+  TextbookDkf textbook{.p = p};
+  const auto sine = [](double t) -> Vec<3> { return Vec<3>::Constant(10 * std::sin(t) - 5); };
+  double worst = 0;
+  for (const auto& y : simulate(grid(30, 1e-3), sine, {.amplitude = 0.3, .w = 2})) {
+    worst = std::max(worst, (filter.update(y).tau_ext - textbook.update(y)).norm());
+    const Mat<6> P = filter.covariance();
+    ASSERT_TRUE(P.allFinite());
+    ASSERT_EQ(P, P.transpose()) << "t = " << y.t;
+    ASSERT_GT(P.diagonal().minCoeff(), 0);
+  }
+  EXPECT_LT(worst, 1e-7) << "N m";
+  EXPECT_LT((filter.covariance() - textbook.P).norm(), 1e-9 * textbook.P.norm());
+}
+
+TEST(Dkf, StartedInMotionItIsRightFromTheFirstSample) {
+  auto filter = dkf<WallMoBot3>(30);
+  double worst = 0;
+  for (const auto& y : simulate(grid(5, 1e-3), constant(0), {.amplitude = 0.3, .w = 2})) {
+    worst = std::max(worst, filter.update(y).tau_ext.cwiseAbs().maxCoeff());
+  }
+  EXPECT_LT(worst, 0.01) << "N m";
+}
+
+TEST(Dkf, RefusesParametersThatMeanNothing) {
+  const WallMoBot3 arm;
+  EXPECT_THROW(Dkf<WallMoBot3>(arm, {}), std::invalid_argument) << "Q_d = 0";
+  auto p = Dkf<WallMoBot3>::Parameters::for_bandwidth(arm, 30);
+  p.Q_qd[1] = 0;
+  EXPECT_THROW(Dkf<WallMoBot3>(arm, p), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tauext::test
