@@ -28,7 +28,7 @@ struct Worth {
 struct AtBandwidth {
   std::string estimator;
   double design = 0;           ///< [rad/s] for_bandwidth() of this measured the wanted one
-  std::optional<Worth> worth;  ///< nothing if no design reached it within 2 %
+  std::optional<Worth> worth;  ///< nothing if no design came within 25 % of it
 };
 
 /// Sets every tunable estimator so that its measured bandwidth is w [rad/s].

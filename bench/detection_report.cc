@@ -32,20 +32,27 @@ std::string rate(const Cell& c) {
   return fmt::format("{:.1f} (<{:.1f})", c.alarms / c.hours(), poisson_upper(c.alarms) / c.hours());
 }
 
+// how much of that time it is in alarm
+std::string on(const Cell& c) {
+  if (c.quiet_samples == 0) return "-";
+  return fmt::format("{:.1f}", 100. * static_cast<double>(c.alarmed_samples) /
+                                   static_cast<double>(c.quiet_samples));
+}
+
 constexpr const char* kRow =
     "{:<34} {:>7} {:>5} {:>5} {:>6} {:>17} {:>9} {:>6} {:>8} {:>7} {:>6}\n";
 
 std::string head() {
   return fmt::format(fmt::runtime(kRow), "estimator+detector", "recall", "p50", "p95", "stray",
-                     "alarms", "called", "brisk", "clamping", "named", "failed") +
-         fmt::format(fmt::runtime(kRow), "", "%", "ms", "ms", "marks", "1/h", "collision", "%", "%",
-                     "%", "runs");
+                     "alarms", "on", "called", "brisk", "clamping", "named", "failed") +
+         fmt::format(fmt::runtime(kRow), "", "%", "ms", "ms", "marks", "1/h", "%", "collision", "%",
+                     "%", "%", "runs");
 }
 
 std::string line(const Cell& c) {
   return fmt::format(fmt::runtime(kRow), name_of(c), percent(c.detected, c.blows),
                      milliseconds(quantile(c.delays, 0.5)), milliseconds(quantile(c.delays, 0.95)),
-                     c.stray, rate(c), c.collision_alarms, percent(c.brisk_flagged, c.brisk),
+                     c.stray, rate(c), on(c), c.collision_alarms, percent(c.brisk_flagged, c.brisk),
                      percent(c.clampings_flagged, c.clampings),
                      percent(c.clampings_named, c.clampings), c.failed_runs);
 }
@@ -69,6 +76,7 @@ Json to_json(const Cell& c) {
   j["stray_marks"] = c.stray;
   j["quiet_h"] = c.hours();
   j["false_alarms"] = c.alarms;
+  j["quiet_time_in_alarm_h"] = static_cast<double>(c.alarmed_samples) * 1e-3 / 3600;
   j["false_alarms_called_collision"] = c.collision_alarms;
   if (c.quiet_samples > 0) {
     j["false_alarms_per_hour"] = c.alarms / c.hours();
@@ -108,7 +116,8 @@ std::string format_study(const std::vector<Cell>& cells) {
          "its mark.\n"
          "stray: other marks in these runs. alarms: marks in free motion and slow pushes, and the "
          "rate\n"
-         "that is excluded at 95 %; called collision: those that say so. brisk: pushes of 100 N in "
+         "that is excluded at 95 %; on: share of that time in alarm; called collision: marks that "
+         "say so. brisk: pushes of 100 N in "
          "0.1 s\n"
          "that were marked. clamping: soft clampings marked while they hold; named: as clampings.\n"
          "failed: runs in which an estimate was missing; their blows count.\n";

@@ -58,6 +58,7 @@ struct Cell {
   int stray = 0;                  ///< marks in these runs outside such windows
   std::vector<double> delays;     ///< [s] from a detected blow's begin to its mark, sorted
   long quiet_samples = 0;         ///< of slow pushes and free motion, at 1 kHz
+  long alarmed_samples = 0;       ///< of them, where the score is 1 or more
   int alarms = 0;                 ///< marks in them
   int collision_alarms = 0;       ///< those that say collision
   int brisk = 0, brisk_flagged = 0;
@@ -73,11 +74,20 @@ struct Cell {
 /// @throws std::invalid_argument for unknown names, and for seeds that reach kTrainingSeed
 std::vector<Cell> detection_study(const StudyOptions& options, const Thresholds& thresholds);
 
-/// Sets every calibratable detector's thresholds behind every estimator: `margin` times (as an
-/// amplitude) the largest statistic of runs with a known panel of 0, 50 and 150 kg, free motion and
-/// slow pushes alone, for each of the study's velocity noises.
-/// @throws std::invalid_argument for a margin below 1
-Thresholds calibrate(double margin, int threads = 0,
-                     const std::function<void(double)>& progress = nullptr);
+/// How thresholds are set.
+struct CalibrationOptions {
+  double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
+  std::vector<std::string> conditions;   ///< trained on; empty: training_conditions()
+  int threads = 0;                       ///< 0: one a core
+  std::function<void(double)> progress;  ///< called with the share that is done; may be empty
+};
+
+/// What thresholds are trained on unless said: the paper's range, 0 to 150 kg, known and unknown.
+const std::vector<std::string>& training_conditions();
+
+/// Sets every calibratable detector's thresholds behind every estimator: `margin` times the largest
+/// statistic of training runs, free motion and slow pushes alone, for each of the study's velocity noises.
+/// @throws std::invalid_argument for a margin below 1 and for unknown names
+Thresholds calibrate(const CalibrationOptions& options);
 
 }  // namespace tauext

@@ -56,6 +56,12 @@ Eigen::VectorXd Robot::largest_statistic(std::string_view detector, const Trace&
   return stages->largest_statistic(detector, trace, estimates, s, from);
 }
 
+Eigen::MatrixXd Robot::covariance(std::string_view detector, const Trace& trace,
+                                  const Output& estimates, const DetectorSettings& s,
+                                  double from) const {
+  return stages->covariance(detector, trace, estimates, s, from);
+}
+
 const Calibration& Robot::calibration(std::string_view detector) const {
   return stages->calibration(detector);
 }

@@ -26,6 +26,7 @@ struct DetectorSettings {
 struct Calibration {
   int degree = 1;             ///< power of tau_ext that its statistic grows with
   Eigen::VectorXd threshold;  ///< its default, in the unit of its statistic
+  bool has_metric = false;    ///< whether it weighs the joints by a metric, too
 };
 
 /// A robot with the estimators and detectors that run on it. Every call throws std::invalid_argument
@@ -60,6 +61,10 @@ class Robot {
   Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
                                     const Output& estimates, const DetectorSettings& settings,
                                     double from) const;
+
+  /// The mean of z z^T over samples with t >= from, z the change() of a detector with a metric.
+  Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace, const Output& estimates,
+                             const DetectorSettings& settings, double from) const;
 
   /// How a calibratable detector's thresholds are set.
   const Calibration& calibration(std::string_view detector) const;

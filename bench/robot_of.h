@@ -33,11 +33,15 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-// sets the thresholds of Parameters p that are known
+// sets what is known of Parameters p
 template <class P>
-void set_threshold(P& p, const char* name, const DetectorThresholds& known) {
+void set_trained(P& p, const char* name, const DetectorThresholds& known) {
   const auto it = known.find(name);
-  if (it != known.end()) p.threshold = it->second;
+  if (it == known.end()) return;
+  p.threshold = it->second.threshold;
+  if constexpr (requires { p.metric; }) {
+    if (it->second.metric.size() > 0) p.metric = it->second.metric;
+  }
 }
 
 template <class D>
@@ -46,11 +50,11 @@ D make_detector(const DetectorSettings& settings) {
   if constexpr (requires { typename D::Parameters; }) {
     typename D::Parameters p;
     if constexpr (requires { p.collision.threshold, p.clamping.threshold; }) {
-      set_threshold(p.collision, PanTompkins<N>::kName, settings.thresholds);
-      set_threshold(p.clamping, Clamping<N>::kName, settings.thresholds);
+      set_trained(p.collision, PanTompkins<N>::kName, settings.thresholds);
+      set_trained(p.clamping, Clamping<N>::kName, settings.thresholds);
       p.collision.start_up = p.clamping.start_up = settings.start_up;
     } else {
-      if constexpr (requires { p.threshold; }) set_threshold(p, D::kName, settings.thresholds);
+      if constexpr (requires { p.threshold; }) set_trained(p, D::kName, settings.thresholds);
       if constexpr (requires { p.start_up; }) p.start_up = settings.start_up;
     }
     return D(p);
@@ -76,6 +80,9 @@ struct Robot::Stages {
   virtual Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
                                             const Output& estimates, const DetectorSettings& s,
                                             double from) const = 0;
+  virtual Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace,
+                                     const Output& estimates, const DetectorSettings& s,
+                                     double from) const = 0;
   virtual const Calibration& calibration(std::string_view detector) const = 0;
 };
 
@@ -139,7 +146,10 @@ struct StagesOf final : Robot::Stages {
     });
     if constexpr (CalibratableDetector<D>) {
       const typename D::Parameters p;
-      calibratable.emplace_back(D::kName, Calibration{D::kDegree, p.threshold});
+      constexpr bool kMetric = requires(D d) {
+        p.metric, d.change();
+      };
+      calibratable.emplace_back(D::kName, Calibration{D::kDegree, p.threshold, kMetric});
     }
   }
 
@@ -210,6 +220,22 @@ struct StagesOf final : Robot::Stages {
       if (samples[k].t >= from) largest = largest.cwiseMax(d->statistic());
     }
     return largest;
+  }
+
+  Eigen::MatrixXd covariance(std::string_view name, const Trace& trace, const Output& estimates,
+                             const DetectorSettings& s, double from) const override {
+    const DetectorPtr d = find(detectors, "detector", name)(s);
+    const auto [samples, values] = in_order(trace, estimates);
+    Mat<N> sum = Mat<N>::Zero();
+    int count = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      Detection ignored;
+      d->run({&samples[k], 1}, {&values[k], 1}, {&ignored, 1});
+      if (samples[k].t < from) continue;
+      sum += d->change() * d->change().transpose();
+      ++count;
+    }
+    return sum / std::max(count, 1);
   }
 
   const Calibration& calibration(std::string_view detector_name) const override {

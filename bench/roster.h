@@ -4,7 +4,10 @@
 /// benchmark, to tauext-replay and to the conformance tests. (Scenarios: mjcf/scenario_<robot>.cc.)
 #pragma once
 
+#include <type_traits>
+
 #include "bench/baselines.h"
+#include "estimators/active_observer.h"
 #include "estimators/detectors/band_pass.h"
 #include "estimators/detectors/clamping.h"
 #include "estimators/detectors/contact_classifier.h"
@@ -13,11 +16,14 @@
 #include "estimators/detectors/high_pass.h"
 #include "estimators/detectors/pan_tompkins.h"
 #include "estimators/detectors/threshold.h"
+#include "estimators/disturbance_kalman_filter.h"
 #include "estimators/ekf.h"
 #include "estimators/higher_order_momentum_observer.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/momentum_observer.h"
 #include "estimators/ndob.h"
+#include "estimators/ndob_inertia.h"
+#include "estimators/sliding_mode_observer.h"
 #include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
 
@@ -58,6 +64,15 @@ inline Ndob<Testbed1>::Parameters testbed1_ndob() {
   return {.X = Vec<1>(100 * Testbed1::Parameters().theta1)};
 }
 
+/// [rad/s] of the estimators whose bandwidth is ours to choose: they are comparable with each other.
+inline constexpr double kRosterBandwidth = 30;
+
+/// The EKF with the Q and R of the sensors instead of the printed ones: what the filter can do.
+struct EkfHonest : Ekf<WallMoBot3> {
+  static constexpr const char* kName = "ekf_honest";
+  explicit EkfHonest(const WallMoBot3& arm) : Ekf(arm, Parameters::honest()) {}
+};
+
 /// Calls visit(make) for the estimators that every arm has; make(trace) builds one.
 template <RobotModel M, class Visit>
 void for_each_common_estimator(const M& model, Visit&& visit) {
@@ -65,10 +80,19 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   visit([](const Trace&) { return Zero<N>(); });
   visit([](const Trace& trace) { return Truth<N>(trace); });
   visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
-  visit([=](const Trace&) { return InverseDynamics<M>(model); });
-  visit([=](const Trace&) { return MomentumObserver<M>(model); });
-  visit([=](const Trace&) { return MomentumObserver2<M>(model); });
-  visit([=](const Trace&) { return MomentumObserver3<M>(model); });
+  const auto at_bandwidth = [&]<class E>(std::type_identity<E>) {
+    visit([=](const Trace&) {
+      return E(model, E::Parameters::for_bandwidth(model, kRosterBandwidth));
+    });
+  };
+  at_bandwidth(std::type_identity<InverseDynamics<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver2<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver3<M>>());
+  at_bandwidth(std::type_identity<NdobInertia<M>>());
+  at_bandwidth(std::type_identity<DisturbanceKalmanFilter<M>>());
+  at_bandwidth(std::type_identity<SlidingModeObserver<M>>());
+  at_bandwidth(std::type_identity<ActiveObserver<M>>());
 }
 
 /// Calls visit(make) for every estimator of a robot that is not named below.
@@ -83,6 +107,7 @@ void for_each_estimator(const WallMoBot3& arm, Visit&& visit) {
   using M = WallMoBot3;
   for_each_common_estimator(arm, visit);
   visit([=](const Trace&) { return Ekf<M>(arm, Ekf<M>::Parameters::paper()); });
+  visit([=](const Trace&) { return EkfHonest(arm); });
   visit([=](const Trace&) { return Ndob<M>(arm, Ndob<M>::Parameters::paper()); });
 }
 

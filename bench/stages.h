@@ -34,6 +34,8 @@ class DetectorStage {
                    std::span<Detection> out) = 0;
   /// Of the last sample; zero for a detector that cannot be calibrated.
   virtual Vec<N> statistic() const = 0;
+  /// What its metric weighs; zero for a detector without one.
+  virtual Vec<N> change() const = 0;
 };
 
 template <TorqueEstimator E>
@@ -61,6 +63,13 @@ class DetectorStageOf final : public DetectorStage<D::kDof> {
   Vec<D::kDof> statistic() const override {
     if constexpr (CalibratableDetector<D>) {
       return d_.statistic();
+    } else {
+      return Vec<D::kDof>::Zero();
+    }
+  }
+  Vec<D::kDof> change() const override {
+    if constexpr (requires { d_.change(); }) {
+      return d_.change();
     } else {
       return Vec<D::kDof>::Zero();
     }

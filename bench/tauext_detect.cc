@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ using namespace tauext;
 
 struct Flags {
   StudyOptions study;
-  double margin = 1.3;
+  CalibrationOptions calibration;
   std::string calibrate_to, thresholds, out;
   bool list = false;
 };
@@ -48,12 +49,19 @@ class Progress {
 
 Thresholds calibrated(const Flags& f) {
   Progress progress("calibrating");
-  return calibrate(f.margin, f.study.threads, progress());
+  CalibrationOptions o = f.calibration;
+  o.threads = f.study.threads;
+  o.progress = progress();
+  return calibrate(o);
 }
 
 int run(Flags& f) {
   if (f.list) {
-    for (const Condition& c : conditions()) fmt::print("{:<18} {}\n", c.name, c.description);
+    const std::vector<std::string>& trained = training_conditions();
+    for (const Condition& c : conditions()) {
+      const bool is_trained = std::count(trained.begin(), trained.end(), c.name) > 0;
+      fmt::print("{:<18} {}{}\n", c.name, c.description, is_trained ? " (trained on)" : "");
+    }
     return kGood;
   }
   if (!f.calibrate_to.empty()) {
@@ -101,11 +109,12 @@ int main(int argc, char** argv) {
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
       ->type_name("FILE");
-  app.add_option("--margin", f.margin, "threshold over the largest value in training")
+  app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
       ->capture_default_str();
   app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE");
   app.add_option("--out", f.out, "write all of it as JSON, with points of the ROC")
       ->type_name("FILE");
+  names("--train", f.calibration.conditions, "conditions to train on (see --list)");
   names("--conditions", f.study.conditions, "only these (see --list)");
   names("--estimators", f.study.estimators, "only these (see tauext-record --list)");
   names("--detectors", f.study.detectors, "only these");

@@ -19,8 +19,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "tauext-thresholds-1";
 
-Json to_json(const Eigen::VectorXd& v) {
-  return std::vector<double>(v.begin(), v.end());
+Json to_json(const Trained& t) {
+  Json j;
+  j["threshold"] = std::vector<double>(t.threshold.begin(), t.threshold.end());
+  for (const auto& row : t.metric.rowwise()) {
+    j["metric"].push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return j;
 }
 
 void require_known(const std::vector<std::string>& known, const char* what,
@@ -34,12 +39,25 @@ Eigen::VectorXd vector_of(const Json& j, int dof, const std::string& where) {
   const auto values = j.get<std::vector<double>>();
   if (static_cast<int>(values.size()) != dof) {
     throw std::runtime_error(
-        fmt::format("{}: {} thresholds for {} joints", where, values.size(), dof));
-  }
-  for (const double x : values) {
-    if (!(x > 0)) throw std::runtime_error(fmt::format("{}: {} is not positive", where, x));
+        fmt::format("{}: {} numbers for {} joints", where, values.size(), dof));
   }
   return Eigen::Map<const Eigen::VectorXd>(values.data(), dof);
+}
+
+Trained trained_of(const Json& j, int dof, const std::string& where) {
+  Trained t{vector_of(j.at("threshold"), dof, where), {}};
+  if (!(t.threshold.minCoeff() > 0)) {
+    throw std::runtime_error(
+        fmt::format("{}: a threshold of {} is not positive", where, t.threshold.minCoeff()));
+  }
+  if (!j.contains("metric")) return t;
+  if (j["metric"].size() != static_cast<std::size_t>(dof)) {
+    throw std::runtime_error(
+        fmt::format("{}: the metric has {} rows for {} joints", where, j["metric"].size(), dof));
+  }
+  t.metric.resize(dof, dof);
+  for (int i = 0; i < dof; ++i) t.metric.row(i) = vector_of(j["metric"][i], dof, where).transpose();
+  return t;
 }
 
 ThresholdSet set_of(const Json& j) {
@@ -52,7 +70,7 @@ ThresholdSet set_of(const Json& j) {
     for (const auto& [detector, values] : detectors.items()) {
       require_known(r.detectors, "detector", detector);
       set.by_estimator[estimator][detector] =
-          vector_of(values, r.dof, fmt::format("{}/{}+{}", set.robot, estimator, detector));
+          trained_of(values, r.dof, fmt::format("{}/{}+{}", set.robot, estimator, detector));
     }
   }
   return set;

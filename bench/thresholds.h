@@ -10,9 +10,14 @@
 
 namespace tauext {
 
-/// Thresholds of the detectors behind one estimator, each in the unit of its statistic, per joint. A
-/// detector that is not in it keeps its default.
-using DetectorThresholds = std::map<std::string, Eigen::VectorXd>;
+/// What training says of one detector.
+struct Trained {
+  Eigen::VectorXd threshold;  ///< in the unit of its statistic, per joint
+  Eigen::MatrixXd metric;     ///< [1] of a detector that has one; else empty
+};
+
+/// The detectors behind one estimator. One that is not in it keeps its defaults.
+using DetectorThresholds = std::map<std::string, Trained>;
 
 /// Thresholds of one robot behind sensors of one quality, by estimator.
 struct ThresholdSet {
@@ -38,6 +43,7 @@ void write_thresholds(const Thresholds& t, const std::string& path);
 
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing key, a
 /// threshold that is not positive, a wrong number of joints, an unknown robot, estimator or detector
+/// (a metric that is none is refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 
 }  // namespace tauext

@@ -29,8 +29,8 @@ concept RobotModel = requires(const M& m, const Vec<M::kDof>& q, const Vec<M::kD
 /// Inertia and bias of one state.
 template <int N, class Scalar = double>
 struct Dynamics {
-  Mat<N, Scalar> B;     ///< [kg m^2] inertia
-  Vec<N, Scalar> bias;  ///< [N m] C qd + g
+  Mat<N, Scalar> B = Mat<N, Scalar>::Zero();     ///< [kg m^2] inertia
+  Vec<N, Scalar> bias = Vec<N, Scalar>::Zero();  ///< [N m] C qd + g
 };
 
 /// B and C qd + g of one state; a model that shares work between the two offers `dynamics` itself.

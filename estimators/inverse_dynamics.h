@@ -72,11 +72,11 @@ class InverseDynamics {
   Parameters p_;
   Sampling sampling_;
   StepChange new_step_;
-  double share_ = 0;                                                // [1] 1 - a
-  Dynamics<kDof> before_ = {Mat<kDof>::Zero(), Vec<kDof>::Zero()};  // at the last used sample
-  Vec<kDof> qd_ = Vec<kDof>::Zero();                                // [rad/s] there
-  Vec<kDof> tau_ = Vec<kDof>::Zero();                               // [N m] there
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();                           // [N m] the last estimate
+  double share_ = 0;                       // [1] 1 - a
+  Dynamics<kDof> before_;                  // at the last used sample
+  Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
+  Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
+  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

@@ -4,18 +4,25 @@
 /// beyond any push, and stays. A derivative does not see that; a plain limit takes an unknown payload
 /// for it. So the limit is on what has changed within the last second or so:
 ///     z = high-pass of tau_ext at w_baseline, low-pass at w_smooth (filters.h)              (i)
-///     lasting_i = smallest |z_i| of the last `duration`, by eight blocks of it              (ii)
-///     mark where max_i(lasting_i / threshold_i) rises through 1
-/// (ii) lets a blow pass: it is over before `duration` is. Known limits: what rises much slower than
+///     size = sqrt(z^T metric z)                                                             (ii)
+///     lasting = smallest size of the last `duration`, by eight blocks of it                 (iii)
+///     mark where lasting / threshold rises through 1
+/// One force is a different torque on every joint, in every direction another; the metric undoes that.
+/// Trained on pushes from all sides it is (I + C / rho^2)^-1, C the covariance of z in training and
+/// rho a torque that counts where training shows nothing (Mahalanobis 1936), so that pushes of one
+/// strength are of one size, and what an unknown payload does as the arm moves counts less.
+/// (iii) lets a blow pass: it is over before `duration` is. Known limits: what rises much slower than
 /// 1 / w_baseline passes, too; and a push that is as strong and as slow is a clamping to it.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
+#include "estimators/ldlt.h"
 
 namespace tauext {
 
@@ -28,8 +35,10 @@ class Clamping {
   static constexpr int kDegree = 1;
 
   struct Parameters {
-    /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at 1.2 m
-    Vec<N> threshold = Vec<N>::Constant(120);
+    /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger misses
+    /// more and alarms less; by default beyond a push of 100 N at 1.5 m
+    Vec<N> threshold = Vec<N>::Constant(150);
+    Mat<N> metric = Mat<N>::Identity();  ///< [1] of (ii), symmetric positive definite
     /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a clamping
     /// that rises slowly
     double w_baseline = 0.5;
@@ -48,6 +57,8 @@ class Clamping {
     require(p.threshold.minCoeff() > 0, "threshold [N m] of clamping must be positive");
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
     require(p.duration > 0, "duration [s] of clamping must be positive");
+    require(p.metric.isApprox(p.metric.transpose()) && Ldlt<N>(p.metric).ok(),
+            "metric of clamping must be symmetric and positive definite");
     reset();
   }
 
@@ -55,7 +66,7 @@ class Clamping {
     marking_.reset();
     z_.setZero();
     statistic_.setZero();
-    blocks_.fill(Vec<N>::Zero());
+    blocks_.fill(0);
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
@@ -66,13 +77,13 @@ class Clamping {
       block_began_ = t;
     } else {
       const Vec<N> changed = tau_ext - baseline_(t, tau_ext);
-      z_ = smooth_(t, changed);  // (i)
-      last(t, z_.cwiseAbs());
+      z_ = smooth_(t, changed);                    // (i)
+      keep(t, std::sqrt(z_.dot(p_.metric * z_)));  // (ii)
     }
     return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kClamping);
   }
 
-  /// [N m] lasting |z|.
+  /// [N m] `lasting`, the same for every joint.
   const Vec<N>& statistic() const noexcept { return statistic_; }
 
   /// [N m] z of (i): how far tau_ext is from its baseline.
@@ -81,22 +92,21 @@ class Clamping {
  private:
   static constexpr int kBlocks = 8;
 
-  // (ii)
-  void last(double t, const Vec<N>& x) noexcept {
+  // (iii)
+  void keep(double t, double size) noexcept {
     if (t - block_began_ >= p_.duration / kBlocks) {
       block_began_ = t;
       newest_ = (newest_ + 1) % kBlocks;
-      blocks_[newest_] = x;
+      blocks_[newest_] = size;
     }
-    blocks_[newest_] = blocks_[newest_].cwiseMin(x);
-    statistic_ = blocks_[0];
-    for (const Vec<N>& b : blocks_) statistic_ = statistic_.cwiseMin(b);
+    blocks_[newest_] = std::min(blocks_[newest_], size);
+    statistic_.setConstant(*std::min_element(blocks_.begin(), blocks_.end()));
   }
 
   Parameters p_;
   LowPass<N> baseline_, smooth_;
   Marking marking_;
-  std::array<Vec<N>, kBlocks> blocks_;
+  std::array<double, kBlocks> blocks_{};  // [N m]
   int newest_ = 0;
   double block_began_ = 0;  // [s]
   Vec<N> z_ = Vec<N>::Zero();
