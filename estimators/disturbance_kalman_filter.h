@@ -156,7 +156,8 @@ class DisturbanceKalmanFilter {
   Momentum<M> momentum_;
   Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
   Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate
-  Mat<kDof> P_pp_, P_dp_, P_dd_;         // of P
+  // blocks of P
+  Mat<kDof> P_pp_ = Mat<kDof>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;
 };
 
 }  // namespace tauext
