@@ -16,7 +16,9 @@
 ///     Q = Q_delta [h^5/20 h^4/8 -h^3/6; . h^3/3 -h^2/2; . . h] + Q_qdd [h^3/3 h^2/2 0; . h 0; . . 0]
 /// then q and qd are measured in turn, with noise of R_q / h and R_qd / h:
 ///     s = P_ii + R_i / h,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s         (iii)
-/// Densities make the answer independent of the sampling time. tau_ext = B(q_k) delta.
+/// Densities make the answer independent of the sampling time. tau_ext = B(q_k) delta; and it is tau_ext
+/// that lasts while the arm moves on, not delta, so before (ii)
+///     delta = B(q_k)^-1 B(q_k-1) delta                                                      (iv)
 #pragma once
 
 #include "estimators/concepts.h"
@@ -77,6 +79,7 @@ class ActiveObserver {
       start(y, B);
     } else {
       const Vec<kDof> a_end = B.solve(Vec<kDof>(tau_ - rest));
+      delta_ = B.solve(tau_ext_);                  // (iv)
       predict(sampling_.h(), 0.5 * (a_ + a_end));  // (i)
       correct(sampling_.h(), y);
       tau_ext_ = now.B * delta_;

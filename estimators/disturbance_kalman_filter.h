@@ -154,9 +154,10 @@ class DisturbanceKalmanFilter {
   Parameters p_;
   Sampling sampling_;
   Momentum<M> momentum_;
-  Vec<kDof> p_hat_ = Vec<kDof>::Zero();                               // [N m s]
-  Vec<kDof> d_ = Vec<kDof>::Zero();                                   // [N m] the last estimate
-  Mat<kDof> P_pp_ = Mat<kDof>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;  // of P
+  Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
+  Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate
+  // blocks of P
+  Mat<kDof> P_pp_ = Mat<kDof>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;
 };
 
 }  // namespace tauext

@@ -72,8 +72,9 @@ class InverseDynamics {
   Parameters p_;
   Sampling sampling_;
   StepChange new_step_;
-  double share_ = 0;                       // [1] 1 - a
-  Dynamics<kDof> before_;                  // at the last used sample
+  double share_ = 0;  // [1] 1 - a
+  // at the last used sample, bias with friction
+  Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
   Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate

@@ -17,6 +17,7 @@
 #pragma once
 
 #include "estimators/concepts.h"
+#include "estimators/lanes.h"
 #include "estimators/ldlt.h"
 #include "estimators/sampling.h"
 
@@ -50,6 +51,7 @@ class Ndob {
   /// @throws std::invalid_argument for parameters out of range
   explicit Ndob(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
     require(p.X.minCoeff() > 0, "X of the NDOB must be positive");
+    X_ = detail::pad_vector<kDof>(p.X);
   }
 
   void reset() noexcept {
@@ -65,7 +67,7 @@ class Ndob {
     if (status == Status::kStarted) {
       start(y);
     } else if (advance(sampling_.h(), now, y.qd)) {
-      tau_ext_ = z_ - p_.X.cwiseProduct(y.qd);  // (17)
+      tau_ext_ = z_.template head<kDof>() - p_.X.cwiseProduct(y.qd);  // (17)
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
         start(y);
@@ -82,6 +84,8 @@ class Ndob {
   }
 
  private:
+  using Column = Vec<detail::kPadded<kDof>>;
+
   [[gnu::always_inline]] bool advance(double h, const Dynamics<kDof>& now,
                                       const Vec<kDof>& qd) noexcept {
     if (p_.integration == Integration::kEuler) {
@@ -101,20 +105,23 @@ class Ndob {
   // false if B is not positive definite
   [[gnu::always_inline]] bool advance(double h, const Mat<kDof>& B, const Vec<kDof>& b) noexcept {
     const Ldlt<kDof> factor(B);
-    z_ += h * p_.X.cwiseProduct(factor.solve(b));  // (18)
+    const Column a =
+        detail::pad_vector<kDof>(factor.solve(b));  // [rad/s^2] whole registers: see lanes.h
+    z_ += (h * X_).cwiseProduct(a);                 // (18)
     return factor.ok();
   }
 
   void start(const Measurement<kDof>& y) noexcept {
     if (p_.start == Start::kZero) tau_ext_ = -p_.X.cwiseProduct(y.qd);
-    z_ = tau_ext_ + p_.X.cwiseProduct(y.qd);
+    z_ = detail::pad_vector<kDof>(tau_ext_ + p_.X.cwiseProduct(y.qd));
   }
 
   M model_;
   Parameters p_;
   Sampling sampling_;
-  Vec<kDof> z_ = Vec<kDof>::Zero();        // [N m]
-  Dynamics<kDof> before_;                  // at the last used sample, bias with friction
+  Column X_, z_ = Column::Zero();  // [N m s/rad], [N m] padded
+  // at the last used sample, bias with friction
+  Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
   Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate

@@ -41,7 +41,7 @@ class Sampling {
 
   /// Whether y can be used: kOk to step by h(), kStarted to start at y, kBadMeasurement to ignore it.
   template <int N>
-  Status accept(const Measurement<N>& y) noexcept {
+  [[gnu::always_inline]] Status accept(const Measurement<N>& y) noexcept {
     const bool in_order = !started_ || y.t > t_;
     if (!std::isfinite(y.t) || !in_order || !within(y.q, kMeasurementLimit) ||
         !within(y.qd, kMeasurementLimit) || !within(y.tau, kMeasurementLimit)) {

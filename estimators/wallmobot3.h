@@ -195,11 +195,12 @@ class BasicWallMoBot3 {
     return c;
   }
 
-  Vec3 gravity(const Coupling& c) const noexcept {
+  [[gnu::always_inline]] Vec3 gravity(const Coupling& c) const noexcept {
     return Scalar(kGravity) * (gy_.cwiseProduct(c.sin) - gx_.cwiseProduct(c.cos));
   }
 
-  static Vec3 coriolis_force(const Coupling& c, const Vec3& wd) noexcept {  // (ii)
+  [[gnu::always_inline]] static Vec3 coriolis_force(const Coupling& c,
+                                                    const Vec3& wd) noexcept {  // (ii)
     const Vec3 s = wd.cwiseProduct(wd);
     return {-c.d24 * s[1] - c.d25 * s[2], c.d24 * s[0] - c.d45 * s[2], c.d25 * s[0] + c.d45 * s[1]};
   }
@@ -207,12 +208,12 @@ class BasicWallMoBot3 {
   // (iii), for a velocity, a force, a matrix and M itself
   static Vec3 to_links(const Vec3& qd) noexcept { return {qd[0], qd[1], qd[1] + qd[2]}; }
   static Vec3 to_joints(const Vec3& n) noexcept { return {n[0], n[1] + n[2], n[2]}; }
-  static Mat3 to_joints(Mat3 m) noexcept {
+  [[gnu::always_inline]] static Mat3 to_joints(Mat3 m) noexcept {
     m.col(1) += m.col(2);
     m.row(1) += m.row(2);
     return m;
   }
-  Mat3 to_joints(const Coupling& c) const noexcept {
+  [[gnu::always_inline]] Mat3 to_joints(const Coupling& c) const noexcept {
     Mat3 B;
     B << M22_, c.f24 + c.f25, c.f25,                           //
         c.f24 + c.f25, M44_ + M55_ + 2 * c.f45, M55_ + c.f45,  //
