@@ -178,11 +178,11 @@ int run(const Flags& flags) {
   }
   std::FILE* const to = flags.format == "json" ? stderr : stdout;
   fmt::print(to, "{}\n\n", build_line(suite));
-  for (const Robot& r : robots()) {  // a table each: their scenarios ask for other columns
-    std::vector<Row> own;
-    std::copy_if(rows.begin(), rows.end(), std::back_inserter(own),
-                 [&](const Row& row) { return row.entry.robot == r.name; });
-    if (!own.empty()) fmt::print(to, "{}\n", format_table(own));
+  for (auto first = rows.begin(); first != rows.end();) {  // a table for each robot and scenario
+    const auto last = std::find_if(
+        first, rows.end(), [&](const Row& r) { return r.entry.group() != first->entry.group(); });
+    fmt::print(to, "{}\n", format_table({first, last}));
+    first = last;
   }
   fmt::print(to, "{}", table_legend());
   const bool step = std::any_of(rows.begin(), rows.end(), [](const Row& r) {
@@ -216,6 +216,11 @@ int bench_main(int argc, char** argv) {
                  "instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
   app.add_flag("--pareto", flags.pareto, "instead: noise against delay at every bandwidth");
+  app.add_option_function<std::string>(
+         "--thresholds",
+         [&](const std::string& path) { flags.suite.thresholds = read_thresholds(path); },
+         "the detectors' thresholds, as tauext-detect --calibrate writes them")
+      ->type_name("FILE");
   app.add_option("--noise_probe", flags.suite.noise_probe,
                  "velocity noise [rad/s] behind the column noise, for ideal sensors")
       ->capture_default_str();

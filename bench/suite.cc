@@ -183,15 +183,21 @@ bool Suite::closed_loop(const Entry& e) {
   return !e.detector.empty() && scenario(e.robot, e.scenario).reacts;
 }
 
+DetectorSettings Suite::settings(const Entry& e) const {
+  const ThresholdSet set = options_.thresholds.of(e.robot, options_.sensors.velocity_noise);
+  const auto known = set.by_estimator.find(e.estimator);
+  return {.thresholds = known == set.by_estimator.end() ? DetectorThresholds{} : known->second};
+}
+
 const Suite::Traces& Suite::traces(const Entry& e) {
   const std::string key = closed_loop(e) ? e.name() : e.group();
   const auto it = traces_.find(key);
   if (it != traces_.end()) return it->second;
   Traces t;
   const Scenario& s = scenario(e.robot, e.scenario);
-  t.ideal =
-      simulate(load_for(e.robot, s, options_.model_error), s, options_.recording, options_.sensors,
-               closed_loop(e) ? robot(e.robot).supervisor(e.estimator, e.detector) : nullptr);
+  t.ideal = simulate(
+      load_for(e.robot, s, options_.model_error), s, options_.recording, options_.sensors,
+      closed_loop(e) ? robot(e.robot).supervisor(e.estimator, e.detector, settings(e)) : nullptr);
   Sensors sensors = options_.sensors;
   if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
   t.noisy = measure(t.ideal, sensors);
@@ -203,16 +209,16 @@ const Trace& Suite::scored(const Entry& e) {
 }
 
 std::unique_ptr<Runner> Suite::runner(const Entry& e) {
-  return robot(e.robot).runner(e.estimator, e.detector, scored(e));
+  return robot(e.robot).runner(e.estimator, e.detector, scored(e), settings(e));
 }
 
 Score Suite::score(const Entry& e) {
   const Scenario& s = scenario(e.robot, e.scenario);
   const Robot& r = robot(e.robot);
   const Traces& recorded = traces(e);
-  const auto ideal_runner = r.runner(e.estimator, e.detector, recorded.ideal);
+  const auto ideal_runner = r.runner(e.estimator, e.detector, recorded.ideal, settings(e));
   const Output ideal = ideal_runner->run();
-  const Output noisy = r.runner(e.estimator, e.detector, recorded.noisy)->run();
+  const Output noisy = r.runner(e.estimator, e.detector, recorded.noisy, settings(e))->run();
 
   Score score;
   // with a wrong model an estimate may be as wrong as that: then it only has to be one

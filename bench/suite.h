@@ -42,6 +42,7 @@ struct SuiteOptions {
   Sensors sensors;         ///< of the scored trace
   ModelError model_error;  ///< of the robot that is scored
   Recording recording;
+  Thresholds thresholds;      ///< of the detectors; those that are not in it keep their defaults
   double noise_probe = 1e-3;  ///< [rad/s] velocity noise behind noise_Nm when `sensors` are ideal
 };
 
@@ -82,6 +83,7 @@ class Suite {
   };
   // whether the entry's own marks stop its motor
   static bool closed_loop(const Entry& entry);
+  DetectorSettings settings(const Entry& entry) const;
   const Traces& traces(const Entry& entry);
   const Trace& scored(const Entry& entry);
 

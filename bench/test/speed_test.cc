@@ -76,5 +76,17 @@ TEST_F(Speed, TheNdobIsFiveTimesFasterThanTheEkf) {
   EXPECT_GE(r, 5);
 }
 
+TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
+  // with 230 ns for the EKF: 45 ns for observers, 60 for the sliding mode, 250 for the Kalman filter
+  const std::pair<const char*, double> kLeast[] = {{"mo1", 5},   {"ndob_wb", 5}, {"mo2", 4},
+                                                   {"mo3", 3.8}, {"smo", 3.8},   {"eao", 2},
+                                                   {"dkf", 0.92}};
+  for (const auto& [name, least] : kLeast) {
+    const double r = ratio(*runner("ekf"), *runner(name), least);
+    std::printf("ekf / %s: %.2f\n", name, r);
+    EXPECT_GE(r, least) << name;
+  }
+}
+
 }  // namespace
 }  // namespace tauext::test

@@ -206,7 +206,7 @@ TEST(TestbedNoise, TheRawSignChattersAtStandstillAndTheSmoothFrictionDoesNot) {
     const auto clean = run_by_name("testbed1", e, t), dirty = run_by_name("testbed1", e, noisy);
     return noise(t.t, clean.tau_ext.row(0), dirty.tau_ext.row(0), 26);
   };
-  EXPECT_GT(added("ndob_raw_sign"), 5 * added("ndob"));
+  EXPECT_GT(added("ndob_raw_sign"), 4 * added("ndob"));
   EXPECT_GT(added("ekf_raw_sign"), 3 * added("ekf"));
 }
 
