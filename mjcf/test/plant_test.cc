@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "mjcf/test/error_of.h"
@@ -10,6 +13,7 @@
 namespace tauext::test {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 // the robot with one field changed
@@ -84,6 +88,46 @@ TEST(Plant, UnknownSiteIsNamed) {
               plant.tau_ext_of({1, 0, 0}, "elbow");
             }),
             "the robot has no site 'elbow'");
+}
+
+// two arms that an equality constraint couples, with dry friction; the tip of one rests on the floor
+constexpr const char* kCoupled = R"(<mujoco>
+  <option timestep="0.001" integrator="RK4"/>
+  <default><geom contype="0" conaffinity="0"/></default>
+  <worldbody>
+    <geom name="floor" type="plane" size="2 2 0.1" contype="1" conaffinity="1" condim="1"/>
+    <body name="a" pos="0 0 0.5">
+      <joint name="a" type="hinge" axis="0 1 0" frictionloss="1"/>
+      <inertial pos="0.5 0 0" mass="2" diaginertia="0.1 0.1 0.1"/>
+      <geom type="sphere" size="0.05" pos="1 0 0" contype="1" conaffinity="1" condim="1"/>
+      <site name="end_effector" pos="1 0 0"/>
+    </body>
+    <body name="b" pos="0 1 0.5">
+      <joint name="b" type="hinge" axis="0 1 0" frictionloss="1"/>
+      <inertial pos="0.5 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>
+    </body>
+  </worldbody>
+  <equality><joint joint1="a" joint2="b"/></equality>
+  <actuator><motor joint="a"/><motor joint="b"/></actuator>
+</mujoco>)";
+
+TEST(Plant, TheTruthOfAContactHoldsNeitherFrictionNorEqualityConstraints) {
+  const std::string path = testing::TempDir() + "coupled.xml";
+  std::ofstream(path) << kCoupled;
+  Plant plant(load_mjcf(path));
+  std::filesystem::remove(path);
+  const double down = std::asin(0.455);  // the tip's sphere is 5 mm in the floor
+  plant.set_state(Vector2d(down, down), Vector2d(0.1, 0.1));
+  plant.set_input(Vector2d(0, 30), Vector2d::Zero());  // the coupling carries the difference
+  const double force = plant.contact_force();
+  ASSERT_GT(force, 10) << "N";
+  // the floor pushes up with that force at 1 m cos q from the hinge, which turns x to -z
+  EXPECT_NEAR(plant.tau_ext()[0], force * std::cos(down), 1e-9 * force);
+  EXPECT_EQ(plant.tau_ext()[1], 0) << "nothing touches the other arm";
+  const VectorXd rest = plant.tau() - plant.inertia() * plant.qdd() - plant.bias() -
+                        plant.friction() - plant.tau_ext();
+  EXPECT_GT(rest.norm(), 1) << "N m, which is the equality constraint's";
+  EXPECT_NEAR(rest[0], -rest[1], 1e-9) << "and acts on both alike";
 }
 
 }  // namespace
