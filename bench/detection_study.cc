@@ -47,7 +47,7 @@ Degradation dry_friction() {
 // conditions that differ in the sensors alone share their simulated runs
 struct PlantKey {
   double panel, friction;
-  auto operator<=>(const PlantKey&) const = default;
+  auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 };
 
 PlantKey plant_of(const Condition& c) {

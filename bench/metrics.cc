@@ -156,7 +156,7 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
     std::complex<double> cross = 0;
     double power = 0;
     for (int i = 0; i < kLines; ++i) {
-      const double line = w * std::pow(kStep, (i - kLines / 2) / static_cast<double>(kLines));
+      const double line = w * std::pow(kStep, (i - (kLines - 1) / 2.) / kLines);
       const std::complex<double> x = spectrum(truth, line, h);
       cross += spectrum(estimate, line, h) * std::conj(x);
       power += std::norm(x);

@@ -9,6 +9,7 @@
 
 #include "bench/metrics.h"
 #include "bench/robot.h"
+#include "bench/suite.h"
 
 namespace tauext {
 namespace {
@@ -32,7 +33,9 @@ std::vector<Reliability> reliability(const Trials& trials,
   std::vector<Reliability> rows;
   for (const std::string& e : r.estimators) {
     if (is_baseline(e)) continue;
-    for (const std::string& d : r.detectors) rows.push_back({.estimator = e, .detector = d});
+    for (const std::string& d : r.detectors) {
+      if (!study_only(d)) rows.push_back({.estimator = e, .detector = d});
+    }
   }
   std::vector<std::vector<double>> delays(rows.size());
   const auto report = [&](double share) {

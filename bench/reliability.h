@@ -31,7 +31,7 @@ struct Trials {
   Sensors sensors;
 };
 
-/// Every estimator of the roster that is no baseline, with every detector.
+/// Every estimator of the roster that is no baseline, with every detector of the suite.
 /// @param progress called with the share that is done, 0 to 1; may be empty
 std::vector<Reliability> reliability(const Trials& trials,
                                      const std::function<void(double)>& progress = nullptr);

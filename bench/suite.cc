@@ -50,13 +50,6 @@ const char* name_of(Status s) {
   return "?";
 }
 
-// detectors that stand in the detection study alone, or the tables would not end
-bool study_only(const std::string& detector) {
-  constexpr const char* kStudyOnly[] = {"threshold", "dynamic_threshold", "high_pass", "band_pass",
-                                        "cusum",     "clamping"};
-  return std::count(std::begin(kStudyOnly), std::end(kStudyOnly), detector) > 0;
-}
-
 double allocations_per_step(Runner& runner) {
   runner.batch();  // the first batch may fill caches of its own
   const auto before = allocations();
@@ -97,6 +90,12 @@ std::string Entry::group() const {
 
 std::string Entry::name() const {
   return group() + "/" + estimator + (detector.empty() ? "" : "+" + detector);
+}
+
+bool study_only(const std::string& detector) {
+  constexpr const char* kStudyOnly[] = {"threshold", "dynamic_threshold", "high_pass", "band_pass",
+                                        "cusum",     "clamping"};
+  return std::count(std::begin(kStudyOnly), std::end(kStudyOnly), detector) > 0;
 }
 
 std::vector<Entry> entries() {

@@ -28,6 +28,9 @@ struct Entry {
 /// leave in peace).
 std::vector<Entry> entries();
 
+/// Whether a detector stands in the detection study alone: with all of them the tables would not end.
+bool study_only(const std::string& detector);
+
 /// What an entry was worth: metrics by their key `<quantity>_<unit>`; a key is missing if the metric
 /// does not exist for the scenario, and NaN if it has no value ("never settles").
 struct Score {

@@ -55,6 +55,11 @@ Thresholds calibrated(const Flags& f) {
   return calibrate(o);
 }
 
+// an unwritable path should not cost a run
+void require_writable(const std::string& path) {
+  const AtomicFile probe(path);
+}
+
 int run(Flags& f) {
   if (f.list) {
     const std::vector<std::string>& trained = training_conditions();
@@ -65,12 +70,12 @@ int run(Flags& f) {
     return kGood;
   }
   if (!f.calibrate_to.empty()) {
-    AtomicFile{f.calibrate_to};  // an unwritable path should not cost a run
+    require_writable(f.calibrate_to);
     write_thresholds(calibrated(f), f.calibrate_to);
     if (f.calibrate_to != "-") fmt::print(stderr, "{}: thresholds\n", f.calibrate_to);
     return kGood;
   }
-  if (!f.out.empty()) AtomicFile{f.out};
+  if (!f.out.empty()) require_writable(f.out);
   const Thresholds thresholds =
       f.thresholds.empty() ? calibrated(f) : read_thresholds(f.thresholds);
   std::vector<Cell> cells;
