@@ -30,7 +30,7 @@ struct Runs {
       return simulate(load_for(kRobot, s, error), s);
     };
     chirp = run("chirp"), step = run("step"), sine = run("sine"), free = run("free");
-    noisy = measure(free, {.velocity_noise = 1e-3});
+    noisy = measure(free, {.velocity_noise = 1e-3, .encoder_step = 4.8e-5});
     heavy = run("free", {.mass = 1.05});
     rubbing = run("free", {.friction = 5});
   }
@@ -249,10 +249,11 @@ std::string format_equal_bandwidth(double w, const std::vector<AtBandwidth>& row
         x.mass_bias, x.friction_rms, x.cpu_ns);
   }
   return out +
-         "noise: from 1e-3 rad/s of velocity noise. lag: behind `sine`. to 90 %: of `step`. mass: "
-         "the last\n"
-         "link weighs 5 % more than believed. friction: 5 N m of it that nobody told. Worst joint "
-         "of each.\n";
+         "noise: from velocity noise of 1e-3 rad/s and an encoder of 17 bits. lag: behind `sine`. "
+         "to 90 %:\n"
+         "of `step`. mass: the last link weighs 5 % more than believed. friction: 5 N m of it that "
+         "nobody\n"
+         "told. Worst joint of each.\n";
 }
 
 std::string format_pareto(const std::vector<ParetoPoint>& points) {
@@ -272,9 +273,9 @@ std::string format_pareto(const std::vector<ParetoPoint>& points) {
                        1e3 * p.delay, p.noise, verdict);
   }
   return out +
-         "delay: to 90 % of `step`. noise: from 1e-3 rad/s of velocity noise. A point is dominated "
-         "where\n"
-         "another estimator is as quick and at least 2 % quieter; named is the quietest.\n";
+         "delay: to 90 % of `step`. noise: from velocity noise of 1e-3 rad/s and an encoder of 17 bits. A\n"
+         "point is dominated where another estimator is as quick and at least 2 % quieter; named is the\n"
+         "quietest.\n";
 }
 
 }  // namespace tauext
