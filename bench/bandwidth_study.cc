@@ -273,8 +273,10 @@ std::string format_pareto(const std::vector<ParetoPoint>& points) {
                        1e3 * p.delay, p.noise, verdict);
   }
   return out +
-         "delay: to 90 % of `step`. noise: from velocity noise of 1e-3 rad/s and an encoder of 17 bits. A\n"
-         "point is dominated where another estimator is as quick and at least 2 % quieter; named is the\n"
+         "delay: to 90 % of `step`. noise: from velocity noise of 1e-3 rad/s and an encoder of 17 "
+         "bits. A\n"
+         "point is dominated where another estimator is as quick and at least 2 % quieter; named "
+         "is the\n"
          "quietest.\n";
 }
 

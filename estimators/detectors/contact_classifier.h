@@ -46,9 +46,17 @@ class ContactClassifier {
     collision_.reset();
     clamping_.reset();
     hit_ = clamped_ = false;
+    last_ = {};
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
+    if (!collision_.accepts(t)) return {false, last_.score, last_.contact};
+    last_ = classified(t, tau_ext);
+    return last_;
+  }
+
+ private:
+  Detection classified(double t, const Vec<N>& tau_ext) noexcept {
     const Detection hit = collision_.update(t, tau_ext);
     const Detection clamp = clamping_.update(t, tau_ext);
     const double score = std::max(hit.score, clamp.score);
@@ -69,12 +77,12 @@ class ContactClassifier {
     return {false, score, touched ? Contact::kIntentional : Contact::kNone};
   }
 
- private:
   Parameters p_;
   PanTompkins<N> collision_;
   Clamping<N> clamping_;
   bool hit_ = false, clamped_ = false;
   double hit_at_ = 0;  // [s]
+  Detection last_;
 };
 
 static_assert(CollisionDetector<ContactClassifier<3>>);

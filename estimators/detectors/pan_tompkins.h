@@ -54,6 +54,9 @@ class PanTompkins {
     marking_.reset();
   }
 
+  /// Whether a sample at t [s] can be used; if not, update() holds its answer.
+  bool accepts(double t) const noexcept { return marking_.accepts(t); }
+
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
     if (!marking_.accepts(t)) return marking_.held();
     const int newest = static_cast<int>(count_++ % kHistory);

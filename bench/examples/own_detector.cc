@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A detector of your own: marks where tau_ext has jumped within the last two samples. Run
+//   own_detector --benchmark_filter=wallmobot3/collision/     it is the rows "...+jump"
+#include "bench/bench_main.h"
+#include "bench/registry.h"
+#include "estimators/detectors/marking.h"
+
+template <int N>
+struct Jump {
+  static constexpr const char* kName = "jump";
+  static constexpr int kDof = N;
+
+  void reset() noexcept { *this = Jump(); }
+
+  tauext::Detection update(double t, const tauext::Vec<N>& tau_ext) noexcept {
+    if (!marking.accepts(t)) return marking.held();
+    if (marking.silent(t)) before = last = tau_ext;                // the first sample
+    const double jump = (tau_ext - before).cwiseAbs().maxCoeff();  // [N m]
+    before = last;
+    last = tau_ext;
+    return marking(t, jump / 3, tauext::Contact::kCollision);  // 3 N m within 2 ms
+  }
+
+  tauext::Marking marking{0.2, 0};
+  tauext::Vec<N> last = tauext::Vec<N>::Zero(), before = last;
+};
+
+int main(int argc, char** argv) {
+  tauext::register_detector<Jump<3>>();
+  return tauext::bench_main(argc, argv);
+}
