@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Detectors against closed forms of what they compute; what all of them share: bench/conformance.h.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "estimators/detectors/band_pass.h"
+#include "estimators/detectors/clamping.h"
+#include "estimators/detectors/cusum.h"
+#include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/high_pass.h"
+#include "estimators/detectors/threshold.h"
+
+namespace tauext::test {
+namespace {
+
+using Load = std::function<double(double)>;  // of time [s], on joint 1; the others bear 0
+
+Vec<3> on_joint_1(double x) {
+  return {x, 0, 0};
+}
+
+// time of the first mark until `until`, or -1
+template <class D>
+double first_mark(D d, const Load& load, double until = 3, double Ts = 1e-3) {
+  for (int k = 0; k * Ts < until; ++k) {
+    Measurement<3> y;
+    y.t = k * Ts;
+    if (detect(d, y, on_joint_1(load(y.t))).mark) return y.t;
+  }
+  return -1;
+}
+
+// 0 before 0.5 s, then `height`
+Load step(double height) {
+  return [=](double t) { return t < 0.5 - 1e-9 ? 0 : height; };
+}
+
+TEST(Threshold, MarksWhereALoadReachesItsLimitAndNotBelow) {
+  const Threshold<3> d({.threshold = Vec<3>::Constant(100)});
+  EXPECT_EQ(first_mark(d, step(99.9)), -1);
+  EXPECT_DOUBLE_EQ(first_mark(d, step(-100.1)), 0.5);
+  EXPECT_NEAR(first_mark(d, [](double t) { return 50 * t; }), 2, 1.1e-3) << "a ramp";
+}
+
+TEST(DynamicThreshold, HasTwiceTheLimitAtItsSpeed) {
+  DynamicThreshold<3> d({.threshold = Vec<3>::Constant(100), .speed = 0.4});
+  Measurement<3> y;
+  const auto score = [&](double qd) {
+    y.t += 1e-3;
+    y.qd = Vec<3>(qd, 0, 0);
+    return d.update(y, on_joint_1(100)).score;
+  };
+  EXPECT_DOUBLE_EQ(score(0), 1);
+  EXPECT_DOUBLE_EQ(score(0.4), 0.5);
+  EXPECT_DOUBLE_EQ(score(-1.2), 0.25);
+}
+
+TEST(HighPass, AnswersAStepByExp) {
+  HighPass<3> d({.threshold = Vec<3>::Constant(1000), .w = 10});
+  d.update(0, Vec<3>::Zero());
+  for (int k = 1; k < 400; ++k) {
+    d.update(k * 1e-3, on_joint_1(50));
+    EXPECT_NEAR(d.statistic()[0], 50 * std::exp(-10 * (k - 1) * 1e-3), 1e-9);
+  }
+}
+
+TEST(BandPass, AnswersAStepByTheDifferenceOfTwoExp) {
+  constexpr double kLow = 10, kHigh = 100;
+  BandPass<3> d({.threshold = Vec<3>::Constant(1000), .w_low = kLow, .w_high = kHigh});
+  constexpr double kTs =
+      1e-5;  // the high-pass's answer is held over a sample: an error of kHigh kTs / 2
+  d.update(0, Vec<3>::Zero());
+  for (int k = 1; k < 20000; ++k) {
+    d.update(k * kTs, on_joint_1(50));
+    const double t = k * kTs;
+    const double closed =
+        50 * kHigh / (kHigh - kLow) * (std::exp(-kLow * t) - std::exp(-kHigh * t));
+    EXPECT_NEAR(d.statistic()[0], closed, 50 * kHigh * kTs);
+  }
+}
+
+TEST(Cusum, MarksAStepAfterItsThresholdOverWhatIsBeyondTheDrift) {
+  // a slow mean that hardly moves: S grows by (a - drift) per second
+  const Cusum<3> d({.threshold = Vec<3>::Constant(0.8), .drift = 12, .w = 1e-3});
+  for (const double a : {20., 52., -92.}) {
+    EXPECT_NEAR(first_mark(d, step(a)) - 0.5, 0.8 / (std::abs(a) - 12), 2e-3) << a << " N m";
+  }
+  EXPECT_EQ(first_mark(d, step(11.9)), -1) << "below the drift";
+}
+
+TEST(Cusum, ForgetsASlowLoadAndDoesNotDependOnTheSamplingTime) {
+  const Cusum<3> d({.threshold = Vec<3>::Constant(0.4), .drift = 12, .w = 20});
+  // a ramp is slope / w above its mean
+  EXPECT_EQ(first_mark(d, [](double t) { return 230 * t; }), -1);
+  EXPECT_GT(first_mark(d, [](double t) { return 300 * t; }), 0);
+  const double reference = first_mark(d, step(60));
+  for (const double Ts : {0.5e-3, 2e-3}) {
+    EXPECT_NEAR(first_mark(d, step(60), 3, Ts), reference, 2.1e-3);
+  }
+}
+
+Clamping<3>::Parameters clamping() {
+  return {.threshold = Vec<3>::Constant(100), .start_up = 0.4};
+}
+
+TEST(Clamping, MarksWhatLastsAfterItsDuration) {
+  // a step of 200 through 100 rad/s passes 100 after 7 ms, and has to stay there for 0.1 s
+  const double t = first_mark(Clamping<3>(clamping()), step(200));
+  EXPECT_GT(t, 0.5 + 0.1);
+  EXPECT_LT(t, 0.5 + 0.1 + 0.03);
+}
+
+TEST(Clamping, LetsABlowPassHoweverHard) {
+  const auto blow = [](double t) {
+    return t < 0.5 || t > 0.55 ? 0 : 1000 * std::sin(std::numbers::pi * (t - 0.5) / 0.05);
+  };
+  EXPECT_EQ(first_mark(Clamping<3>(clamping()), blow), -1);
+}
+
+TEST(Clamping, LetsAPayloadPassThatWasThereAndOneThatChangesSlowly) {
+  EXPECT_EQ(first_mark(
+                Clamping<3>(clamping()), [](double) { return 1500; }, 5),
+            -1);
+  // the high-pass leaves 0.89 of a sine at 1 rad/s
+  const auto swings = [](double amplitude) {
+    return [=](double t) { return 1500 + amplitude * std::sin(t); };
+  };
+  EXPECT_EQ(first_mark(Clamping<3>(clamping()), swings(90), 20), -1);
+  EXPECT_GT(first_mark(Clamping<3>(clamping()), swings(150), 20), 0);
+}
+
+TEST(Clamping, FollowsALoadThatStaysWithItsBaseline) {
+  Clamping<3> d(clamping());
+  for (int k = 0; k < 3000; ++k) d.update(k * 1e-3, on_joint_1(k < 500 ? 0 : 80));
+  EXPECT_NEAR(d.change()[0], 80 * std::exp(-0.5 * 2.5), 0.5) << "2.5 s after the step";
+}
+
+TEST(Clamping, WeighsDirectionsByItsMetric) {
+  auto p = clamping();
+  p.metric = Vec<3>(0.04, 1, 1).asDiagonal();  // joint 1 counts a fifth
+  EXPECT_EQ(first_mark(Clamping<3>(p), step(400)), -1);
+  EXPECT_GT(first_mark(Clamping<3>(p), step(600)), 0);
+  p.metric(0, 1) = 0.1;
+  EXPECT_THROW(Clamping<3>{p}, std::invalid_argument) << "not symmetric";
+  p.metric = Vec<3>(1, -1, 1).asDiagonal();
+  EXPECT_THROW(Clamping<3>{p}, std::invalid_argument) << "not positive definite";
+}
+
+TEST(Detectors, RefuseThresholdsAndCutOffsOfZero) {
+  const Vec<3> zero = Vec<3>::Zero();
+  EXPECT_THROW(Threshold<3>({.threshold = zero}), std::invalid_argument);
+  EXPECT_THROW(DynamicThreshold<3>({.threshold = zero}), std::invalid_argument);
+  EXPECT_THROW(DynamicThreshold<3>({.speed = 0}), std::invalid_argument);
+  EXPECT_THROW(HighPass<3>({.threshold = zero}), std::invalid_argument);
+  EXPECT_THROW(HighPass<3>({.w = 0}), std::invalid_argument);
+  EXPECT_THROW(BandPass<3>({.w_low = 100, .w_high = 10}), std::invalid_argument);
+  EXPECT_THROW(Cusum<3>({.drift = -1}), std::invalid_argument);
+  EXPECT_THROW(Clamping<3>({.duration = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tauext::test
