@@ -148,7 +148,8 @@ std::optional<double> design_for(const std::string& estimator, double w) {
   return found ? std::optional(std::exp(best_x)) : std::nullopt;
 }
 
-// noise of a front at a delay, on straight lines in the logarithms; NaN beyond its ends
+// noise of a front at a delay, on straight lines in the logarithms; its slowest point's if the delay is
+// longer, NaN if it is shorter than any
 double noise_at(const std::vector<const ParetoPoint*>& front, double delay) {
   for (std::size_t i = 1; i < front.size(); ++i) {
     const ParetoPoint &a = *front[i - 1], &b = *front[i];
@@ -157,7 +158,7 @@ double noise_at(const std::vector<const ParetoPoint*>& front, double delay) {
         a.delay == b.delay ? 0 : std::log(delay / a.delay) / std::log(b.delay / a.delay);
     return a.noise * std::pow(b.noise / a.noise, share);
   }
-  return front.size() == 1 && front[0]->delay <= delay ? front[0]->noise : kNaN;
+  return !front.empty() && front.back()->delay <= delay ? front.back()->noise : kNaN;
 }
 
 }  // namespace

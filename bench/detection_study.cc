@@ -23,7 +23,6 @@ constexpr double kScoreFrom = 4;     // [s] an estimator has found an unknown pa
 constexpr double kStartUp = 3;       // [s] detectors stay silent
 constexpr double kWindow = 0.2;      // [s] after a blow in which a mark still belongs to it
 constexpr double kRefractory = 0.2;  // [s] between two crossings of a level
-constexpr int kTrainingRuns = 20;    // for each condition
 constexpr double kFloor = 0.05;      // of a default threshold: no calibrated one is lower
 
 Degradation noise(double velocity_noise) {
@@ -320,17 +319,6 @@ class Study {
   std::mutex mutex_;  // of cells_
 };
 
-void check(const StudyOptions& o) {
-  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || !(o.hours >= 0 && o.hours <= 1000)) {
-    throw std::invalid_argument("a study has 0 or more touches of each kind, and 0 to 1000 hours");
-  }
-  const double runs = std::max({o.blows, o.brisk_pushes, o.clampings}) + o.hours * 3600;
-  if (static_cast<double>(o.first_seed) + runs >= static_cast<double>(kTrainingSeed)) {
-    throw std::invalid_argument(fmt::format(
-        "seeds from {} on are for calibration: a test would know its training", kTrainingSeed));
-  }
-}
-
 // two passes over the training runs: what the metrics have to undo, then what is the largest
 class Training {
  public:
@@ -346,7 +334,7 @@ class Training {
     result_.margin = o.margin;
     result_.trained_on =
         fmt::format("wallmobot3, {}: {} runs each of free motion and slow pushes, seeds from {} on",
-                    fmt::join(names_, ", "), kTrainingRuns, kTrainingSeed);
+                    fmt::join(names_, ", "), o.runs, kTrainingSeed);
     for (const double velocity_noise : {1e-4, 1e-3}) {
       result_.sets.push_back({.robot = kRobot, .velocity_noise = velocity_noise});
     }
@@ -416,7 +404,7 @@ class Training {
         }
       }
     };
-    parallel_for(count * kTrainingRuns, o_.threads, work, [&](double share) {
+    parallel_for(count * o_.runs, o_.threads, work, [&](double share) {
       if (o_.progress) o_.progress((number + share) / 2);
     });
   }
@@ -465,8 +453,22 @@ const Condition& condition(const std::string& name) {
       fmt::format("unknown condition '{}'; known: {}", name, fmt::join(condition_names(), ", ")));
 }
 
+void check_study(const StudyOptions& o) {
+  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || !(o.hours >= 0 && o.hours <= 1000)) {
+    throw std::invalid_argument("a study has 0 or more touches of each kind, and 0 to 1000 hours");
+  }
+  const double runs = std::max({o.blows, o.brisk_pushes, o.clampings}) + o.hours * 3600;
+  if (static_cast<double>(o.first_seed) + runs >= static_cast<double>(kTrainingSeed)) {
+    throw std::invalid_argument(fmt::format(
+        "seeds from {} on are for calibration: a test would know its training", kTrainingSeed));
+  }
+  chosen("condition", o.conditions, condition_names());
+  chosen("estimator", o.estimators, all_estimators());
+  chosen("detector", o.detectors, robot(kRobot).detectors);
+}
+
 std::vector<Cell> detection_study(const StudyOptions& o, const Thresholds& thresholds) {
-  check(o);
+  check_study(o);
   Study study(o, thresholds);
   parallel_for(
       study.size(), o.threads, [&](int i) { study.run(i); }, o.progress);
@@ -480,6 +482,7 @@ const std::vector<std::string>& training_conditions() {
 }
 
 Thresholds calibrate(const CalibrationOptions& o) {
+  if (o.runs < 1) throw std::invalid_argument("calibration needs at least one run");
   if (!(o.margin >= 1)) {
     throw std::invalid_argument(fmt::format("a margin of {} is below 1", o.margin));
   }

@@ -70,14 +70,18 @@ struct Cell {
   double recall() const { return blows == 0 ? 0 : static_cast<double>(detected) / blows; }
 };
 
-/// Runs the study. Cells are ordered by condition, estimator, detector.
 /// @throws std::invalid_argument for unknown names, and for seeds that reach kTrainingSeed
+void check_study(const StudyOptions& options);
+
+/// Runs the study. Cells are ordered by condition, estimator, detector.
+/// @throws std::invalid_argument as check_study does
 std::vector<Cell> detection_study(const StudyOptions& options, const Thresholds& thresholds);
 
 /// How thresholds are set.
 struct CalibrationOptions {
   double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
   std::vector<std::string> conditions;   ///< trained on; empty: training_conditions()
+  int runs = 20;                         ///< of 30 s for each condition
   int threads = 0;                       ///< 0: one a core
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
 };

@@ -76,6 +76,7 @@ int run(Flags& f) {
     return kGood;
   }
   if (!f.out.empty()) require_writable(f.out);
+  check_study(f.study);  // before calibration takes its time
   const Thresholds thresholds =
       f.thresholds.empty() ? calibrated(f) : read_thresholds(f.thresholds);
   std::vector<Cell> cells;
@@ -107,6 +108,7 @@ int main(int argc, char** argv) {
       "  tauext-detect --calibrate thresholds.json\n"
       "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
       "tauext-detect");
+  app.get_formatter()->column_width(34);
   Flags f;
   const auto names = [&](const char* flag, std::vector<std::string>& to, const char* help) {
     app.add_option(flag, to, help)->delimiter(',')->allow_extra_args(false)->type_name("NAME,..");
@@ -120,26 +122,35 @@ int main(int argc, char** argv) {
   app.add_option("--out", f.out, "write all of it as JSON, with points of the ROC")
       ->type_name("FILE");
   names("--train", f.calibration.conditions, "conditions to train on (see --list)");
+  app.add_option("--runs", f.calibration.runs, "of 30 s, for each of them")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   names("--conditions", f.study.conditions, "only these (see --list)");
   names("--estimators", f.study.estimators, "only these (see tauext-record --list)");
   names("--detectors", f.study.detectors, "only these");
   app.add_option("--collisions", f.study.blows, "blows, at least, for each condition")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--pushes", f.study.brisk_pushes, "brisk pushes, likewise")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--clampings", f.study.clampings, "soft clampings, likewise")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--hours", f.study.hours, "of free motion and slow pushes, likewise")
       ->capture_default_str();
   app.add_option("--seed", f.study.first_seed, "of the first run; the next ones follow")
-      ->check(CLI::Range(std::uint64_t{0}, kTrainingSeed - 1))
-      ->capture_default_str();
+      ->check(CLI::Range(std::uint64_t{0}, kTrainingSeed - 1).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--jobs", f.study.threads, "threads; 0: one a core")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 1024).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_flag("--list", f.list, "list the conditions, and stop");
   return run_program(app, argc, argv, [&] { return run(f); });
 }

@@ -13,6 +13,8 @@
 #include <sstream>
 #include <string>
 
+#include "bench/test/optimised.h"
+
 namespace tauext::test {
 namespace {
 
@@ -59,7 +61,7 @@ constexpr const char* kQuick = " --benchmark_min_time=0.001";
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
   for (const std::string name :
-       {"tauext-bench", "tauext-identify", "tauext-record", "tauext-replay"}) {
+       {"tauext-bench", "tauext-detect", "tauext-identify", "tauext-record", "tauext-replay"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;
@@ -293,6 +295,42 @@ TEST_F(Programs, WritingToALinkWritesItsTarget) {
   EXPECT_EQ(run("tauext-record --robot testbed1 --scenario hold --out link.csv").code, 0);
   EXPECT_TRUE(fs::is_symlink(folder_ / "link.csv"));
   EXPECT_EQ(content("target.csv").substr(0, 5), "t,q1,");
+}
+
+TEST_F(Programs, DetectCalibratesThenStudiesWithThatFile) {
+  if (!kOptimised) GTEST_SKIP() << "takes minutes here; Release runs it";
+  const Outcome trained = run("tauext-detect --calibrate th.json --train known_0 --runs 1");
+  ASSERT_EQ(trained.code, 0) << trained.text;
+  const std::string small =
+      " --conditions known_0 --estimators mo1 --detectors contact_classifier --collisions 1 "
+      "--hours 0 "
+      "--pushes 0 --clampings 1";
+  const Outcome study = run("tauext-detect --thresholds th.json --out study.json" + small);
+  ASSERT_EQ(study.code, 0) << study.text;
+  EXPECT_TRUE(study.says("mo1+contact_classifier")) << study.text;
+  const auto json = nlohmann::json::parse(content("study.json"));
+  EXPECT_EQ(json["cells"][0]["detector"], "contact_classifier");
+  // the suite reads the file, too
+  const Outcome suite =
+      run("tauext-bench --thresholds th.json '--benchmark_filter=wallmobot3/clamp/mo1[+]'" +
+          std::string(kQuick));
+  EXPECT_EQ(suite.code, 0) << suite.text;
+}
+
+TEST_F(Programs, DetectRefusesWhatItCannotDoBeforeItWorks) {
+  write("bad.json", "{");
+  const Outcome bad = run("tauext-detect --thresholds bad.json");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_TRUE(bad.says("tauext-detect: bad.json: ")) << bad.text;
+  EXPECT_EQ(run("tauext-detect --calibrate /nowhere/th.json").code, 2);
+  EXPECT_EQ(run("tauext-detect --out /nowhere/s.json").code, 2);
+  EXPECT_TRUE(run("tauext-detect --conditions moon").says("unknown condition 'moon'; known: "));
+  EXPECT_EQ(run("tauext-detect --margin 0.5 --calibrate x.json").code, 2);
+  EXPECT_FALSE(exists("x.json"));
+  EXPECT_TRUE(run("tauext-detect --list").says("unknown_150"));
+  EXPECT_EQ(run("tauext-bench --equal-bandwidth 1000").code, 2);
+  EXPECT_EQ(run("tauext-bench --pareto --list").code, 2);
+  EXPECT_EQ(run("tauext-bench --degrade /nowhere.json").code, 2);
 }
 
 }  // namespace

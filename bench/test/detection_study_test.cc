@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/detection_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/detection_report.h"
+#include "bench/test/optimised.h"
+#include "mjcf/test/error_of.h"
+#include "mjcf/touch.h"
+
+namespace tauext::test {
+namespace {
+
+StudyOptions small() {
+  StudyOptions o;
+  o.conditions = {"known_150"};
+  o.estimators = {"mo1"};
+  o.detectors = {"pan_tompkins", "high_pass"};
+  o.blows = 16;
+  o.brisk_pushes = 8;
+  o.clampings = 3;
+  o.hours = 0.01;
+  return o;
+}
+
+const std::vector<Cell>& cells() {
+  static const std::vector<Cell> all = detection_study(small(), {});
+  return all;
+}
+
+TEST(DetectionStudy, TriesAtLeastWhatItWasAskedFor) {
+  ASSERT_EQ(cells().size(), 2u);
+  for (const Cell& c : cells()) {
+    EXPECT_EQ(c.estimator, "mo1");
+    EXPECT_GE(c.blows, 16);
+    EXPECT_GE(c.brisk, 8);
+    EXPECT_GE(c.clampings, 3);
+    EXPECT_GE(c.hours(), 0.01);
+    EXPECT_EQ(c.failed_runs, 0);
+  }
+}
+
+TEST(DetectionStudy, DoesNotDependOnTheNumberOfThreads) {
+  StudyOptions o = small();
+  o.threads = 3;
+  const std::vector<Cell> other = detection_study(o, {});
+  ASSERT_EQ(other.size(), cells().size());
+  EXPECT_EQ(study_json(other, {}), study_json(cells(), {}));
+  for (std::size_t i = 0; i < other.size(); ++i) EXPECT_EQ(other[i].delays, cells()[i].delays);
+}
+
+TEST(DetectionStudy, CalibrationDoesNotDependOnTheNumberOfThreads) {
+  if (!kOptimised) GTEST_SKIP() << "takes minutes here; Release runs it";
+  CalibrationOptions o;
+  o.conditions = {"known_0"};
+  o.runs = 2;
+  o.threads = 1;
+  const Thresholds one = calibrate(o);
+  o.threads = 3;
+  const Thresholds three = calibrate(o);
+  for (const ThresholdSet& set : one.sets) {
+    for (const auto& [estimator, detectors] : set.by_estimator) {
+      for (const auto& [detector, trained] : detectors) {
+        const Trained& other =
+            three.of(set.robot, set.velocity_noise).by_estimator.at(estimator).at(detector);
+        EXPECT_EQ(trained.threshold, other.threshold) << estimator << "+" << detector;
+        EXPECT_EQ(trained.metric, other.metric) << estimator << "+" << detector;
+      }
+    }
+  }
+}
+
+TEST(DetectionStudy, FindsEveryBlowWithAnExactModelAndGoodSensors) {
+  const Cell& c = cells()[0];
+  ASSERT_EQ(c.detector, "pan_tompkins");
+  EXPECT_EQ(c.detected, c.blows);
+  EXPECT_EQ(c.stray, 0);
+  ASSERT_EQ(static_cast<int>(c.delays.size()), c.blows);
+  EXPECT_GT(c.delays.front(), 0);
+  EXPECT_LT(c.delays.back(), 0.03);
+}
+
+TEST(DetectionStudy, HigherThresholdsMarkLess) {
+  const Cell& c = cells()[1];
+  ASSERT_EQ(c.detector, "high_pass");
+  // below some level pushes and blows run into one another
+  for (std::size_t i = 4; i < kLevels.size(); ++i) {
+    EXPECT_LE(c.detected_at[i], c.detected_at[i - 1]);
+    EXPECT_LE(c.alarms_at[i], c.alarms_at[i - 1]);
+  }
+  EXPECT_EQ(c.detected_at[4], c.detected) << "level 1 is the detector itself";
+  EXPECT_EQ(c.detected_at.back(), 0);
+}
+
+TEST(DetectionStudy, TestsOnSeedsThatNoTrainingKnows) {
+  StudyOptions o = small();
+  o.first_seed = kTrainingSeed - 1;
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("a test would know its training"),
+            std::string::npos);
+}
+
+TEST(DetectionStudy, UnknownNamesListTheKnownOnes) {
+  StudyOptions o = small();
+  o.conditions = {"underwater"};
+  EXPECT_NE(error_of([&] { detection_study(o, {}); })
+                .find("unknown condition 'underwater'; known: "
+                      "known_0, known_50"),
+            std::string::npos);
+  o = small();
+  o.estimators = {"oracle"};
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("unknown estimator 'oracle'"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { calibrate({.margin = 0.9}); }).find("a margin of 0.9 is below 1"),
+            std::string::npos);
+}
+
+TEST(DetectionReport, HoldsEveryCellAsJsonAndAsALine) {
+  const auto json = nlohmann::json::parse(study_json(cells(), {}));
+  ASSERT_EQ(json["cells"].size(), cells().size());
+  EXPECT_EQ(json["cells"][0]["collisions"], cells()[0].blows);
+  EXPECT_EQ(json["cells"][0]["roc"].size(), kLevels.size());
+  EXPECT_EQ(json["conditions"]["known_150"]["panel_kg"], 150);
+  const std::string text = format_study(cells());
+  for (const char* row : {"\nmo1+pan_tompkins ", "\nmo1+high_pass "}) {
+    EXPECT_NE(text.find(row), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace tauext::test
