@@ -326,7 +326,7 @@ class Training {
       : o_(o),
         names_(o.conditions.empty() ? training_conditions()
                                     : chosen("condition", o.conditions, condition_names())),
-        estimators_(all_estimators()) {
+        estimators_(chosen("estimator", o.estimators, all_estimators())) {
     for (const std::string& name : names_) {
       const double believed = condition(name).believed;
       believers_.try_emplace(believed, wallmobot3_believing(believed));

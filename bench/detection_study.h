@@ -81,6 +81,7 @@ std::vector<Cell> detection_study(const StudyOptions& options, const Thresholds&
 struct CalibrationOptions {
   double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
   std::vector<std::string> conditions;   ///< trained on; empty: training_conditions()
+  std::vector<std::string> estimators;   ///< empty: all
   int runs = 20;                         ///< of 30 s for each condition
   int threads = 0;                       ///< 0: one a core
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty

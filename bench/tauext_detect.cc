@@ -50,6 +50,7 @@ class Progress {
 Thresholds calibrated(const Flags& f) {
   Progress progress("calibrating");
   CalibrationOptions o = f.calibration;
+  o.estimators = f.study.estimators;
   o.threads = f.study.threads;
   o.progress = progress();
   return calibrate(o);

@@ -83,6 +83,27 @@ TEST(DetectionStudy, FindsEveryBlowWithAnExactModelAndGoodSensors) {
   EXPECT_LT(c.delays.back(), 0.03);
 }
 
+// the paper's range, 0 to 150 kg, known or not, velocity noise 1e-4; a fifth of what tauext-detect tries
+TEST(DetectionStudy, TheClassifierHoldsOverThePapersRangeBehindTheEkf) {
+  if (!kOptimised) GTEST_SKIP() << "takes minutes here; Release runs it";
+  StudyOptions o;
+  o.conditions = {"known_0", "known_150", "unknown_150"};
+  o.estimators = {"ekf"};
+  o.detectors = {"contact_classifier"};
+  o.blows = 120;
+  o.brisk_pushes = 0;
+  o.clampings = 20;
+  o.hours = 0.2;
+  for (const Cell& c : detection_study(o, calibrate({.estimators = {"ekf"}, .runs = 8}))) {
+    EXPECT_GE(c.recall(), 0.99) << c.condition;
+    EXPECT_LE(c.delays[static_cast<std::size_t>(0.95 * static_cast<double>(c.delays.size()))],
+              0.015);
+    EXPECT_EQ(c.alarms, 0) << c.condition;
+    EXPECT_GE(c.clampings_named, 0.95 * c.clampings) << c.condition;
+    EXPECT_EQ(c.failed_runs, 0);
+  }
+}
+
 TEST(DetectionStudy, HigherThresholdsMarkLess) {
   const Cell& c = cells()[1];
   ASSERT_EQ(c.detector, "high_pass");
