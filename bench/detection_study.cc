@@ -154,8 +154,11 @@ void count_alarms(const Trace& t, const std::vector<Detection>& d, Cell& cell) {
     ++cell.alarms;
     cell.collision_alarms += m.contact == Contact::kCollision;
   }
-  cell.quiet_samples +=
-      std::count_if(t.t.begin(), t.t.end(), [](double x) { return x >= kScoreFrom; });
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    if (t.t[k] < kScoreFrom) continue;
+    ++cell.quiet_samples;
+    cell.alarmed_samples += d[k].score >= 1;
+  }
   for (std::size_t i = 0; i < kLevels.size(); ++i) {
     cell.alarms_at[i] += static_cast<int>(crossings(t, d, kLevels[i]).size());
   }

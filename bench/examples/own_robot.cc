@@ -7,13 +7,18 @@
 struct Pendulum {
   static constexpr int kDof = 1;
   using V = tauext::Vec<1>;
-  static constexpr double m = 2, r = 0.5, I = 0.01, damping = 0.1;  // own_robot.xml
+  static constexpr double kMass = 2, kLength = 0.5, kInertia = 0.01,
+                          kDamping = 0.1;  // own_robot.xml
 
-  tauext::Mat<1> inertia(const V&) const noexcept { return tauext::Mat<1>(I + m * r * r); }
-  V gravity(const V& q) const noexcept { return V(m * tauext::kGravity * r * std::sin(q[0])); }
+  tauext::Mat<1> inertia(const V&) const noexcept {
+    return tauext::Mat<1>(kInertia + kMass * kLength * kLength);
+  }
+  V gravity(const V& q) const noexcept {
+    return V(kMass * tauext::kGravity * kLength * std::sin(q[0]));
+  }
   V bias(const V& q, const V&) const noexcept { return gravity(q); }
   V momentum_bias(const V& q, const V&) const noexcept { return -gravity(q); }
-  V friction(const V& qd) const noexcept { return damping * qd; }
+  V friction(const V& qd) const noexcept { return kDamping * qd; }
 };
 
 int main(int argc, char** argv) {

@@ -116,6 +116,20 @@ TEST(DetectionStudy, HigherThresholdsMarkLess) {
   EXPECT_EQ(c.detected_at.back(), 0);
 }
 
+TEST(DetectionStudy, ShowsADetectorThatIsInAlarmAllTheTime) {
+  // it marks once, before anything is scored, and never again: no false alarm, and blind
+  ThresholdSet set{.robot = "wallmobot3", .velocity_noise = 1e-4, .by_estimator = {}};
+  set.by_estimator["mo1"]["threshold"] = {Eigen::VectorXd::Constant(3, 1e-9), {}};
+  StudyOptions o = small();
+  o.detectors = {"threshold"};
+  o.brisk_pushes = o.clampings = 0;
+  const Cell c = detection_study(o, {.trained_on = "", .margin = 1, .sets = {set}}).front();
+  EXPECT_EQ(c.alarms, 0);
+  EXPECT_EQ(c.detected, 0);
+  EXPECT_EQ(c.alarmed_samples, c.quiet_samples);
+  EXPECT_EQ(cells()[0].alarmed_samples, 0) << "and one that is not";
+}
+
 TEST(DetectionStudy, TestsOnSeedsThatNoTrainingKnows) {
   StudyOptions o = small();
   o.first_seed = kTrainingSeed - 1;
