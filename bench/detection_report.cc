@@ -113,14 +113,15 @@ std::string format_study(const std::vector<Cell>& cells) {
   }
   return out +
          "\nrecall: blows marked until 0.2 s after them; p50, p95: delay from the blow's begin to "
-         "its mark.\n"
-         "stray: other marks in these runs. alarms: marks in free motion and slow pushes, and the "
-         "rate\n"
-         "that is excluded at 95 %; on: share of that time in alarm; called collision: marks that "
-         "say so. brisk: pushes of 100 N in "
-         "0.1 s\n"
-         "that were marked. clamping: soft clampings marked while they hold; named: as clampings.\n"
-         "failed: runs in which an estimate was missing; their blows count.\n";
+         "its\n"
+         "mark. stray: other marks in these runs. alarms: marks in free motion and slow pushes, "
+         "and the\n"
+         "rate that is excluded at 95 %; on: share of that time in alarm; called collision: marks "
+         "that\n"
+         "say so. brisk: pushes of 100 N in 0.1 s that were marked. clamping: soft clampings "
+         "marked while\n"
+         "they hold; named: as clampings. failed: runs in which an estimate was missing; they "
+         "count.\n";
 }
 
 std::string study_json(const std::vector<Cell>& cells, const Thresholds& thresholds) {

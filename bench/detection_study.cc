@@ -460,6 +460,9 @@ void check_study(const StudyOptions& o) {
   if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || !(o.hours >= 0 && o.hours <= 1000)) {
     throw std::invalid_argument("a study has 0 or more touches of each kind, and 0 to 1000 hours");
   }
+  if (o.blows + o.brisk_pushes + o.clampings == 0 && o.hours == 0) {
+    throw std::invalid_argument("nothing to try: 0 collisions, pushes, clampings and hours");
+  }
   const double runs = std::max({o.blows, o.brisk_pushes, o.clampings}) + o.hours * 3600;
   if (static_cast<double>(o.first_seed) + runs >= static_cast<double>(kTrainingSeed)) {
     throw std::invalid_argument(fmt::format(
