@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/test/optimised.h"
-
 namespace tauext::test {
 namespace {
 
@@ -52,7 +50,6 @@ TEST(Examples, OwnEstimatorStandsInTheTableAndAtEqualBandwidth) {
   const auto row = table.row("wallmobot3/step/twice");
   ASSERT_GT(row.size(), 7u) << table.text;
   EXPECT_LT(std::stod(row[1]), 5) << "N m rms after a step of 98.2";
-  if (!kOptimised) GTEST_SKIP() << "the rest takes minutes here; Release runs it";
   const Outcome equal = run("own_estimator --equal-bandwidth 30");
   ASSERT_EQ(equal.code, 0) << equal.text;
   ASSERT_GT(equal.row("twice").size(), 3u) << equal.text;
