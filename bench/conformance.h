@@ -329,6 +329,26 @@ class DetectorClaims {
     }
   }
 
+  /// A speed that is no number is nobody's collision, and does not hide the one that follows.
+  void bears_a_speed_that_is_no_number() const {
+    SCOPED_TRACE("bears a speed that is no number");
+    for (int j = 0; j < N; ++j) {
+      D d = make_();
+      int marks = 0;
+      for (int k = 0; k < kSamples; ++k) {
+        const double t = k * kTs;
+        Measurement<N> y;
+        y.t = t;
+        if (k == 1005 || k == 3100) y.qd[j] = std::numeric_limits<double>::quiet_NaN();
+        const double load = touch(t, t > 2.5);
+        const Detection x = detect(d, y, Vec<N>(Vec<N>::Constant(load)));
+        ASSERT_TRUE(std::isfinite(x.score)) << k;
+        marks += x.mark;
+      }
+      EXPECT_GE(marks, 1);
+    }
+  }
+
   /// Twice the tau_ext gives at least 2^kDegree times the statistic.
   void has_the_degree_that_it_says() const requires CalibratableDetector<D> {
     SCOPED_TRACE("has the degree that it says");
@@ -363,6 +383,7 @@ class DetectorClaims {
     marks_where_its_score_reaches_one();
     says_the_same_of_the_same();
     ignores_bad_time_stamps();
+    bears_a_speed_that_is_no_number();
     if constexpr (CalibratableDetector<D>) has_the_degree_that_it_says();
     allocates_nothing();
   }

@@ -8,7 +8,8 @@
 ///     max_i(|z_i| / intentional_i) >= 1, z as in clamping.h            intentional
 ///     else                                                             none
 /// A collision is marked where pan_tompkins marks, a clamping where its score rises through 1 (or is
-/// above it when a collision's `hold` ends: then the arm hit something and is caught there).
+/// above it when a collision's `hold` ends: then the arm hit something and is caught there). Known limit:
+/// a payload that the model lacks changes tau_ext as the arm moves, and that reads as intentional, too.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +46,7 @@ class ContactClassifier {
   void reset() noexcept {
     collision_.reset();
     clamping_.reset();
-    hit_ = clamped_ = false;
+    hit_ = clamped_ = clamp_marked_ = false;
     last_ = {};
   }
 
@@ -69,8 +70,13 @@ class ContactClassifier {
       return {hit.mark, score, Contact::kCollision};
     }
     const bool clamped = clamp.score >= 1;
-    const bool mark = clamped && !clamped_;
+    const bool rested = !clamp_marked_ || t - clamp_marked_at_ >= p_.clamping.refractory;
+    const bool mark = clamped && !clamped_ && rested;
     clamped_ = clamped;
+    if (mark) {
+      clamp_marked_ = true;
+      clamp_marked_at_ = t;
+    }
     if (clamped) return {mark, score, Contact::kClamping};
     const bool touched =
         clamping_.change().cwiseAbs().cwiseQuotient(p_.intentional).maxCoeff() >= 1;
@@ -80,8 +86,8 @@ class ContactClassifier {
   Parameters p_;
   PanTompkins<N> collision_;
   Clamping<N> clamping_;
-  bool hit_ = false, clamped_ = false;
-  double hit_at_ = 0;  // [s]
+  bool hit_ = false, clamped_ = false, clamp_marked_ = false;
+  double hit_at_ = 0, clamp_marked_at_ = 0;  // [s]
   Detection last_;
 };
 

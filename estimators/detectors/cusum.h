@@ -10,8 +10,6 @@
 /// threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
-#include <limits>
-
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
@@ -56,7 +54,7 @@ class Cusum {
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
     if (!marking_.accepts(t)) return marking_.held();
-    if (marking_.silent(t)) {
+    if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
       const double h = t - t_;
@@ -74,6 +72,8 @@ class Cusum {
   const Vec<N>& statistic() const noexcept { return statistic_; }
 
  private:
+  static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
+
   Parameters p_;
   LowPass<N> mean_;
   Marking marking_;

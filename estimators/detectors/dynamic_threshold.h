@@ -36,7 +36,7 @@ class DynamicThreshold {
   void reset() noexcept { marking_.reset(); }
 
   Detection update(const Measurement<N>& y, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(y.t)) return marking_.held();
+    if (!marking_.accepts(y.t) || !within(y.qd, kMeasurementLimit)) return marking_.held();
     const Vec<N> growth = (1 + y.qd.array().abs() / p_.speed).matrix();
     statistic_ = tau_ext.cwiseAbs().cwiseQuotient(growth);
     return marking_(y.t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);

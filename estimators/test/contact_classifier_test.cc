@@ -96,6 +96,22 @@ TEST(ContactClassifier, CallsABlowThatEndsInAClampingBothInTurn) {
   EXPECT_LT(v.first_mark, 0.025);
 }
 
+TEST(ContactClassifier, MarksNoSecondClampingWithinItsRefractoryTime) {
+  // a load that wanders around the limit every 0.3 s
+  ContactClassifier<3> d;
+  double last = -1;
+  for (int k = 0; k < 6000; ++k) {
+    const double t = k * 1e-3;
+    const double load = 160 + 60 * std::sin(2 * std::numbers::pi * t / 0.3);
+    const Detection x = d.update(t, Vec<3>(0, load, 0));
+    if (!x.mark || x.contact != Contact::kClamping) continue;
+    if (last >= 0) {
+      EXPECT_GE(t - last, 0.5 - 1e-9);
+    }
+    last = t;
+  }
+}
+
 TEST(ContactClassifier, RefusesALevelOfZero) {
   ContactClassifier<3>::Parameters p;
   p.intentional.setZero();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "estimators/detectors/band_pass.h"
@@ -100,6 +101,29 @@ TEST(Cusum, ForgetsASlowLoadAndDoesNotDependOnTheSamplingTime) {
   for (const double Ts : {0.5e-3, 2e-3}) {
     EXPECT_NEAR(first_mark(d, step(60), 3, Ts), reference, 2.1e-3);
   }
+}
+
+TEST(Cusum, StartsItsMeanAnewAfterAGap) {
+  // a push of 96 N m in 0.8 s, of which 0.1 s is lost
+  Cusum<3> d;
+  for (int k = 0; k < 2000; ++k) {
+    if (k >= 850 && k < 950) continue;
+    const double x = std::min(std::max((k - 500) / 800., 0.), 1.);
+    const double push = 96 * x * x * x * (10 + x * (6 * x - 15));
+    EXPECT_FALSE(d.update(k * 1e-3, on_joint_1(push)).mark) << k;
+  }
+}
+
+TEST(DynamicThreshold, MarksALoadThatRisesWithABadSpeed) {
+  DynamicThreshold<3> d;
+  int marks = 0;
+  for (int k = 0; k < 10; ++k) {
+    Measurement<3> y;
+    y.t = k * 1e-3;
+    if (k == 5) y.qd[0] = std::numeric_limits<double>::quiet_NaN();
+    marks += d.update(y, on_joint_1(k < 5 ? 0 : 300)).mark;
+  }
+  EXPECT_EQ(marks, 1);
 }
 
 Clamping<3>::Parameters clamping() {
