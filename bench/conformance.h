@@ -66,6 +66,15 @@ class EstimatorClaims {
     EXPECT_LT((last - Vec<N>::Constant(5)).cwiseAbs().maxCoeff(), 0.1) << last.transpose();
   }
 
+  /// 11 s after a step of 50 N m it is within 0.1 N m of it.
+  void ends_up_at_a_step() const {
+    SCOPED_TRACE("ends up at a step");
+    const auto load = [](double t) -> Vec<N> { return Vec<N>::Constant(t < 1 ? 0 : 50); };
+    const auto samples = simulated::simulate<M>(simulated::grid(12, 1e-3), load, {}, arm_);
+    const Vec<N> last = run(samples).back().tau_ext;
+    EXPECT_LT((last - Vec<N>::Constant(50)).cwiseAbs().maxCoeff(), 0.1) << last.transpose();
+  }
+
   /// Started in motion (0.6 rad/s) without a load: at most 0.1 N m rms and 1 N m at any time.
   void starts_in_motion_without_a_spike() const {
     SCOPED_TRACE("starts in motion without a spike");
@@ -223,6 +232,7 @@ class EstimatorClaims {
     allocates_nothing();
     if constexpr (!is_printed_form<E>) {
       has_the_sign_of_equation_3();
+      ends_up_at_a_step();
       starts_in_motion_without_a_spike();
       answers_alike_at_every_sample_time();
       answers_alike_with_jittered_time_stamps();

@@ -151,6 +151,7 @@ auto claims() {
 
 TEST(Conformance, FindsWhatIsWrongWithAnEstimator) {
   EXPECT_GT(failures([] { claims<WrongSign>().has_the_sign_of_equation_3(); }), 0);
+  EXPECT_GT(failures([] { claims<WrongSign>().ends_up_at_a_step(); }), 0);
   if (allocations_are_counted()) {
     EXPECT_GT(failures([] { claims<Allocates>().allocates_nothing(); }), 0);
   }
