@@ -7,39 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bench/test/optimised.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
 namespace {
-
-const Worth& worth(const std::vector<AtBandwidth>& rows, const std::string& name) {
-  const auto it = std::find_if(rows.begin(), rows.end(),
-                               [&](const AtBandwidth& r) { return r.estimator == name; });
-  if (it == rows.end() || !it->worth) throw std::runtime_error(name + " has no row");
-  return *it->worth;
-}
-
-TEST(EqualBandwidth, SetsEveryEstimatorToTheMeasuredBandwidth) {
-  if (!kOptimised) GTEST_SKIP() << "takes minutes here; Release runs it";
-  const std::vector<AtBandwidth> rows = at_equal_bandwidth(30);
-  EXPECT_GE(rows.size(), 10u);
-  for (const AtBandwidth& r : rows) {
-    ASSERT_TRUE(r.worth) << r.estimator;
-    EXPECT_NEAR(r.worth->bandwidth, 30, 0.05 * 30) << r.estimator;
-    // an error of 5 % of the weight is there whatever the filter
-    EXPECT_NEAR(r.worth->mass_bias, worth(rows, "mo1").mass_bias, 0.01 * r.worth->mass_bias);
-  }
-  // first order: the design is the bandwidth, the lag its inverse, 90 % after ln 10 times that
-  for (const char* name : {"mo1", "inverse_dynamics", "ndob_wb"}) {
-    EXPECT_NEAR(worth(rows, name).bandwidth, 30, 0.02 * 30) << name;
-    EXPECT_NEAR(worth(rows, name).lag, 1 / 30., 1.1e-3) << name;
-    EXPECT_NEAR(worth(rows, name).rise_0_90, std::log(10) / 30, 0.02 * std::log(10) / 30) << name;
-  }
-  // Butterworth: 4.3 and 8.1 % of overshoot
-  EXPECT_NEAR(worth(rows, "mo2").overshoot, 4.3, 0.3);
-  EXPECT_NEAR(worth(rows, "mo3").overshoot, 8.1, 0.3);
-}
 
 TEST(EqualBandwidth, RefusesWhatTheChirpCannotSee) {
   for (const double w : {0.5, 1000., -1.}) {

@@ -34,7 +34,7 @@ class BandPass {
         slow_(p.w_low, "w_low [rad/s] of band_pass must be positive"),
         quick_(p.w_high, "w_high [rad/s] of band_pass must be positive"),
         marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m] of band_pass must be positive");
+    require((p.threshold.array() > 0).all(), "threshold [N m] of band_pass must be positive");
     require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
   }
 

@@ -54,7 +54,7 @@ class Clamping {
         baseline_(p.w_baseline, "w_baseline [rad/s] of clamping must be positive"),
         smooth_(p.w_smooth, "w_smooth [rad/s] of clamping must be positive"),
         marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m] of clamping must be positive");
+    require((p.threshold.array() > 0).all(), "threshold [N m] of clamping must be positive");
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
     require(p.duration > 0, "duration [s] of clamping must be positive");
     require(p.metric.isApprox(p.metric.transpose()) && Ldlt<N>(p.metric).ok(),

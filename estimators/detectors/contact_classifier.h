@@ -38,7 +38,7 @@ class ContactClassifier {
   /// @throws std::invalid_argument for parameters out of range
   explicit ContactClassifier(const Parameters& p = {})
       : p_(p), collision_(p.collision), clamping_(p.clamping) {
-    require(p.intentional.minCoeff() > 0,
+    require((p.intentional.array() > 0).all(),
             "intentional [N m] of contact_classifier must be positive");
     require(p.hold >= 0, "hold [s] of contact_classifier must not be negative");
   }

@@ -41,7 +41,7 @@ class Cusum {
       : p_(p),
         mean_(p.w, "w [rad/s] of cusum must be positive"),
         marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m s] of cusum must be positive");
+    require((p.threshold.array() > 0).all(), "threshold [N m s] of cusum must be positive");
     require(p.drift >= 0, "drift [N m] of cusum must not be negative");
   }
 

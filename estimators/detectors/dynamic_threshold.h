@@ -29,11 +29,15 @@ class DynamicThreshold {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit DynamicThreshold(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m] of dynamic_threshold must be positive");
+    require((p.threshold.array() > 0).all(),
+            "threshold [N m] of dynamic_threshold must be positive");
     require(p.speed > 0, "speed [rad/s] of dynamic_threshold must be positive");
   }
 
-  void reset() noexcept { marking_.reset(); }
+  void reset() noexcept {
+    marking_.reset();
+    statistic_.setZero();
+  }
 
   Detection update(const Measurement<N>& y, const Vec<N>& tau_ext) noexcept {
     if (!marking_.accepts(y.t) || !within(y.qd, kMeasurementLimit)) return marking_.held();

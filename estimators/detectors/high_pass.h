@@ -35,7 +35,7 @@ class HighPass {
       : p_(p),
         low_(p.w, "w [rad/s] of high_pass must be positive"),
         marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m] of high_pass must be positive");
+    require((p.threshold.array() > 0).all(), "threshold [N m] of high_pass must be positive");
   }
 
   void reset() noexcept {

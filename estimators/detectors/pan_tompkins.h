@@ -43,7 +43,8 @@ class PanTompkins {
   /// @throws std::invalid_argument for parameters out of range
   explicit PanTompkins(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
     require(p.stride >= 1 && p.stride <= kMaxStride, "stride of pan_tompkins must be 1 to 16");
-    require(p.threshold.minCoeff() > 0, "threshold [(N m/s)^2] of pan_tompkins must be positive");
+    require((p.threshold.array() > 0).all(),
+            "threshold [(N m/s)^2] of pan_tompkins must be positive");
     require(p.hold >= 0, "hold [s] of pan_tompkins must not be negative");
   }
 

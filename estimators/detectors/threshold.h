@@ -28,10 +28,13 @@ class Threshold {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Threshold(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
-    require(p.threshold.minCoeff() > 0, "threshold [N m] of threshold must be positive");
+    require((p.threshold.array() > 0).all(), "threshold [N m] of threshold must be positive");
   }
 
-  void reset() noexcept { marking_.reset(); }
+  void reset() noexcept {
+    marking_.reset();
+    statistic_.setZero();
+  }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
     if (!marking_.accepts(t)) return marking_.held();

@@ -12,6 +12,7 @@
 #include "estimators/detectors/cusum.h"
 #include "estimators/detectors/dynamic_threshold.h"
 #include "estimators/detectors/high_pass.h"
+#include "estimators/detectors/pan_tompkins.h"
 #include "estimators/detectors/threshold.h"
 
 namespace tauext::test {
@@ -183,6 +184,22 @@ TEST(Detectors, RefuseThresholdsAndCutOffsOfZero) {
   EXPECT_THROW(BandPass<3>({.w_low = 100, .w_high = 10}), std::invalid_argument);
   EXPECT_THROW(Cusum<3>({.drift = -1}), std::invalid_argument);
   EXPECT_THROW(Clamping<3>({.duration = 0}), std::invalid_argument);
+}
+
+template <class D>
+class EveryDetector : public testing::Test {};
+using Calibratable = testing::Types<Threshold<3>, DynamicThreshold<3>, HighPass<3>, BandPass<3>,
+                                    Cusum<3>, Clamping<3>, PanTompkins<3>>;
+TYPED_TEST_SUITE(EveryDetector, Calibratable);
+
+TYPED_TEST(EveryDetector, RefusesAThresholdThatIsNoPositiveNumber) {
+  for (const double bad : {0., -1., std::numeric_limits<double>::quiet_NaN()}) {
+    for (int j = 0; j < 3; ++j) {
+      typename TypeParam::Parameters p;
+      p.threshold[j] = bad;
+      EXPECT_THROW(TypeParam{p}, std::invalid_argument) << bad << " on joint " << j + 1;
+    }
+  }
 }
 
 }  // namespace
