@@ -16,6 +16,7 @@
 #include "bench/bandwidth_study.h"
 #include "bench/cli.h"
 #include "bench/degradation.h"
+#include "bench/golden.h"
 #include "bench/reliability.h"
 #include "bench/reporter.h"
 #include "bench/suite.h"
@@ -95,7 +96,8 @@ struct Flags {
   SuiteOptions suite;
   bool list = false, list_tests = false, paper = false, reliability = false, pareto = false;
   std::optional<double> equal_bandwidth;  // [rad/s]
-  std::optional<std::string> out, format;
+  std::optional<std::string> out, format, golden;
+  std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
 
   // what runs instead of the suite
   bool study() const { return reliability || pareto || equal_bandwidth; }
@@ -139,6 +141,16 @@ int run_study(const Flags& f) {
   return kGood;
 }
 
+int run_golden(const Flags& f, const std::string& filter) {
+  AtomicFile file(*f.golden);
+  GoldenOptions o{.suite = f.suite, .seeds = f.seeds, .filter = filter};
+  o.built = fmt::format("tauext {}, {}, {}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS);
+  o.progress = share_done();
+  file.write(golden_metrics(o));
+  file.commit();
+  return kGood;
+}
+
 int run(const Flags& flags) {
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
@@ -148,6 +160,7 @@ int run(const Flags& flags) {
         "--benchmark_filter, --benchmark_out or --list");
   }
   if (flags.study()) return run_study(flags);
+  if (flags.golden) return run_golden(flags, all ? "" : filter);
   if (flags.list) {
     for (const Entry& e : entries()) fmt::print("{}\n", e.name());
     return kGood;
@@ -216,6 +229,10 @@ int bench_main(int argc, char** argv) {
                  "instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
   app.add_flag("--pareto", flags.pareto, "instead: noise against delay at every bandwidth");
+  app.add_option("--golden", flags.golden,
+                 "instead: every metric for --seeds 1,2,.., as tauext-gate wants it")
+      ->type_name("FILE");
+  app.add_option("--seeds", flags.seeds)->delimiter(',')->group("");
   app.add_option_function<std::string>(
          "--thresholds",
          [&](const std::string& path) { flags.suite.thresholds = read_thresholds(path); },

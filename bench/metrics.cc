@@ -58,6 +58,14 @@ double max_error(const Times& t, const Signal& truth, const Signal& estimate, do
   return error(t, truth, estimate, from).cwiseAbs().maxCoeff();
 }
 
+double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  const Eigen::RowVectorXd e = error(t, truth, estimate, from).cwiseAbs();
+  if (e.size() == 0) return kNaN;
+  Eigen::Index at = 0;
+  e.maxCoeff(&at);
+  return t[first_from(t, from) + at];
+}
+
 double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from) {
   const Eigen::RowVectorXd e = error(t, ideal, noisy, from);
   return std::sqrt((e.array() - e.mean()).square().mean());

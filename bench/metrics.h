@@ -24,6 +24,9 @@ double bias(const Times& t, const Signal& truth, const Signal& estimate, double 
 /// [N m] largest |estimate - truth| over samples with t >= from.
 double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
+/// [s] when |estimate - truth| is largest, over samples with t >= from; NaN without a sample.
+double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
 /// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run, over
 /// samples with t >= from.
 double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from);

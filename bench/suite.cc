@@ -128,6 +128,15 @@ void add_error_metrics(const Trace& trace, const Output& out, double from, Score
   };
   add("rmse", rmse);
   add("max", max_error);
+  // of the joint that is worst
+  double largest = -1;
+  for (int j = 0; j < trace.dof(); ++j) {
+    const double e = score.metrics.at(fmt::format("max{}_Nm", j + 1));
+    if (!(e > largest)) continue;
+    largest = e;
+    score.metrics["max_at_s"] =
+        time_of_max_error(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from);
+  }
   add_per_joint(trace.dof(), "bias", "Nm", score, [&](int j) {
     return std::abs(bias(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from));
   });

@@ -34,6 +34,9 @@ TEST(ErrorMetrics, OfFourSamples) {
   EXPECT_DOUBLE_EQ(bias(t, truth, estimate, 1), (3. - 4 + 0) / 3);
   EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 1), 4);
   EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 0), 100) << "the start counts if asked";
+  EXPECT_DOUBLE_EQ(time_of_max_error(t, truth, estimate, 1), t[2]);
+  EXPECT_DOUBLE_EQ(time_of_max_error(t, truth, estimate, 0), t[0]);
+  EXPECT_TRUE(std::isnan(time_of_max_error(t, truth, estimate, 100)));
 }
 
 TEST(Noise, IsTheDeviationOfTheDifferenceWithoutItsMean) {

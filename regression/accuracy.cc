@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+namespace tauext::gate {
+namespace {
+
+constexpr const char* kHeader = "# tauext golden metrics 1";
+constexpr const char* kEnd = "# end";
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == '\t') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+// fails with what is wrong with a line
+struct At {
+  const std::string& path;
+  int line;
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error(fmt::format("{}: line {}: {}", path, line, what));
+  }
+  double number(const std::string& text) const {
+    double x = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x)) {
+      fail(fmt::format("'{}' is no number", text));
+    }
+    return x;
+  }
+};
+
+bool differs(double a, double b, double tolerance) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
+  return std::abs(a - b) > tolerance * std::max({1., std::abs(a), std::abs(b)});
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+// how much worse each seed became; infinite where it has no value any more
+std::vector<double> worsening(const std::string& metric, const GoldenLine& before,
+                              const GoldenLine& after) {
+  const double sign = larger_is_better(metric) ? -1 : 1;
+  std::vector<double> worse;
+  for (std::size_t i = 0; i < before.values.size(); ++i) {
+    const double b = before.values[i], a = after.values[i];
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    worse.push_back(std::isnan(a) && std::isnan(b) ? 0
+                    : std::isnan(a)                ? kInf
+                    : std::isnan(b)                ? -kInf
+                                                   : sign * (a - b));
+  }
+  return worse;
+}
+
+// in units of its standard error; infinite if all values are the same, or one of them is
+double standard_errors(const std::vector<double>& d) {
+  const double m = mean(d);
+  if (!std::isfinite(m)) return std::numeric_limits<double>::infinity();
+  double square = 0;
+  for (const double x : d) square += (x - m) * (x - m);
+  const auto n = static_cast<double>(d.size());
+  if (n < 2 || square == 0) return m == 0 ? 0 : std::numeric_limits<double>::infinity();
+  return std::abs(m) / std::sqrt(square / (n - 1) / n);
+}
+
+Change judge(const MetricChange& c, const std::vector<double>& worse) {
+  if (c.metric == "max_at_s") return Change::kChanged;  // neither better nor worse
+  const double m = mean(worse);
+  if (std::isnan(m)) return Change::kChanged;  // some seeds gained a value, others lost theirs
+  const bool much = !std::isfinite(m) || std::abs(m) > kWorseBy * std::abs(c.before);
+  if (!much || c.standard_errors < kStandardErrors) return Change::kChanged;
+  return m > 0 ? Change::kWorse : Change::kBetter;
+}
+
+std::string seconds_of(const Golden& g, const std::string& entry, std::size_t seed) {
+  const auto it = g.lines.find({entry, "max_at_s"});
+  if (it == g.lines.end() || seed >= it->second.values.size()) return "";
+  return fmt::format("{:.6g}", it->second.values[seed]);
+}
+
+bool same_values_in_another_order(const GoldenLine& a, const GoldenLine& b) {
+  std::vector<double> x = a.values, y = b.values;
+  const auto nan = [](double v) { return std::isnan(v); };
+  if (std::any_of(x.begin(), x.end(), nan) || std::any_of(y.begin(), y.end(), nan)) return false;
+  std::sort(x.begin(), x.end());
+  std::sort(y.begin(), y.end());
+  return x == y;
+}
+
+}  // namespace
+
+bool larger_is_better(const std::string& metric) {
+  return metric == "bandwidth_rad_s" || metric == "recall";
+}
+
+Golden parse_golden(const std::string& text, const std::string& path) {
+  Golden g;
+  std::istringstream in(text);
+  std::string line;
+  int number = 0;
+  bool end = false;
+  for (; !end && std::getline(in, line);) {
+    const At at{path, ++number};
+    const auto colon = line.find(": ");
+    if (number == 1) {
+      if (line != kHeader) at.fail(fmt::format("no golden metrics: it must be '{}'", kHeader));
+    } else if (line == kEnd) {
+      end = true;
+    } else if (line.starts_with("# ") && colon != std::string::npos) {
+      g.header[line.substr(2, colon - 2)] = line.substr(colon + 2);
+    } else if (g.seeds.empty()) {
+      const std::vector<std::string> f = fields_of(line);
+      if (f.size() < 4 || f[0] != "entry") at.fail("the names of the columns were expected");
+      for (std::size_t i = 3; i < f.size(); ++i) g.seeds.push_back(f[i]);
+    } else {
+      const std::vector<std::string> f = fields_of(line);
+      if (f.size() != g.seeds.size() + 3) {
+        at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 3));
+      }
+      GoldenLine l{at.number(f[2]), {}};
+      for (std::size_t i = 3; i < f.size(); ++i) {
+        l.values.push_back(f[i] == "never" ? kNever : at.number(f[i]));
+      }
+      if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");
+    }
+  }
+  if (number == 0) throw std::runtime_error(path + ": is empty");
+  if (!end) {
+    throw std::runtime_error(fmt::format("{}: cut off, its last line is not '{}'", path, kEnd));
+  }
+  if (g.lines.empty()) throw std::runtime_error(path + ": holds no metric");
+  return g;
+}
+
+Golden read_golden(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path + ": cannot be read");
+  return parse_golden({std::istreambuf_iterator<char>(in), {}}, path);
+}
+
+int AccuracyReport::worse() const {
+  return static_cast<int>(std::count_if(changes.begin(), changes.end(), [](const MetricChange& c) {
+    return c.change == Change::kWorse;
+  }));
+}
+
+AccuracyReport compare_accuracy(const Golden& baseline, const Golden& head,
+                                const std::string& filter) {
+  AccuracyReport report;
+  for (const char* name : {"mujoco", "sensors"}) {
+    const auto value = [&](const Golden& g) {
+      const auto it = g.header.find(name);
+      return it == g.header.end() ? std::string("unknown") : it->second;
+    };
+    if (value(baseline) == value(head)) continue;
+    report.no_baseline = fmt::format("the baseline was made with {} '{}', this is '{}'", name,
+                                     value(baseline), value(head));
+    return report;
+  }
+  if (baseline.seeds != head.seeds) {
+    report.no_baseline = "the baseline has other seeds";
+    return report;
+  }
+  const std::regex wanted(filter);
+  for (const auto& [key, before] : baseline.lines) {
+    if (!std::regex_search(key.first, wanted)) continue;
+    MetricChange c{.entry = key.first, .metric = key.second};
+    const auto found = head.lines.find(key);
+    c.before = mean(before.values);
+    if (found == head.lines.end()) {
+      c.change = Change::kGone;
+      c.after = kNever;
+      report.changes.push_back(c);
+      continue;
+    }
+    ++report.lines;
+    const GoldenLine& after = found->second;
+    bool same = true;
+    for (std::size_t i = 0; i < before.values.size(); ++i) {
+      same = same && !differs(before.values[i], after.values[i], before.tolerance);
+    }
+    if (same) continue;
+    c.after = mean(after.values);
+    const std::vector<double> worse = worsening(c.metric, before, after);
+    c.standard_errors = standard_errors(worse);
+    c.change = judge(c, worse);
+    const auto worst =
+        static_cast<std::size_t>(std::max_element(worse.begin(), worse.end()) - worse.begin());
+    c.worst_seed = head.seeds[worst];
+    c.largest_error_at = seconds_of(head, c.entry, worst);
+    if (same_values_in_another_order(before, after)) c.note = "the same values, the seeds swapped";
+    report.changes.push_back(std::move(c));
+  }
+  for (const auto& [key, line] : head.lines) {
+    if (baseline.lines.contains(key)) continue;
+    report.changes.push_back({.entry = key.first,
+                              .metric = key.second,
+                              .change = Change::kNew,
+                              .before = kNever,
+                              .after = mean(line.values)});
+  }
+  const auto badness = [](const MetricChange& c) {
+    return std::pair(c.change != Change::kWorse,
+                     -(c.after - c.before) / std::max(std::abs(c.before), 1e-12));
+  };
+  std::stable_sort(report.changes.begin(), report.changes.end(),
+                   [&](const MetricChange& a, const MetricChange& b) {
+                     const auto x = badness(a), y = badness(b);
+                     // a value that is not there sorts first
+                     if (x.first != y.first) return x.first < y.first;
+                     if (std::isnan(x.second) != std::isnan(y.second)) return std::isnan(x.second);
+                     return x.second < y.second;
+                   });
+  return report;
+}
+
+std::vector<std::string> not_repeated(const Golden& once, const Golden& again) {
+  std::vector<std::string> all;
+  for (const auto& [key, line] : again.lines) {
+    const auto first = once.lines.find(key);
+    for (std::size_t i = 0; i < again.seeds.size(); ++i) {
+      const auto seed = std::find(once.seeds.begin(), once.seeds.end(), again.seeds[i]);
+      if (first == once.lines.end() || seed == once.seeds.end()) {
+        all.push_back(fmt::format("{} {}: there the second time alone", key.first, key.second));
+        continue;
+      }
+      const double a = first->second.values[static_cast<std::size_t>(seed - once.seeds.begin())];
+      const double b = line.values[i];
+      if (std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b))) continue;
+      all.push_back(fmt::format("{} {}, {}: {:.17g}, then {:.17g}", key.first, key.second,
+                                again.seeds[i], a, b));
+    }
+  }
+  return all;
+}
+
+}  // namespace tauext::gate

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/identity.h"
+
+#include <elf.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace tauext::gate {
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  if (!in.good() && !in.eof()) throw std::runtime_error(path + ": cannot be read");
+  return bytes;
+}
+
+// a struct at an offset of the file
+template <class T>
+T at(const std::string& bytes, std::uint64_t offset, const std::string& path) {
+  if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) {
+    throw std::runtime_error(path + ": an ELF file that is cut off");
+  }
+  T x;
+  std::memcpy(&x, bytes.data() + offset, sizeof(T));
+  return x;
+}
+
+// names and contents of .text, .rodata and .data, in the order of the file
+std::string code_of(const std::string& path) {
+  const std::string bytes = read(path);
+  if (bytes.size() < sizeof(Elf64_Ehdr) || std::memcmp(bytes.data(), ELFMAG, SELFMAG) != 0 ||
+      bytes[EI_CLASS] != ELFCLASS64) {
+    throw std::runtime_error(path + ": no ELF file of 64 bit");
+  }
+  const auto head = at<Elf64_Ehdr>(bytes, 0, path);
+  const auto section = [&](std::uint64_t i) {
+    return at<Elf64_Shdr>(bytes, head.e_shoff + i * sizeof(Elf64_Shdr), path);
+  };
+  const Elf64_Shdr names = section(head.e_shstrndx);
+  std::string code;
+  for (std::uint64_t i = 0; i < head.e_shnum; ++i) {
+    const Elf64_Shdr s = section(i);
+    at<char>(bytes, names.sh_offset + s.sh_name, path);
+    const std::string_view name(bytes.c_str() + names.sh_offset + s.sh_name);
+    if (name != ".text" && name != ".rodata" && name != ".data") continue;
+    if (s.sh_size > 0) at<char>(bytes, s.sh_offset + s.sh_size - 1, path);
+    code.append(name).push_back('\0');
+    code.append(bytes, s.sh_offset, s.sh_size);
+  }
+  if (code.empty()) throw std::runtime_error(path + ": an ELF file without code");
+  return code;
+}
+
+}  // namespace
+
+std::uint64_t code_hash(const std::string& path) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const unsigned char c : code_of(path)) hash = (hash ^ c) * 1099511628211u;
+  return hash;
+}
+
+bool identical(const std::string& a, const std::string& b) {
+  return code_of(a) == code_of(b);
+}
+
+}  // namespace tauext::gate

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/plugin_host.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace tauext::gate {
+
+Plugin::Plugin(const std::string& path) {
+  // with a slash dlopen looks at this file and nowhere else
+  const std::string file = std::filesystem::absolute(path).string();
+  library_ = std::shared_ptr<void>(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* l) {
+    if (l) ::dlclose(l);
+  });
+  if (!library_) throw std::runtime_error(fmt::format("{}: no plug-in: {}", path, ::dlerror()));
+  using Get = const tauext_plugin* (*)();
+  const auto get = reinterpret_cast<Get>(::dlsym(library_.get(), TAUEXT_PLUGIN_SYMBOL));
+  if (!get) {
+    throw std::runtime_error(fmt::format("{}: no plug-in: it has no {} (see bench/kernels.h)", path,
+                                         TAUEXT_PLUGIN_SYMBOL));
+  }
+  api_ = get();
+  if (api_->abi != TAUEXT_PLUGIN_ABI) {
+    throw std::runtime_error(fmt::format("{}: a plug-in of ABI {}, this program speaks {}", path,
+                                         api_->abi, TAUEXT_PLUGIN_ABI));
+  }
+}
+
+int Plugin::find(const std::string& wanted) const {
+  for (int i = 0; i < count(); ++i) {
+    if (name(i) == wanted) return i;
+  }
+  return -1;
+}
+
+std::vector<double> example(const Plugin& plugin, int kernel) {
+  const tauext_plugin& api = plugin.api();
+  std::vector<double> samples(static_cast<std::size_t>(api.sample_size(kernel)) * kExampleSamples);
+  api.example(kernel, kExampleSamples, samples.data());
+  return samples;
+}
+
+Work::Work(const Plugin& plugin, int kernel, const std::vector<double>& samples)
+    : api_(&plugin.api()), instance_(nullptr, api_->destroy) {
+  const auto size = static_cast<std::size_t>(api_->sample_size(kernel));
+  if (samples.size() % size != 0) {
+    throw std::runtime_error(plugin.name(kernel) +
+                             ": the two builds differ in the number of joints");
+  }
+  instance_.reset(api_->create(kernel, static_cast<int>(samples.size() / size), samples.data()));
+  if (!instance_) throw std::runtime_error(plugin.name(kernel) + ": out of memory");
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "tauext-gate-XXXXXX").string();
+  if (!::mkdtemp(pattern.data())) throw std::runtime_error(pattern + ": cannot make this folder");
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TemporaryFolder::copy(const std::string& file, const std::string& name) const {
+  const std::filesystem::path to = std::filesystem::path(path_) / name;
+  std::error_code error;
+  std::filesystem::copy_file(file, to, error);
+  if (error) throw std::runtime_error(fmt::format("{}: {}", file, error.message()));
+  return to.string();
+}
+
+}  // namespace tauext::gate

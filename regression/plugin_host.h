@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Loads a plug-in (bench/plugin.h) and runs its kernels.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/plugin.h"
+
+namespace tauext::gate {
+
+/// A loaded plug-in. Two of the same path would be one and the same: give each a copy of its own.
+class Plugin {
+ public:
+  /// @throws std::runtime_error naming the path: no plug-in, or one of another ABI
+  explicit Plugin(const std::string& path);
+
+  int count() const { return api_->count; }
+  std::string name(int kernel) const { return api_->name(kernel); }
+  /// Its number, -1 if it has no kernel of that name.
+  int find(const std::string& name) const;
+  const tauext_plugin& api() const { return *api_; }
+
+ private:
+  std::shared_ptr<void> library_;
+  const tauext_plugin* api_;
+};
+
+/// One second of samples, of a kernel's own making.
+std::vector<double> example(const Plugin& plugin, int kernel);
+inline constexpr int kExampleSamples = 1000;
+
+/// A kernel at work on such samples.
+class Work {
+ public:
+  Work(const Plugin& plugin, int kernel, const std::vector<double>& samples);
+  void run(int steps) { api_->run(instance_.get(), steps); }
+
+ private:
+  const tauext_plugin* api_;
+  std::unique_ptr<void, void (*)(void*)> instance_;
+};
+
+/// Folder of its own below the system's temporary one, removed with what is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::string& path() const { return path_; }
+  /// Copies a file into it.
+  /// @return the copy's path  @throws std::runtime_error naming the file
+  std::string copy(const std::string& file, const std::string& name) const;
+
+ private:
+  std::string path_;
+};
+
+}  // namespace tauext::gate

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges a build of estimators beside another one and beside what was committed.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <ctime>
+#include <filesystem>
+#include <regex>
+#include <stdexcept>
+
+#include "mjcf/atomic_file.h"
+#include "regression/calibrate.h"
+#include "regression/child.h"
+#include "regression/explain.h"
+#include "regression/layers.h"
+#include "regression/report.h"
+#include "regression/update.h"
+
+namespace tauext::gate {
+namespace {
+
+struct Flags {
+  GateOptions gate;
+  UpdateOptions update;
+  CalibrateOptions calibrate;
+  std::string junit, markdown, base_json, head_json, subject;
+  bool all = false;
+};
+
+void write(const std::string& path, const std::string& text) {
+  if (path.empty()) return;
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+// an unwritable report should not cost a run
+void require_writable(const Flags& f) {
+  for (const std::string* path : {&f.junit, &f.markdown, &f.base_json, &f.head_json}) {
+    if (!path->empty()) AtomicFile{*path};
+  }
+}
+
+void show_progress(GateOptions& o) {
+  if (::isatty(STDERR_FILENO) == 1) {
+    o.progress = [](const std::string& what) { fmt::print(stderr, "\r\033[K{}", what); };
+  }
+}
+
+int check(Flags& f) {
+  require_writable(f);
+  show_progress(f.gate);
+  const GateResult r = run_layers(f.gate);
+  if (f.gate.progress) f.gate.progress("");
+  fmt::print("{}", format_terminal(r, f.all));
+  write(f.junit, format_junit(r));
+  write(f.markdown, format_markdown(r));
+  const bool timed = r.time && !r.time->kernels.empty() && !r.time->kernels[0].processes.empty();
+  if (timed && !f.base_json.empty()) write(f.base_json, format_benchmark(r, false));
+  if (timed && !f.head_json.empty()) write(f.head_json, format_benchmark(r, true));
+  return exit_code(r);
+}
+
+int update(Flags& f) {
+  f.update.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+  const UpdateResult r = update_baselines(f.update);
+  fmt::print("{}", r.text);
+  return r.refused ? kLessAccurate : kPassed;
+}
+
+int calibrate(Flags& f) {
+  if (f.calibrate.trials < 1) throw std::invalid_argument("--trials: at least 1");
+  if (::isatty(STDERR_FILENO) == 1) {
+    f.calibrate.progress = [&](int i) {
+      fmt::print(stderr, "\r\033[Ktrial {} of {}", i + 1, f.calibrate.trials);
+    };
+  }
+  const std::vector<Power> power = gate::calibrate(f.calibrate);
+  if (f.calibrate.progress) fmt::print(stderr, "\r\033[K");
+  fmt::print("{}", format_power(power, f.calibrate));
+  return kPassed;
+}
+
+// beside this program, where it is built and installed
+std::string sibling(const std::string& name) {
+  const auto path = std::filesystem::path(this_program()).parent_path() / name;
+  return std::filesystem::exists(path) ? path.string() : "";
+}
+
+void add_flags(CLI::App& app, Flags& f) {
+  const std::string plugin = sibling("tauext_plugin.so"), bench = sibling("tauext-bench");
+  f.gate.head = f.update.head = f.calibrate.base = plugin;
+  f.gate.bench = f.update.bench = bench;
+  f.gate.baselines = f.update.baselines = "regression/baselines";
+  f.update.changelog = "regression/CHANGELOG.md";
+  const auto add_base = [&](CLI::App* sub) {
+    sub->add_option("--base", f.gate.base, "plug-in to compare with")->type_name("SO");
+    sub->add_option("--head", f.gate.head, "plug-in to be judged; else the one beside this program")
+        ->type_name("SO");
+    sub->add_option("--kernels", f.gate.kernels, "those that match alone")->type_name("REGEX");
+  };
+  const auto add_bench = [&](CLI::App* sub) {
+    sub->add_option("--bench", f.gate.bench,
+                    "program with --golden; else the tauext-bench beside this one")
+        ->type_name("PROGRAM");
+    sub->add_option("--entries", f.gate.entries, "those that match alone")->type_name("REGEX");
+  };
+  const auto add_baselines = [&](CLI::App* sub, std::string& to) {
+    sub->add_option("--baselines", to, "folder of what was committed")
+        ->type_name("FOLDER")
+        ->capture_default_str();
+  };
+  const auto add_reports = [&](CLI::App* sub) {
+    sub->add_flag("--all", f.all, "show what is well, too");
+    sub->add_option("--junit", f.junit, "JUnit XML")->type_name("FILE");
+    sub->add_option("--markdown", f.markdown, "for a CI job's summary")->type_name("FILE");
+    sub->add_option("--base-json", f.base_json, "times of base, for Google Benchmark's compare.py")
+        ->type_name("FILE");
+    sub->add_option("--head-json", f.head_json, "times of head, likewise")->type_name("FILE");
+  };
+  const auto add_time = [&](CLI::App* sub) {
+    sub->add_flag("--even-if-identical", f.gate.even_if_identical,
+                  "time also what is the same code");
+    sub->add_option("--period", f.gate.period, "of control [s]; a step may take a tenth")
+        ->capture_default_str();
+  };
+
+  CLI::App* sub = app.add_subcommand("check", "every layer: time, instructions, accuracy");
+  add_base(sub), add_bench(sub), add_baselines(sub, f.gate.baselines), add_time(sub),
+      add_reports(sub);
+  sub = app.add_subcommand("time",
+                           "base against head, interleaved in one process, in many processes");
+  add_base(sub), add_time(sub), add_reports(sub);
+  sub->get_option("--base")->required();
+  sub->callback([&f] { f.gate.instructions = f.gate.accuracy = false; });
+  sub = app.add_subcommand("count", "instructions of head beside base's and beside the committed");
+  add_base(sub), add_baselines(sub, f.gate.baselines), add_reports(sub);
+  sub->callback([&f] { f.gate.time = f.gate.accuracy = false; });
+  sub =
+      app.add_subcommand("accuracy", "metrics of every entry, seed by seed, beside the committed");
+  add_bench(sub), add_baselines(sub, f.gate.baselines), add_reports(sub);
+  sub->callback([&f] { f.gate.time = f.gate.instructions = false; });
+  sub = app.add_subcommand("update", "write what head has as the new baselines");
+  sub->add_option("--reason", f.update.reason, "why, for the changelog")->required();
+  sub->add_option("--accept-worse", f.update.accept_worse, "why what is worse is right");
+  sub->add_option("--head", f.update.head, "plug-in; \"\": no counts")->type_name("SO");
+  sub->add_option("--bench", f.update.bench, "program with --golden; \"\": no accuracy")
+      ->type_name("PROGRAM");
+  sub->add_option("--changelog", f.update.changelog)->type_name("FILE")->capture_default_str();
+  add_baselines(sub, f.update.baselines);
+  sub =
+      app.add_subcommand("calibrate", "this machine's false alarms, and what slowdowns are found");
+  sub->add_option("--base", f.calibrate.base, "plug-in")->type_name("SO");
+  sub->add_option("--head", f.calibrate.head, "one that is slower, instead of injected steps")
+      ->type_name("SO");
+  sub->add_option("--kernels", f.calibrate.kernels, "those that match alone")->type_name("REGEX");
+  sub->add_option("--slowdowns", f.calibrate.slowdowns,
+                  "to inject [1]; 0: a copy, for false alarms")
+      ->delimiter(',')
+      ->check(CLI::Range(0., 1.))
+      ->capture_default_str();
+  sub->add_option("--trials", f.calibrate.trials, "complete runs")->capture_default_str();
+  sub = app.add_subcommand("explain", "all that is known of one kernel or entry");
+  sub->add_option("subject", f.subject, "<robot>/<kernel> or <robot>/<scenario>/<estimator>")
+      ->required();
+  add_base(sub), add_bench(sub), add_baselines(sub, f.gate.baselines);
+  app.require_subcommand(1);
+}
+
+int run(const CLI::App& app, Flags& f) {
+  const std::string name = app.get_subcommands().front()->get_name();
+  if (name == "update") return update(f);
+  if (name == "calibrate") return calibrate(f);
+  if (name == "explain") {
+    fmt::print("{}", explain(f.gate, f.subject));
+    return kPassed;
+  }
+  return check(f);
+}
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Judges estimators beside another build and beside committed numbers.\n\n"
+      "  tauext-gate check --base build/base/tauext_plugin.so\n"
+      "  tauext-gate accuracy --entries wallmobot3/step/\n\n"
+      "ci/gate builds both sides and calls it.",
+      "tauext-gate");
+  app.set_version_flag("--version", "tauext-gate " TAUEXT_VERSION);
+  app.footer(
+      "Exit codes: 0 passed, 1 slower, 2 less accurate, 3 no baseline or update needed, 4 "
+      "inconclusive,\n"
+      "64 usage, 70 harness error. Each subcommand has a --help.");
+  Flags f;
+  add_flags(app, f);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    fmt::print(stderr, "tauext-gate: {}\ntauext-gate: see tauext-gate --help\n", e.what());
+    return kUsage;
+  }
+  try {
+    const int code = run(app, f);
+    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+    return code;
+  } catch (const std::invalid_argument& e) {
+    fmt::print(stderr, "tauext-gate: {}\n", e.what());
+    return kUsage;
+  } catch (const std::regex_error& e) {
+    fmt::print(stderr, "tauext-gate: no regular expression: {}\n", e.what());
+    return kUsage;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tauext-gate: {}\n", e.what());
+    return kHarnessError;
+  }
+}
+
+}  // namespace
+}  // namespace tauext::gate
+
+int main(int argc, char** argv) {
+  using namespace tauext::gate;
+  const std::string first = argc > 1 ? argv[1] : "";
+  try {
+    // children of this program itself
+    if (first == "worker" && argc == 3) return worker_main(argv[2]);
+    if (first == "count-worker" && argc == 4) return count_main(argv[2], argv[3]);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tauext-gate {}: {}\n", first, e.what());
+    return kHarnessError;
+  }
+  return tauext::gate::main(argc, argv);
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace tauext::gate {
+namespace {
+
+KernelTime kernel(const std::string& name, double ratio, Verdict verdict) {
+  KernelTime k{.kernel = name, .base_ns = 100, .head_ns = 100 * ratio};
+  k.verdict = {.verdict = verdict, .median = ratio, .low = ratio - 0.001, .high = ratio + 0.001};
+  k.verdict.processes = 10;
+  k.processes = {{.kernel = name, .base_ns = 100, .head_ns = 100 * ratio},
+                 {.kernel = name, .base_ns = 101, .head_ns = 101 * ratio}};
+  return k;
+}
+
+GateResult times(std::vector<KernelTime> kernels) {
+  GateResult r{.bench = "tauext-bench"};
+  r.time = TimeReport{.kernels = std::move(kernels)};
+  return r;
+}
+
+GateResult metric(Change change) {
+  GateResult r{.bench = "tauext-bench"};
+  r.accuracy = AccuracyReport{.lines = 1};
+  r.accuracy->changes.push_back({.entry = "arm/step/a+b",
+                                 .metric = "rmse_Nm",
+                                 .change = change,
+                                 .before = 1,
+                                 .after = 1.1,
+                                 .standard_errors = 44,
+                                 .worst_seed = "seed 3",
+                                 .largest_error_at = "5.004"});
+  return r;
+}
+
+TEST(ExitCode, IsThatOfTheWorstFinding) {
+  EXPECT_EQ(exit_code(times({kernel("a", 1, Verdict::kPass)})), kPassed);
+  EXPECT_EQ(exit_code(times({kernel("a", 1, Verdict::kIdentical)})), kPassed);
+  EXPECT_EQ(exit_code(times({kernel("a", 1.1, Verdict::kFail)})), kSlower);
+  EXPECT_EQ(exit_code(times({kernel("a", 1, Verdict::kInconclusive)})), kInconclusive);
+  EXPECT_EQ(exit_code(metric(Change::kWorse)), kLessAccurate);
+  for (const Change c : {Change::kBetter, Change::kChanged, Change::kNew, Change::kGone}) {
+    EXPECT_EQ(exit_code(metric(c)), kUpdateNeeded);
+  }
+  GateResult both = metric(Change::kWorse);
+  both.time = TimeReport{.kernels = {kernel("a", 1.1, Verdict::kFail)}};
+  EXPECT_EQ(exit_code(both), kSlower);
+  both.not_repeated = {"x"};
+  EXPECT_EQ(exit_code(both), kHarnessError);
+  GateResult budget = times({kernel("a", 1, Verdict::kPass)});
+  budget.time->kernels[0].over_budget = true;
+  EXPECT_EQ(exit_code(budget), kSlower);
+  GateResult blind = times({kernel("a", 1, Verdict::kInconclusive)});
+  blind.time->kernels[0].verdict.harness_error = true;
+  EXPECT_EQ(exit_code(blind), kHarnessError);
+}
+
+TEST(ExitCode, OfInstructions) {
+  GateResult r;
+  r.instructions = InstructionReport{.kernels = 1};
+  EXPECT_EQ(exit_code(r), kPassed);
+  r.instructions->beside_committed = {{.kernel = "a", .before = 1000, .after = 1005}};
+  EXPECT_EQ(exit_code(r), kPassed) << "below the limit";
+  r.instructions->no_baseline = "none";
+  EXPECT_EQ(exit_code(r), kUpdateNeeded);
+  r.instructions->beside_base = {{.kernel = "a", .before = 1000, .after = 1020}};
+  EXPECT_EQ(exit_code(r), kSlower);
+}
+
+TEST(Terminal, FitsOnAScreenWhenAllIsWell) {
+  std::vector<KernelTime> many;
+  for (int i = 0; i < 60; ++i)
+    many.push_back(kernel("arm/k" + std::to_string(i), 1, Verdict::kPass));
+  const std::string text = format_terminal(times(many), false);
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 24) << text;
+  EXPECT_NE(text.find("60 kernels, 60 ok"), std::string::npos) << text;
+  EXPECT_NE(text.find("(-0.10 to +0.10)"), std::string::npos) << "an interval: " << text;
+}
+
+TEST(Terminal, SaysWhyAKernelIsSlower) {
+  GateResult r = times({kernel("arm/ekf", 1.1, Verdict::kFail)});
+  EXPECT_NE(format_terminal(r, false).find("the same work, but slower"), std::string::npos);
+  r.instructions = InstructionReport{.kernels = 1};
+  r.instructions->beside_base = {
+      {.kernel = "arm/ekf", .before = 1000, .after = 1100, .gained = {"+0.1 a step in f"}}};
+  const std::string text = format_terminal(r, false);
+  EXPECT_NE(text.find("more work: +10.0 % instructions"), std::string::npos) << text;
+  EXPECT_NE(text.find("+0.1 a step in f"), std::string::npos) << text;
+  EXPECT_NE(text.find("--kernels '^arm/ekf$'"), std::string::npos) << text;
+  r.time->kernels[0] = kernel("arm/ekf", 1, Verdict::kPass);
+  EXPECT_NE(format_terminal(r, true).find("more instructions at no cost in time"),
+            std::string::npos);
+}
+
+TEST(Terminal, NamesSeedSampleAndCommandOfALossInAccuracy) {
+  const std::string text = format_terminal(metric(Change::kWorse), false);
+  for (const char* part :
+       {"arm/step/a+b rmse_Nm  1 -> 1.1 (+10 %)  LESS ACCURATE", "worst: seed 3", "t = 5.004 s",
+        "tauext-bench --golden - --seeds 3 --benchmark_filter='^arm/step/a[+]b$'"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+}
+
+TEST(JUnit, CountsAndEscapes) {
+  GateResult r =
+      times({kernel("a<b>&\"c\"", 1.1, Verdict::kFail), kernel("d", 1, Verdict::kInconclusive)});
+  const std::string text = format_junit(r);
+  EXPECT_NE(text.find("tests=\"2\" failures=\"1\" skipped=\"1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("name=\"a&lt;b&gt;&amp;&quot;c&quot;\""), std::string::npos) << text;
+}
+
+TEST(Markdown, LeadsWithTheVerdict) {
+  const std::string text = format_markdown(metric(Change::kWorse));
+  EXPECT_EQ(text.find("## tauext-gate: LESS ACCURATE (exit 2)"), 0u) << text;
+}
+
+TEST(BenchmarkJson, HasARepetitionAProcess) {
+  const GateResult r = times({kernel("arm/ekf", 1.1, Verdict::kFail)});
+  const auto base = nlohmann::json::parse(format_benchmark(r, false));
+  const auto head = nlohmann::json::parse(format_benchmark(r, true));
+  ASSERT_EQ(head["benchmarks"].size(), 2u);
+  EXPECT_EQ(head["benchmarks"][1]["repetition_index"], 1);
+  EXPECT_NEAR(head["benchmarks"][0]["cpu_time"].get<double>() /
+                  base["benchmarks"][0]["cpu_time"].get<double>(),
+              1.1, 1e-12);
+  EXPECT_THROW(format_benchmark(GateResult{}, true), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tauext::gate

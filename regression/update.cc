@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/update.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "mjcf/atomic_file.h"
+#include "regression/child.h"
+#include "regression/plugin_host.h"
+
+namespace tauext::gate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path + ": cannot be read");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void require_one_line(const std::string& what, const std::string& text) {
+  if (text.find_first_not_of(" \t") == std::string::npos) {
+    throw std::invalid_argument(fmt::format("--{}: say why; it goes into the changelog", what));
+  }
+  if (text.find_first_of("\r\n") != std::string::npos) {
+    throw std::invalid_argument(fmt::format("--{}: one line", what));
+  }
+}
+
+// files that are all written before the first one appears
+class Files {
+ public:
+  void add(const std::string& path, const std::string& text) {
+    if (fs::exists(path) && content(path) == text) return;
+    files_.push_back(std::make_unique<AtomicFile>(path));
+    files_.back()->write(text);
+    names_.push_back(path);
+  }
+  void commit() {
+    for (auto& f : files_) f->commit();
+  }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::unique_ptr<AtomicFile>> files_;
+  std::vector<std::string> names_;
+};
+
+void update_counts(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
+  const Counts head = count_instructions(o.head, "");
+  const std::string path = counts_path(o.baselines, head.key);
+  if (fs::exists(path)) {
+    for (const CountChange& c : compare_counts(read_counts(path), head)) {
+      const std::string line =
+          fmt::format("  {}: {:+.2f} % instructions\n", c.kernel, 100 * c.change());
+      (too_many(c) ? worse : changed) += line;
+    }
+  }
+  files.add(path, format_counts(head));
+}
+
+void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() + "/golden.tsv", path = golden_path(o.baselines);
+  run_child({o.bench, "--golden", out});
+  const std::string text = content(out);
+  const Golden head = parse_golden(text, out);
+  if (fs::exists(path)) {
+    const AccuracyReport r = compare_accuracy(read_golden(path), head);
+    if (!r.no_baseline.empty()) changed += "  accuracy: " + r.no_baseline + "\n";
+    for (const MetricChange& c : r.changes) {
+      const std::string line =
+          fmt::format("  {} {}: {:.6g} -> {:.6g}\n", c.entry, c.metric, c.before, c.after);
+      (c.change == Change::kWorse ? worse : changed) += line;
+    }
+  }
+  files.add(path, text);
+}
+
+std::string first_lines(const std::string& text, int most) {
+  std::size_t at = 0;
+  for (int i = 0; i < most && at != std::string::npos; ++i) at = text.find('\n', at + (i > 0));
+  if (at == std::string::npos || at + 1 >= text.size()) return text;
+  const auto rest =
+      std::count(text.begin() + static_cast<std::ptrdiff_t>(at) + 1, text.end(), '\n');
+  return text.substr(0, at + 1) + fmt::format("  ... and {} more\n", rest);
+}
+
+}  // namespace
+
+UpdateResult update_baselines(const UpdateOptions& o) {
+  require_one_line("reason", o.reason);
+  if (!o.accept_worse.empty()) require_one_line("accept-worse", o.accept_worse);
+  if (o.head.empty() && o.bench.empty())
+    throw std::invalid_argument("nothing to update: no --head, no --bench");
+  fs::create_directories(o.baselines);
+  std::string log =
+      fs::exists(o.changelog) ? content(o.changelog) : "# Baselines\nEach line moved them.\n\n";
+  Files files;
+  std::string worse, changed;
+  if (!o.head.empty()) update_counts(o, files, worse, changed);
+  if (!o.bench.empty()) update_golden(o, files, worse, changed);
+  if (!worse.empty() && o.accept_worse.empty()) {
+    return {true, "refused, for these would be worse:\n" + first_lines(worse, 20) +
+                      "If that is right: --accept-worse 'the reason'\n"};
+  }
+  if (files.names().empty())
+    return {false, "the baselines are as they should be; nothing was written\n"};
+  UpdateResult result;
+  for (const std::string& name : files.names()) result.text += "wrote " + name + "\n";
+  log += fmt::format("- {}: {}{}\n", o.date, o.reason,
+                     worse.empty() ? "" : fmt::format(" (worse, accepted: {})", o.accept_worse));
+  files.add(o.changelog, log);
+  files.commit();
+  result.text += first_lines(worse + changed, 20) + "The reason is in " + o.changelog + "\n";
+  return result;
+}
+
+}  // namespace tauext::gate
