@@ -28,7 +28,7 @@ bool of_one_joint(const std::string& key, const std::map<std::string, double>& m
 }
 
 std::string text_of(double value) {
-  return std::isnan(value) ? "never" : fmt::format("{:.17g}", value);
+  return !std::isfinite(value) ? "never" : fmt::format("{:.17g}", value);
 }
 
 bool has_contacts(const Entry& e) {

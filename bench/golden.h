@@ -29,7 +29,7 @@ Sensors golden_sensors();
 
 /// Lines "# name: value" of what the numbers depend on, then a line for each entry and metric, sorted:
 ///     entry <tab> metric <tab> tolerance <tab> value of the first seed <tab> ..
-/// Values are %.17g, "never" where the metric has none. `tolerance` is what may change between two machines,
+/// Values are %.17g, "never" where the metric has none or is no number. `tolerance` is what may change between two machines,
 /// absolute or relative, whichever is larger: 1e-9, 1e-6 with contacts. "failed" is 1 for a seed whose entry
 /// failed. Metrics of single joints are left out. Does not depend on the number of threads.
 /// @throws std::invalid_argument for a filter that matches nothing or is no regular expression, and for no seed

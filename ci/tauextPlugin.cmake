@@ -16,7 +16,11 @@ function(tauext_add_plugin target)
   if(TAUEXT_ARCH)
     list(PREPEND flags -march=${TAUEXT_ARCH})
   endif()
+  # what else reaches the compiler belongs to a count's key, too
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}" before)
   list(JOIN flags " " text)
+  string(STRIP "${before} ${text}" text)
   add_library(${target} MODULE ${ARGN})
   target_link_libraries(${target} PRIVATE tauext::estimators)
   # paths of the checkout must not make two equal builds differ

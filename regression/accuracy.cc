@@ -13,6 +13,7 @@
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 namespace tauext::gate {
 namespace {
@@ -61,26 +62,30 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// how much worse each seed became; infinite where it has no value any more
-std::vector<double> worsening(const std::string& metric, const GoldenLine& before,
-                              const GoldenLine& after) {
+// what T2 knows of a line: seeds with a value on both sides, and how many lost or gained one
+struct Paired {
+  std::vector<double> before, worse;  // worse: by how much, in the metric's own direction
+  int lost = 0, gained = 0;
+};
+
+Paired paired(const std::string& metric, const GoldenLine& before, const GoldenLine& after) {
   const double sign = larger_is_better(metric) ? -1 : 1;
-  std::vector<double> worse;
+  Paired p;
   for (std::size_t i = 0; i < before.values.size(); ++i) {
     const double b = before.values[i], a = after.values[i];
-    constexpr double kInf = std::numeric_limits<double>::infinity();
-    worse.push_back(std::isnan(a) && std::isnan(b) ? 0
-                    : std::isnan(a)                ? kInf
-                    : std::isnan(b)                ? -kInf
-                                                   : sign * (a - b));
+    p.lost += std::isnan(a) && !std::isnan(b);
+    p.gained += std::isnan(b) && !std::isnan(a);
+    if (std::isnan(a) || std::isnan(b)) continue;
+    p.before.push_back(b);
+    p.worse.push_back(sign * (a - b));
   }
-  return worse;
+  return p;
 }
 
-// in units of its standard error; infinite if all values are the same, or one of them is
+// in units of its standard error; infinite if all values are the same
 double standard_errors(const std::vector<double>& d) {
+  if (d.empty()) return 0;
   const double m = mean(d);
-  if (!std::isfinite(m)) return std::numeric_limits<double>::infinity();
   double square = 0;
   for (const double x : d) square += (x - m) * (x - m);
   const auto n = static_cast<double>(d.size());
@@ -88,13 +93,36 @@ double standard_errors(const std::vector<double>& d) {
   return std::abs(m) / std::sqrt(square / (n - 1) / n);
 }
 
-Change judge(const MetricChange& c, const std::vector<double>& worse) {
-  if (c.metric == "max_at_s") return Change::kChanged;  // neither better nor worse
-  const double m = mean(worse);
-  if (std::isnan(m)) return Change::kChanged;  // some seeds gained a value, others lost theirs
-  const bool much = !std::isfinite(m) || std::abs(m) > kWorseBy * std::abs(c.before);
-  if (!much || c.standard_errors < kStandardErrors) return Change::kChanged;
+// "never" is the best bandwidth, and the worst of everything else; one seed's step over that edge is no verdict
+Change judge(const std::string& metric, const Paired& p, std::size_t seeds) {
+  if (metric == "max_at_s") return Change::kChanged;  // neither better nor worse
+  const int lost = p.lost - p.gained;
+  if (metric != "bandwidth_rad_s" && 2 * static_cast<std::size_t>(std::abs(lost)) > seeds) {
+    return lost > 0 ? Change::kWorse : Change::kBetter;
+  }
+  if (p.worse.empty()) return Change::kChanged;
+  const double m = mean(p.worse);
+  if (metric == "failed" && m > 0) return Change::kWorse;  // of one seed, too
+  if (std::abs(m) <= kWorseBy * std::abs(mean(p.before))) return Change::kChanged;
+  if (standard_errors(p.worse) < kStandardErrors) return Change::kChanged;
   return m > 0 ? Change::kWorse : Change::kBetter;
+}
+
+// the seed that got worse most, or lost its value
+std::size_t worst_seed(const std::string& metric, const GoldenLine& before,
+                       const GoldenLine& after) {
+  const double sign = larger_is_better(metric) ? -1 : 1;
+  std::size_t worst = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < before.values.size(); ++i) {
+    double by = sign * (after.values[i] - before.values[i]);
+    if (std::isnan(by)) {
+      by = std::isnan(before.values[i]) ? -std::numeric_limits<double>::infinity()
+                                        : std::numeric_limits<double>::infinity();
+    }
+    if (by > most) most = by, worst = i;
+  }
+  return worst;
 }
 
 std::string seconds_of(const Golden& g, const std::string& entry, std::size_t seed) {
@@ -110,6 +138,56 @@ bool same_values_in_another_order(const GoldenLine& a, const GoldenLine& b) {
   std::sort(x.begin(), x.end());
   std::sort(y.begin(), y.end());
   return x == y;
+}
+
+// why two files cannot be compared; "" if they can
+std::string incomparable(const Golden& baseline, const Golden& head) {
+  for (const char* name : {"mujoco", "sensors"}) {
+    const auto value = [&](const Golden& g) {
+      const auto it = g.header.find(name);
+      return it == g.header.end() ? std::string("unknown") : it->second;
+    };
+    if (value(baseline) == value(head)) continue;
+    return fmt::format("the baseline was made with {} '{}', this is '{}'", name, value(baseline),
+                       value(head));
+  }
+  return baseline.seeds == head.seeds ? "" : "the baseline has other seeds";
+}
+
+bool unchanged(const GoldenLine& before, const GoldenLine& after) {
+  for (std::size_t i = 0; i < before.values.size(); ++i) {
+    if (differs(before.values[i], after.values[i], before.tolerance)) return false;
+  }
+  return true;
+}
+
+MetricChange change_of(const std::pair<std::string, std::string>& key, const GoldenLine& before,
+                       const GoldenLine& after, const Golden& head) {
+  MetricChange c{.entry = key.first, .metric = key.second};
+  const Paired p = paired(c.metric, before, after);
+  c.before = mean(before.values);
+  c.after = mean(after.values);
+  c.standard_errors = standard_errors(p.worse);
+  c.change = judge(c.metric, p, before.values.size());
+  const std::size_t worst = worst_seed(c.metric, before, after);
+  c.worst_seed = head.seeds[worst];
+  c.largest_error_at = seconds_of(head, c.entry, worst);
+  if (p.lost + p.gained > 0) {
+    c.note = fmt::format("{} seeds lost their value, {} gained one", p.lost, p.gained);
+  } else if (same_values_in_another_order(before, after)) {
+    c.note = "the same values, the seeds swapped";
+  }
+  return c;
+}
+
+// by how much of the value; what is worse, or not there any more, first
+bool worse_first(const MetricChange& a, const MetricChange& b) {
+  const auto key = [](const MetricChange& c) {
+    const double change = std::abs(c.after - c.before) / std::max(std::abs(c.before), 1e-12);
+    return std::tuple(c.change != Change::kWorse, c.change != Change::kGone,
+                      std::isnan(change) ? -std::numeric_limits<double>::infinity() : -change);
+  };
+  return key(a) < key(b);
 }
 
 }  // namespace
@@ -172,49 +250,23 @@ int AccuracyReport::worse() const {
 AccuracyReport compare_accuracy(const Golden& baseline, const Golden& head,
                                 const std::string& filter) {
   AccuracyReport report;
-  for (const char* name : {"mujoco", "sensors"}) {
-    const auto value = [&](const Golden& g) {
-      const auto it = g.header.find(name);
-      return it == g.header.end() ? std::string("unknown") : it->second;
-    };
-    if (value(baseline) == value(head)) continue;
-    report.no_baseline = fmt::format("the baseline was made with {} '{}', this is '{}'", name,
-                                     value(baseline), value(head));
-    return report;
-  }
-  if (baseline.seeds != head.seeds) {
-    report.no_baseline = "the baseline has other seeds";
-    return report;
-  }
+  report.no_baseline = incomparable(baseline, head);
+  if (!report.no_baseline.empty()) return report;
   const std::regex wanted(filter);
   for (const auto& [key, before] : baseline.lines) {
     if (!std::regex_search(key.first, wanted)) continue;
-    MetricChange c{.entry = key.first, .metric = key.second};
-    const auto found = head.lines.find(key);
-    c.before = mean(before.values);
-    if (found == head.lines.end()) {
-      c.change = Change::kGone;
-      c.after = kNever;
-      report.changes.push_back(c);
+    const auto after = head.lines.find(key);
+    if (after == head.lines.end()) {
+      report.changes.push_back({.entry = key.first,
+                                .metric = key.second,
+                                .change = Change::kGone,
+                                .before = mean(before.values),
+                                .after = kNever});
       continue;
     }
     ++report.lines;
-    const GoldenLine& after = found->second;
-    bool same = true;
-    for (std::size_t i = 0; i < before.values.size(); ++i) {
-      same = same && !differs(before.values[i], after.values[i], before.tolerance);
-    }
-    if (same) continue;
-    c.after = mean(after.values);
-    const std::vector<double> worse = worsening(c.metric, before, after);
-    c.standard_errors = standard_errors(worse);
-    c.change = judge(c, worse);
-    const auto worst =
-        static_cast<std::size_t>(std::max_element(worse.begin(), worse.end()) - worse.begin());
-    c.worst_seed = head.seeds[worst];
-    c.largest_error_at = seconds_of(head, c.entry, worst);
-    if (same_values_in_another_order(before, after)) c.note = "the same values, the seeds swapped";
-    report.changes.push_back(std::move(c));
+    if (unchanged(before, after->second)) continue;
+    report.changes.push_back(change_of(key, before, after->second, head));
   }
   for (const auto& [key, line] : head.lines) {
     if (baseline.lines.contains(key)) continue;
@@ -224,18 +276,7 @@ AccuracyReport compare_accuracy(const Golden& baseline, const Golden& head,
                               .before = kNever,
                               .after = mean(line.values)});
   }
-  const auto badness = [](const MetricChange& c) {
-    return std::pair(c.change != Change::kWorse,
-                     -(c.after - c.before) / std::max(std::abs(c.before), 1e-12));
-  };
-  std::stable_sort(report.changes.begin(), report.changes.end(),
-                   [&](const MetricChange& a, const MetricChange& b) {
-                     const auto x = badness(a), y = badness(b);
-                     // a value that is not there sorts first
-                     if (x.first != y.first) return x.first < y.first;
-                     if (std::isnan(x.second) != std::isnan(y.second)) return std::isnan(x.second);
-                     return x.second < y.second;
-                   });
+  std::stable_sort(report.changes.begin(), report.changes.end(), worse_first);
   return report;
 }
 

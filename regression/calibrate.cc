@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <thread>
 
 #include "regression/time_layer.h"
@@ -80,6 +81,7 @@ std::vector<Power> calibrate(const CalibrateOptions& options) {
   if (!o.head.empty()) o.slowdowns = {0.05};  // what head really is, nobody injects
   const std::vector<std::string> kernels =
       kernel_names(o.base, o.head.empty() ? o.base : o.head, o.kernels).both;
+  if (kernels.empty()) throw std::invalid_argument("the two plug-ins have no kernel in common");
   std::vector<Power> power;
   for (const double s : o.slowdowns) power.push_back({.slowdown = s});
   for (int i = 0; i < o.trials; ++i) {

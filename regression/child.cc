@@ -49,7 +49,9 @@ Finished finish_child(const std::vector<std::string>& argv) {
   }
   ::close(ends[0]);
   int status = 0;
-  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR)
+      throw std::runtime_error(fmt::format("{}: {}", argv[0], std::strerror(errno)));
   }
   f.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return f;

@@ -8,23 +8,11 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "regression/findings.h"
 #include "regression/report.h"
 
 namespace tauext::gate {
 namespace {
-
-// the name alone, as a regular expression
-std::string exactly(const std::string& name) {
-  std::string out = "^";
-  for (const char c : name) {
-    if (c == '+' || c == '.') {
-      out += fmt::format("[{}]", c);
-    } else {
-      out += c;
-    }
-  }
-  return out + "$";
-}
 
 std::string functions_of(const Counts& head, const Counts* base, const std::string& kernel) {
   std::vector<std::pair<std::uint64_t, std::string>> sorted;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tauext::gate {
 
@@ -15,5 +16,9 @@ std::uint64_t code_hash(const std::string& path);
 /// Whether those sections are equal, byte by byte.
 /// @throws std::runtime_error as code_hash does
 bool identical(const std::string& a, const std::string& b);
+
+/// The shared libraries that an ELF file asks for by name.
+/// @throws std::runtime_error as code_hash does
+std::vector<std::string> needed_libraries(const std::string& path);
 
 }  // namespace tauext::gate

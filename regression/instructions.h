@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct Counts {
 
 /// Runs every kernel that matches `filter` under callgrind, in a child: "count-worker" of this program, so for
 /// tauext-gate alone.
-/// @throws std::runtime_error if valgrind is missing or fails, std::invalid_argument if nothing matches
+/// No kernel need match.
+/// @throws std::runtime_error if valgrind is missing or fails, std::regex_error for a filter that is none
 Counts count_instructions(const std::string& plugin, const std::string& filter);
 
 /// The child that runs under callgrind. @return exit code
@@ -44,11 +46,15 @@ CallgrindDump parse_callgrind(const std::string& text, const std::string& path);
 /// <folder>/instructions-<hash of the key>.tsv
 std::string counts_path(const std::string& folder, const Key& key);
 
-/// Name of the file's text: header, key, then one line a kernel, sorted.
+/// The text of that file: header, key, then one line a kernel, sorted.
 std::string format_counts(const Counts& counts);
 
-/// @throws std::runtime_error naming the path: unreadable, empty, cut off, of another kind, not its own key's
+/// @throws std::runtime_error naming the path: unreadable, empty, cut off, of another kind
 Counts read_counts(const std::string& path);
+
+/// The counts that a folder holds for a key, if it holds any.
+/// @throws std::runtime_error as read_counts does, and if the file's key is not the one of its name
+std::optional<Counts> committed_counts(const std::string& folder, const Key& key);
 
 /// A kernel whose count differs.
 struct CountChange {

@@ -44,6 +44,7 @@ struct InstructionReport {
   std::vector<CountChange> beside_base, beside_committed;
   std::string no_baseline;               ///< why nothing is committed for this key; "" if it is
   std::vector<std::string> added, gone;  ///< beside the committed
+  std::string other_key;                 ///< why base cannot be compared with head; "" if it can
   std::optional<Counts> base, head;      ///< as counted
 };
 

@@ -23,9 +23,19 @@ Plugin::Plugin(const std::string& path) {
                                          TAUEXT_PLUGIN_SYMBOL));
   }
   api_ = get();
+  if (!api_) throw std::runtime_error(path + ": no plug-in: it gives nothing");
   if (api_->abi != TAUEXT_PLUGIN_ABI) {
-    throw std::runtime_error(fmt::format("{}: a plug-in of ABI {}, this program speaks {}", path,
-                                         api_->abi, TAUEXT_PLUGIN_ABI));
+    throw OtherAbi(fmt::format("{}: a plug-in of ABI {}, this program speaks {}", path, api_->abi,
+                               TAUEXT_PLUGIN_ABI));
+  }
+  require_different_names(path);
+}
+
+void Plugin::require_different_names(const std::string& path) const {
+  for (int i = 0; i < count(); ++i) {
+    if (find(name(i)) != i) {
+      throw std::runtime_error(fmt::format("{}: two kernels are called {}", path, name(i)));
+    }
   }
 }
 
@@ -46,7 +56,7 @@ std::vector<double> example(const Plugin& plugin, int kernel) {
 Work::Work(const Plugin& plugin, int kernel, const std::vector<double>& samples)
     : api_(&plugin.api()), instance_(nullptr, api_->destroy) {
   const auto size = static_cast<std::size_t>(api_->sample_size(kernel));
-  if (samples.size() % size != 0) {
+  if (samples.size() != size * kExampleSamples) {
     throw std::runtime_error(plugin.name(kernel) +
                              ": the two builds differ in the number of joints");
   }

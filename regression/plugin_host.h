@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,15 @@
 
 namespace tauext::gate {
 
+/// A plug-in of another tauext_plugin than ours.
+struct OtherAbi : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A loaded plug-in. Two of the same path would be one and the same: give each a copy of its own.
 class Plugin {
  public:
-  /// @throws std::runtime_error naming the path: no plug-in, or one of another ABI
+  /// @throws OtherAbi; std::runtime_error naming the path: no plug-in, or two kernels of one name
   explicit Plugin(const std::string& path);
 
   int count() const { return api_->count; }
@@ -24,6 +30,8 @@ class Plugin {
   const tauext_plugin& api() const { return *api_; }
 
  private:
+  void require_different_names(const std::string& path) const;
+
   std::shared_ptr<void> library_;
   const tauext_plugin* api_;
 };

@@ -23,9 +23,6 @@ std::string format_markdown(const GateResult& result);
 /// @throws std::invalid_argument if nothing was timed
 std::string format_benchmark(const GateResult& result, bool head);
 
-/// Why a kernel's time and instructions are as they are, in a few words; "" if there is nothing to say.
-std::string why(const KernelTime& time, const CountChange* count);
-
 /// One line of what follows from the exit code.
 std::string advice(GateCode code);
 

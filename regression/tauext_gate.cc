@@ -50,6 +50,7 @@ void show_progress(GateOptions& o) {
 }
 
 int check(Flags& f) {
+  if (!(f.gate.period > 0)) throw std::invalid_argument("--period: more than 0 s");
   require_writable(f);
   show_progress(f.gate);
   const GateResult r = run_layers(f.gate);
@@ -148,6 +149,9 @@ void add_flags(CLI::App& app, Flags& f) {
   sub->add_option("--head", f.update.head, "plug-in; \"\": no counts")->type_name("SO");
   sub->add_option("--bench", f.update.bench, "program with --golden; \"\": no accuracy")
       ->type_name("PROGRAM");
+  sub->add_option("--kernels", f.update.kernels, "those that match alone; others stay")
+      ->type_name("REGEX");
+  sub->add_option("--entries", f.update.entries, "likewise")->type_name("REGEX");
   sub->add_option("--changelog", f.update.changelog)->type_name("FILE")->capture_default_str();
   add_baselines(sub, f.update.baselines);
   sub =

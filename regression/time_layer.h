@@ -15,7 +15,7 @@ namespace tauext::gate {
 
 /// What is compared, and how hard.
 struct TimeOptions {
-  std::string base, head;    ///< paths of plug-ins
+  std::string base, head;    ///< paths of plug-ins; an empty base: L3 alone
   std::string kernels = "";  ///< regular expression; empty: all
   bool even_if_identical = false;
   TimeLimits limits;
@@ -36,9 +36,10 @@ struct KernelTime {
 
 /// What L0, L2 and L3 found.
 struct TimeReport {
-  bool identical = false;                ///< then there is nothing below but names
-  std::vector<KernelTime> kernels;       ///< in both
-  std::vector<std::string> gone, added;  ///< in base alone, in head alone
+  bool identical = false;           ///< then there is nothing below but names
+  std::vector<KernelTime> kernels;  ///< in both
+  std::vector<std::string> gone;    ///< in base alone
+  std::vector<KernelTime> alone;    ///< in head alone: L3, and nothing to compare with
 };
 
 /// @throws std::runtime_error for a plug-in that does not load, std::invalid_argument for a filter that

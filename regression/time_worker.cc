@@ -69,7 +69,8 @@ double median_ratio(const Lane& of, const Lane& to) {
   return median(ratios);
 }
 
-void run_pairs(benchmark::State& state, std::vector<Lane>& lanes) {
+void run_pairs(benchmark::State& state, const std::vector<double>& injected,
+               std::vector<Lane>& lanes) {
   std::vector<std::size_t> order(lanes.size());
   std::iota(order.begin(), order.end(), 0);
   std::minstd_rand random(1);  // an order that never changed would favour somebody
@@ -86,7 +87,10 @@ void run_pairs(benchmark::State& state, std::vector<Lane>& lanes) {
   state.counters["head"] = median_ratio(lanes[1], lanes[0]);
   state.counters["aa"] = median_ratio(lanes[2], lanes[0]);
   for (std::size_t i = 3; i < lanes.size(); ++i) {
-    state.counters[fmt::format("canary{}", i - 3)] = median_ratio(lanes[i], lanes[0]);
+    // steps are whole: as if exactly so many more had been injected
+    const double wanted = 1 + injected[i - 3], really = lanes[i].steps / steps;
+    state.counters[fmt::format("canary{}", i - 3)] =
+        median_ratio(lanes[i], lanes[0]) * wanted / really;
   }
 }
 
@@ -142,7 +146,7 @@ int worker_main(const std::string& text) {
     benchmark::RegisterBenchmark(kernel.c_str(),
                                  [&, kernel](benchmark::State& state) {
                                    std::vector<Lane> lanes = lanes_of(o, plugins, kernel);
-                                   run_pairs(state, lanes);
+                                   run_pairs(state, o.injected, lanes);
                                    state.SetLabel(kernel);
                                  })
         ->UseManualTime()

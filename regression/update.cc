@@ -9,6 +9,9 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -57,31 +60,78 @@ class Files {
 };
 
 void update_counts(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
-  const Counts head = count_instructions(o.head, "");
-  const std::string path = counts_path(o.baselines, head.key);
-  if (fs::exists(path)) {
-    for (const CountChange& c : compare_counts(read_counts(path), head)) {
+  Counts head = count_instructions(o.head, o.kernels);
+  if (const std::optional<Counts> before = committed_counts(o.baselines, head.key)) {
+    for (const CountChange& c : compare_counts(*before, head)) {
       const std::string line =
           fmt::format("  {}: {:+.2f} % instructions\n", c.kernel, 100 * c.change());
       (too_many(c) ? worse : changed) += line;
     }
+    const std::regex wanted(o.kernels);
+    for (const auto& [kernel, count] : before->kernels) {
+      if (!std::regex_search(kernel, wanted)) {
+        head.kernels[kernel] = count;
+      } else if (!head.kernels.contains(kernel)) {
+        worse += "  " + kernel + ": gone\n";
+      }
+    }
   }
-  files.add(path, format_counts(head));
+  files.add(counts_path(o.baselines, head.key), format_counts(head));
+}
+
+// the new text, with the old lines of entries that do not match
+std::string merged(const std::string& before, const std::string& now, const std::string& entries) {
+  const std::regex wanted(entries);
+  const auto is_metric = [](const std::string& line) {
+    return !line.starts_with("#") && !line.starts_with("entry\t");
+  };
+  std::string head;
+  std::set<std::string> lines;
+  std::istringstream old_lines(before), new_lines(now);
+  for (std::string line; std::getline(new_lines, line);) {
+    if (is_metric(line)) {
+      lines.insert(line);
+    } else if (line != "# end") {
+      head += line + "\n";
+    }
+  }
+  for (std::string line; std::getline(old_lines, line);) {
+    if (is_metric(line) && !std::regex_search(line.substr(0, line.find('\t')), wanted)) {
+      lines.insert(line);
+    }
+  }
+  for (const std::string& line : lines) head += line + "\n";
+  return head + "# end\n";
 }
 
 void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
   const TemporaryFolder folder;
   const std::string out = folder.path() + "/golden.tsv", path = golden_path(o.baselines);
-  run_child({o.bench, "--golden", out});
-  const std::string text = content(out);
+  run_child(
+      {o.bench, "--golden", out, "--benchmark_filter=" + (o.entries.empty() ? "." : o.entries)});
+  std::string text = content(out);
   const Golden head = parse_golden(text, out);
   if (fs::exists(path)) {
-    const AccuracyReport r = compare_accuracy(read_golden(path), head);
-    if (!r.no_baseline.empty()) changed += "  accuracy: " + r.no_baseline + "\n";
+    const AccuracyReport r = compare_accuracy(read_golden(path), head, o.entries);
+    if (!r.no_baseline.empty() && !o.entries.empty()) {
+      throw std::invalid_argument(
+          fmt::format("{}: {}; update it without --entries", path, r.no_baseline));
+    }
+    if (!r.no_baseline.empty()) worse += "  not to be compared: " + r.no_baseline + "\n";
     for (const MetricChange& c : r.changes) {
       const std::string line =
           fmt::format("  {} {}: {:.6g} -> {:.6g}\n", c.entry, c.metric, c.before, c.after);
-      (c.change == Change::kWorse ? worse : changed) += line;
+      const bool failed = c.change == Change::kNew && c.metric == "failed" && c.after > 0;
+      const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
+      (bad ? worse : changed) += line;
+    }
+    if (!o.entries.empty()) text = merged(content(path), text, o.entries);
+  }
+  if (!fs::exists(path)) {
+    for (const auto& [key, line] : head.lines) {
+      if (key.second == "failed" && line.values != std::vector<double>(line.values.size(), 0)) {
+        worse += "  " + key.first + ": fails\n";
+      }
     }
   }
   files.add(path, text);
@@ -111,8 +161,8 @@ UpdateResult update_baselines(const UpdateOptions& o) {
   if (!o.head.empty()) update_counts(o, files, worse, changed);
   if (!o.bench.empty()) update_golden(o, files, worse, changed);
   if (!worse.empty() && o.accept_worse.empty()) {
-    return {true, "refused, for these would be worse:\n" + first_lines(worse, 20) +
-                      "If that is right: --accept-worse 'the reason'\n"};
+    return {true, "refused, for these would be worse, or nobody could tell:\n" +
+                      first_lines(worse, 20) + "If that is right: --accept-worse 'the reason'\n"};
   }
   if (files.names().empty())
     return {false, "the baselines are as they should be; nothing was written\n"};

@@ -13,11 +13,12 @@ namespace tauext::gate {
 struct UpdateOptions {
   std::string
       baselines;  ///< folder of accuracy.tsv and instructions-*.tsv; made if it is not there
-  std::string changelog;     ///< file that gains a line for each update
-  std::string reason;        ///< one line, not empty
-  std::string accept_worse;  ///< why what is worse is right; empty: nothing may be worse
-  std::string head, bench;   ///< plug-in and program; an empty one: its baseline stays
-  std::string date;          ///< YYYY-MM-DD
+  std::string changelog;         ///< file that gains a line for each update
+  std::string reason;            ///< one line, not empty
+  std::string accept_worse;      ///< why what is worse is right; empty: nothing may be worse
+  std::string head, bench;       ///< plug-in and program; an empty one: its baseline stays
+  std::string kernels, entries;  ///< regular expressions: the lines of others stay; empty: all
+  std::string date;              ///< YYYY-MM-DD
 };
 
 /// What was done.

@@ -36,15 +36,16 @@ struct TimeVerdict {
   std::string why;
 };
 
-/// Median of the values. @throws std::invalid_argument without a value
+/// Median of the values. @throws std::logic_error without a value
 double median(std::vector<double> values);
 
 /// Judges what is there. kInconclusive with `processes` below the last stage asks for the next stage.
 ///
-/// Fails if the median over all processes lies above 1 + limit and the value that 3 of 10 do not exceed
-/// lies above 1, in the first stage and again in the processes that came after it. Passes if the median's
+/// Slower: the median of some processes lies above 1 + limit, and the value that 3 of 10 do not exceed above 1.
+/// Fails if all processes say so, and those after the first stage among themselves, and the first stage or else
+/// more than as many later ones. Passes if the median's
 /// interval ends below 1 + limit. A copy of base that is off by more than half the limit: never a verdict.
-/// @throws std::invalid_argument with fewer processes than the first stage
+/// @throws std::logic_error with fewer processes than the first stage
 TimeVerdict judge(const std::vector<ProcessRatios>& processes, const TimeLimits& limits);
 
 }  // namespace tauext::gate

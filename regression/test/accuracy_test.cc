@@ -84,14 +84,22 @@ TEST(Accuracy, PairingSeesWhatTheSpreadOfSeedsHides) {
 }
 
 TEST(Accuracy, AMetricThatLosesItsValueIsWorse) {
-  EXPECT_EQ(change("settling_s", {1, 1}, {1, kNever}).change, Change::kWorse);
-  EXPECT_EQ(change("settling_s", {kNever, 1}, {1, 1}).change, Change::kBetter);
+  EXPECT_EQ(change("settling_s", {1, 1, 1}, {1, kNever, kNever}).change, Change::kWorse);
+  EXPECT_EQ(change("settling_s", {kNever, kNever, 1}, {1, 1, 1}).change, Change::kBetter);
+  EXPECT_EQ(change("settling_s", {1, 1, 1}, {1, 1, kNever}).change, Change::kChanged)
+      << "one seed's step over the edge is for a reviewer";
+  EXPECT_EQ(change("bandwidth_rad_s", {50, 50}, {kNever, kNever}).change, Change::kChanged)
+      << "never falls: the best there is";
+  EXPECT_EQ(change("delay_s", {0.1, kNever, 0.1}, {0.2, kNever, 0.2}).change, Change::kWorse)
+      << "by the seeds that have a value";
   EXPECT_EQ(change("settling_s", {kNever, kNever}, {kNever, kNever}).change, Change::kUnchanged);
 }
 
 TEST(Accuracy, FromNothingToSomethingIsWorse) {
   EXPECT_EQ(change("allocs", {0, 0, 0}, {1, 1, 1}).change, Change::kWorse);
   EXPECT_EQ(change("failed", {0, 0, 0}, {1, 1, 1}).change, Change::kWorse);
+  EXPECT_EQ(change("failed", {0, 0, 0, 0, 0}, {0, 0, 1, 0, 0}).change, Change::kWorse)
+      << "one is enough";
 }
 
 TEST(Accuracy, NamesTheWorstSeedAndWhereItsErrorIs) {

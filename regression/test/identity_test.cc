@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -34,6 +35,11 @@ TEST(Identity, OfAProgramWithItselfAndWithOneByteChanged) {
   bytes[at] = 'A';
   std::ofstream(copy, std::ios::binary) << bytes;
   EXPECT_FALSE(identical(this_program(), copy));
+}
+
+TEST(Identity, NamesTheLibrariesThatAProgramNeeds) {
+  const std::vector<std::string> needed = needed_libraries(this_program());
+  EXPECT_NE(std::find(needed.begin(), needed.end(), "libc.so.6"), needed.end());
 }
 
 TEST(Identity, RefusesWhatIsNoProgramByName) {

@@ -84,8 +84,11 @@ TEST(Terminal, FitsOnAScreenWhenAllIsWell) {
 
 TEST(Terminal, SaysWhyAKernelIsSlower) {
   GateResult r = times({kernel("arm/ekf", 1.1, Verdict::kFail)});
-  EXPECT_NE(format_terminal(r, false).find("the same work, but slower"), std::string::npos);
+  EXPECT_NE(format_terminal(r, false).find("whether by more work or by waiting"), std::string::npos)
+      << "nothing was counted";
   r.instructions = InstructionReport{.kernels = 1};
+  r.instructions->base = Counts{.kernels = {{"arm/ekf", 1000}}};
+  EXPECT_NE(format_terminal(r, false).find("the same work, but slower"), std::string::npos);
   r.instructions->beside_base = {
       {.kernel = "arm/ekf", .before = 1000, .after = 1100, .gained = {"+0.1 a step in f"}}};
   const std::string text = format_terminal(r, false);
@@ -112,6 +115,28 @@ TEST(JUnit, CountsAndEscapes) {
   const std::string text = format_junit(r);
   EXPECT_NE(text.find("tests=\"2\" failures=\"1\" skipped=\"1\""), std::string::npos) << text;
   EXPECT_NE(text.find("name=\"a&lt;b&gt;&amp;&quot;c&quot;\""), std::string::npos) << text;
+}
+
+TEST(JUnit, AHarnessErrorIsAFailure) {
+  GateResult r = times({kernel("a", 1, Verdict::kInconclusive)});
+  r.time->kernels[0].verdict.harness_error = true;
+  EXPECT_NE(format_junit(r).find("failures=\"1\" skipped=\"0\""), std::string::npos)
+      << format_junit(r);
+}
+
+TEST(ExitCode, OfWhatCannotBeCompared) {
+  GateResult r = times({kernel("a", 1, Verdict::kPass)});
+  r.time->gone = {"b"};
+  EXPECT_EQ(exit_code(r), kUpdateNeeded);
+  r = times({});
+  r.instructions = InstructionReport{.kernels = 1};
+  r.instructions->other_key = "compiler";
+  EXPECT_EQ(exit_code(r), kInconclusive);
+  r = times({});
+  r.time->alone = {kernel("new", 1, Verdict::kPass)};
+  EXPECT_EQ(exit_code(r), kPassed);
+  r.time->alone[0].over_budget = true;
+  EXPECT_EQ(exit_code(r), kSlower) << "a new kernel has its budget, too";
 }
 
 TEST(Markdown, LeadsWithTheVerdict) {

@@ -229,8 +229,12 @@ TEST_F(Usage, WrongFlagsAndFilesSayWhatIsWrong) {
   EXPECT_EQ(run({}), kUsage);
   EXPECT_EQ(run({"judge"}), kUsage);
   EXPECT_EQ(run({"time"}), kUsage) << "no base";
-  EXPECT_EQ(run({"check", "--baselines", "/nowhere"}), kUsage);
+  EXPECT_EQ(run({"count", "--head", plugin("base"), "--baselines", "/nowhere"}), kUpdateNeeded);
   EXPECT_EQ(run({"explain", "ekf"}), kUsage);
+  EXPECT_EQ(run({"accuracy", "--bench", "", "--baselines", baselines()}), kUsage) << text_;
+  EXPECT_EQ(run({"count", "--head", plugin("base"), "--kernels", "(", "--baselines", baselines()}),
+            kUsage);
+  EXPECT_EQ(run({"time", "--base", plugin("base"), "--period", "nan"}), kUsage) << text_;
   EXPECT_EQ(run({"calibrate", "--trials", "0"}), kUsage);
   EXPECT_EQ(run({"time", "--base", "/nowhere.so"}), kHarnessError);
   EXPECT_TRUE(says("/nowhere.so")) << text_;
@@ -289,6 +293,21 @@ TEST_F(Update, RefusesAWorseningUnlessItIsAccepted) {
   EXPECT_EQ(run(accepting), kPassed) << text_;
   EXPECT_NE(content(log_).find("less noise (worse, accepted: the noise matters more)"),
             std::string::npos);
+}
+
+TEST_F(Update, OfSomeEntriesLeavesTheOthers) {
+  run_child({"env", "SUBJECT=gain=1.001", kBin + "/subject_bench", "--golden",
+             baselines() + "/next.tsv", "--benchmark_filter=testbed1/hold/subject$"});
+  auto some = command("hold alone");
+  some.insert(some.end(), {"--entries", "hold"});
+  EXPECT_EQ(run(some), kPassed) << text_;
+  const Golden before = parse_golden(once_, "once"), now = read_golden(golden());
+  ASSERT_EQ(now.lines.size(), before.lines.size());
+  const auto noise = [](const Golden& g, const char* entry) {
+    return g.lines.at({entry, "noise_Nm"}).values;
+  };
+  EXPECT_EQ(noise(now, "testbed1/swing/subject"), noise(before, "testbed1/swing/subject"));
+  EXPECT_NE(noise(now, "testbed1/hold/subject"), noise(before, "testbed1/hold/subject"));
 }
 
 TEST_F(Update, WantsAReason) {

@@ -29,7 +29,7 @@ Verdict verdict(const std::vector<ProcessRatios>& all) {
 TEST(Median, OfOddAndEvenNumbers) {
   EXPECT_EQ(median({3, 1, 2}), 2);
   EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
-  EXPECT_THROW(median({}), std::invalid_argument);
+  EXPECT_THROW(median({}), std::logic_error);
 }
 
 TEST(Judge, PassesWhatIsAsFastOrFaster) {
@@ -44,6 +44,12 @@ TEST(Judge, FailsWhatIsSlowerOnlyAfterASecondStage) {
   EXPECT_EQ(verdict(slow + slow), Verdict::kFail);
   EXPECT_EQ(verdict(slow + spread(10, 0.99, 1.01)), Verdict::kInconclusive)
       << "the later processes do not confirm it";
+}
+
+TEST(Judge, WithAFirstStageThatIsNotSlowerWantsALargerOne) {
+  const auto unsure = spread(10, 1.001, 1.025), slow = spread(10, 1.025, 1.04);
+  EXPECT_EQ(verdict(unsure + slow), Verdict::kInconclusive);
+  EXPECT_EQ(verdict(unsure + slow + slow + slow), Verdict::kFail);
 }
 
 TEST(Judge, HasItsLimitAtTwoPercent) {
@@ -85,8 +91,8 @@ TEST(Judge, CallsItAHarnessErrorWhenAnInjectedSlowdownIsNotSeen) {
 }
 
 TEST(Judge, RefusesFewerProcessesThanAStage) {
-  EXPECT_THROW(judge({}, TimeLimits()), std::invalid_argument);
-  EXPECT_THROW(judge(spread(9, 1, 1), TimeLimits()), std::invalid_argument);
+  EXPECT_THROW(judge({}, TimeLimits()), std::logic_error);
+  EXPECT_THROW(judge(spread(9, 1, 1), TimeLimits()), std::logic_error);
 }
 
 }  // namespace

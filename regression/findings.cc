@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace tauext::gate {
+namespace {
+
+std::string value(double x) {
+  return std::isnan(x) ? "never" : fmt::format("{:.6g}", x);
+}
+
+const CountChange* change_of(const InstructionReport* r, const std::string& kernel) {
+  if (!r) return nullptr;
+  const auto it = std::find_if(r->beside_base.begin(), r->beside_base.end(),
+                               [&](const CountChange& c) { return c.kernel == kernel; });
+  return it == r->beside_base.end() ? nullptr : &*it;
+}
+
+// whether base and head were both counted, and could be compared
+bool counted(const InstructionReport* r, const std::string& kernel) {
+  return r && r->base && r->other_key.empty() && r->base->kernels.contains(kernel);
+}
+
+std::string kernel_line(const KernelTime& k, const CountChange* count, const InstructionReport* r) {
+  const TimeVerdict& v = k.verdict;
+  std::string line = fmt::format("{:<34}", k.kernel);
+  if (v.verdict == Verdict::kIdentical) {
+    line += fmt::format(" {:>9} {:>9} {:>8} {:>17}", "", "", "", "");
+  } else {
+    line += fmt::format(" {:9.1f} {:9.1f} {:+7.2f} % {:>17}", k.base_ns, k.head_ns,
+                        100 * (v.median - 1),
+                        fmt::format("{:+.2f} to {:+.2f}", 100 * (v.low - 1), 100 * (v.high - 1)));
+  }
+  std::string instructions;
+  if (count) {
+    instructions = fmt::format("{:+.2f} %", 100 * count->change());
+  } else if (counted(r, k.kernel)) {
+    instructions = "same";
+  }
+  return line + fmt::format(" {:>12}  {}", instructions, name_of(v.verdict));
+}
+
+std::vector<Finding> time_findings(const GateResult& r) {
+  std::vector<Finding> all;
+  if (!r.time) return all;
+  const InstructionReport* counts = r.instructions ? &*r.instructions : nullptr;
+  for (const KernelTime& k : r.time->kernels) {
+    const CountChange* count = change_of(counts, k.kernel);
+    Finding f{"time", k.kernel, k.verdict.verdict, kernel_line(k, count, counts), {}};
+    f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
+    if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
+    if (k.over_budget) {
+      f.verdict = Verdict::kFail;
+      f.more.push_back("a step takes more than a tenth of the control period");
+    }
+    if (const std::string reason = why(k, count, counted(counts, k.kernel)); !reason.empty())
+      f.more.push_back(reason);
+    if (f.verdict == Verdict::kFail) {
+      if (count) f.more.insert(f.more.end(), count->gained.begin(), count->gained.end());
+      f.more.push_back(
+          fmt::format("again: tauext-gate time --base BASE.so --head HEAD.so --kernels '{}'",
+                      exactly(k.kernel)));
+    }
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+std::vector<Finding> count_findings(const std::vector<CountChange>& changes, const char* layer) {
+  std::vector<Finding> all;
+  for (const CountChange& c : changes) {
+    const Verdict v = too_many(c)                         ? Verdict::kFail
+                      : std::abs(c.change()) > kCountNote ? Verdict::kNote
+                                                          : Verdict::kPass;
+    Finding f{layer, c.kernel, v,
+              fmt::format(
+                  "{:<34} {:.1f} -> {:.1f} instructions a step, {:+.2f} % (limit +{:.0f} %)  {}",
+                  c.kernel, static_cast<double>(c.before) / 1e3, static_cast<double>(c.after) / 1e3,
+                  100 * c.change(), 100 * kCountLimit, name_of(v)),
+              c.gained};
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+Verdict verdict_of(Change c) {
+  return c == Change::kWorse ? Verdict::kFail : Verdict::kNoBaseline;
+}
+
+// @param command whether the entry's command has not been shown yet
+Finding metric_finding(const MetricChange& c, const std::string& bench, bool command) {
+  const std::map<Change, const char*> what = {{Change::kWorse, "LESS ACCURATE"},
+                                              {Change::kBetter, "better: update needed"},
+                                              {Change::kChanged, "changed: update needed"},
+                                              {Change::kNew, "new: update needed"},
+                                              {Change::kGone, "gone: update needed"}};
+  const double percent = 100 * (c.after / c.before - 1);
+  Finding f{"accuracy",
+            c.entry + " " + c.metric,
+            verdict_of(c.change),
+            fmt::format("{} {}  {} -> {}{}  {}", c.entry, c.metric, value(c.before), value(c.after),
+                        std::isfinite(percent) ? fmt::format(" ({:+.3g} %)", percent) : "",
+                        what.at(c.change)),
+            {}};
+  if (!c.note.empty()) f.more.push_back(c.note);
+  if (c.change != Change::kWorse) return f;
+  std::string line = c.standard_errors < 1000
+                         ? fmt::format("{:.1f} standard errors off", c.standard_errors)
+                         : "1000 standard errors off or more";
+  line += "; worst: " + c.worst_seed;
+  if (!c.largest_error_at.empty()) {
+    line += ", whose largest error is at t = " + c.largest_error_at + " s";
+  }
+  f.more.push_back(line);
+  if (command) {
+    const std::string seed = c.worst_seed.substr(c.worst_seed.rfind(' ') + 1);
+    f.more.push_back(fmt::format("again: {} --golden - --seeds {} --benchmark_filter='{}'", bench,
+                                 seed, exactly(c.entry)));
+  }
+  return f;
+}
+
+std::vector<Finding> accuracy_findings(const GateResult& r) {
+  std::vector<Finding> all;
+  for (const std::string& line : r.not_repeated) {
+    all.push_back({"accuracy", "repeat", Verdict::kFail, "not the same twice: " + line, {}, true});
+  }
+  if (!r.accuracy) return all;
+  if (!r.accuracy->no_baseline.empty()) {
+    all.push_back({"accuracy", "baseline", Verdict::kNoBaseline, r.accuracy->no_baseline, {}});
+  }
+  std::set<std::string> shown;
+  for (const MetricChange& c : r.accuracy->changes) {
+    const bool first = c.change == Change::kWorse && shown.insert(c.entry).second;
+    all.push_back(metric_finding(c, r.bench, first));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string kernel_header() {
+  return fmt::format("{:<34} {:>9} {:>9} {:>9} {:>17} {:>12}  {}\n",
+                     fmt::format("kernel (ns a step, limit {:+.0f} %)", 100 * TimeLimits().limit),
+                     "base", "head", "change", "interval %", "instructions", "verdict");
+}
+
+std::vector<Finding> findings(const GateResult& r) {
+  std::vector<Finding> all = time_findings(r);
+  const auto add = [&](const std::vector<Finding>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  if (r.instructions) {
+    const InstructionReport& i = *r.instructions;
+    add(count_findings(i.beside_base, "instructions beside base"));
+    add(count_findings(i.beside_committed, "instructions beside the committed"));
+    const auto note = [&](const std::string& subject, const std::string& text) {
+      all.push_back({"instructions beside the committed", subject, Verdict::kNoBaseline, text, {}});
+    };
+    if (!i.no_baseline.empty()) note("key", i.no_baseline);
+    for (const std::string& k : i.added)
+      note(k, k + " is not in the committed counts: update needed");
+    for (const std::string& k : i.gone)
+      note(k, k + " is gone and still in the committed counts: update needed");
+  }
+  add(accuracy_findings(r));
+  return all;
+}
+
+// a line for each layer
+std::vector<std::string> summary(const GateResult& r) {
+  std::vector<std::string> lines = r.notes;
+  if (r.time) {
+    const auto& kernels = r.time->kernels;
+    if (r.time->identical) {
+      lines.push_back(fmt::format(
+          "time          identical: {} kernels, the same code to the last byte", kernels.size()));
+    }
+    if (!kernels.empty() && kernels[0].verdict.verdict != Verdict::kIdentical) {
+      const auto by_median = [](const KernelTime& a, const KernelTime& b) {
+        return a.verdict.median < b.verdict.median;
+      };
+      const KernelTime& most = *std::max_element(kernels.begin(), kernels.end(), by_median);
+      lines.push_back(fmt::format(
+          "time          {} kernels, {} ok; the most: {} {:+.2f} % ({:+.2f} to {:+.2f}), limit +2 "
+          "%",
+          kernels.size(),
+          std::count_if(kernels.begin(), kernels.end(),
+                        [](const KernelTime& k) { return k.verdict.verdict == Verdict::kPass; }),
+          most.kernel, 100 * (most.verdict.median - 1), 100 * (most.verdict.low - 1),
+          100 * (most.verdict.high - 1), 100 * TimeLimits().limit));
+    }
+    for (const KernelTime& k : r.time->alone) {
+      lines.push_back(
+          fmt::format("time          {}: {:.1f} ns a step, nothing to compare with{}", k.kernel,
+                      k.head_ns, k.over_budget ? ": MORE THAN A TENTH OF THE CONTROL PERIOD" : ""));
+    }
+    for (const std::string& k : r.time->gone) lines.push_back("time          gone from head: " + k);
+  }
+  const auto counts = [&](const char* name, const std::vector<CountChange>& changes, int kernels) {
+    lines.push_back(
+        fmt::format("instructions  {} kernels beside {}: {} differ, {} by more than +{:.0f} %",
+                    kernels, name, changes.size(),
+                    std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
+  };
+  if (r.instructions) {
+    if (r.instructions->base) counts("base", r.instructions->beside_base, r.instructions->kernels);
+    if (r.instructions->no_baseline.empty()) {
+      counts("the committed", r.instructions->beside_committed, r.instructions->kernels);
+    }
+  }
+  if (r.accuracy && r.accuracy->no_baseline.empty()) {
+    lines.push_back(fmt::format(
+        "accuracy      {} metrics: {} changed, {} of them worse by more than {:.1f} %",
+        r.accuracy->lines, r.accuracy->changes.size(), r.accuracy->worse(), 100 * kWorseBy));
+  }
+  return lines;
+}
+
+std::string why(const KernelTime& time, const CountChange* count, bool counted) {
+  const bool slower = time.verdict.verdict == Verdict::kFail;
+  const bool more = count && too_many(*count);
+  if (slower && more)
+    return fmt::format("more work: {:+.1f} % instructions", 100 * count->change());
+  if (slower && !counted) return "whether by more work or by waiting: tauext-gate count tells";
+  if (slower) {
+    return "the same work, but slower: longer waits (divides, chains of dependent steps, memory) "
+           "or where "
+           "the code lies";
+  }
+  if (more && time.verdict.verdict == Verdict::kPass) return "more instructions at no cost in time";
+  return "";
+}
+
+std::string exactly(const std::string& name) {
+  std::string out = "^";
+  for (const char c : name)
+    out += c == '+' || c == '.' ? fmt::format("[{}]", c) : std::string(1, c);
+  return out + "$";
+}
+
+}  // namespace tauext::gate
