@@ -13,7 +13,7 @@ extern "C" {
 #define TAUEXT_PLUGIN_ABI 1
 
 /** A plug-in's kernels, numbered from 0. Functions neither throw nor print. */
-struct tauext_plugin {
+struct tauext_plugin {  // NOLINT(readability-identifier-naming): a C name
   int abi;              /**< TAUEXT_PLUGIN_ABI */
   int count;            /**< of kernels */
   const char* compiler; /**< with its version */

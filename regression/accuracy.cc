@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -292,7 +293,7 @@ std::vector<std::string> not_repeated(const Golden& once, const Golden& again) {
       }
       const double a = first->second.values[static_cast<std::size_t>(seed - once.seeds.begin())];
       const double b = line.values[i];
-      if (std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b))) continue;
+      if (std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b))) continue;
       all.push_back(fmt::format("{} {}, {}: {:.17g}, then {:.17g}", key.first, key.second,
                                 again.seeds[i], a, b));
     }

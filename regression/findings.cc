@@ -158,6 +158,15 @@ std::vector<Finding> findings(const GateResult& r) {
   };
   if (r.instructions) {
     const InstructionReport& i = *r.instructions;
+    if (!i.other_key.empty()) {
+      all.push_back(
+          {"instructions beside base",
+           "key",
+           Verdict::kInconclusive,
+           "base and head cannot be compared, neither their times nor their instructions: " +
+               i.other_key,
+           {}});
+    }
     add(count_findings(i.beside_base, "instructions beside base"));
     add(count_findings(i.beside_committed, "instructions beside the committed"));
     const auto note = [&](const std::string& subject, const std::string& text) {
@@ -210,7 +219,8 @@ std::vector<std::string> summary(const GateResult& r) {
                     std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
   };
   if (r.instructions) {
-    if (r.instructions->base) counts("base", r.instructions->beside_base, r.instructions->kernels);
+    if (r.instructions->base && r.instructions->other_key.empty())
+      counts("base", r.instructions->beside_base, r.instructions->kernels);
     if (r.instructions->no_baseline.empty()) {
       counts("the committed", r.instructions->beside_committed, r.instructions->kernels);
     }

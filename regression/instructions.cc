@@ -143,7 +143,7 @@ CallgrindDump parse_callgrind(const std::string& text, const std::string& path) 
 }
 
 Counts count_instructions(const std::string& plugin, const std::string& filter) {
-  std::regex{filter};  // fails here and not in the child
+  const std::regex wanted(filter);  // fails here and not in the child
   const TemporaryFolder folder;
   const std::string out = folder.path() + "/callgrind.out";
   const Finished version = finish_child({"valgrind", "--version"});
@@ -165,7 +165,7 @@ Counts count_instructions(const std::string& plugin, const std::string& filter) 
     const std::string path = entry.path().string();
     if (!path.starts_with(out + ".")) continue;  // the last one, without a number, holds the rest
     const CallgrindDump dump = parse_callgrind(read_file(path), path);
-    if (dump.trigger.empty()) continue;
+    if (!std::regex_search(dump.trigger, wanted) || dump.trigger.empty()) continue;
     counts.kernels[dump.trigger] = dump.total;
     counts.functions[dump.trigger] = dump.functions;
   }
@@ -175,7 +175,7 @@ Counts count_instructions(const std::string& plugin, const std::string& filter) 
 std::string counts_path(const std::string& folder, const Key& key) {
   std::uint32_t hash = 2166136261u;  // FNV-1a
   for (const auto& [name, value] : key) {
-    for (const char c : name + "=" + value + "\n") {
+    for (const char c : fmt::format("{}={}\n", name, value)) {
       hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
     }
   }

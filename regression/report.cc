@@ -59,7 +59,7 @@ std::string advice(GateCode code) {
     case kUpdateNeeded:
       return "update needed (exit 3): if it is meant, ci/gate --update 'the reason'";
     case kInconclusive:
-      return "INCONCLUSIVE (exit 4): this machine is too noisy now; run it again";
+      return "INCONCLUSIVE (exit 4): if it is for noise, run it again";
     case kUsage:
       return "usage (exit 64)";
     case kHarnessError:
@@ -99,7 +99,9 @@ std::string format_junit(const GateResult& r) {
   for (Finding& f : findings(r)) layers[f.layer].push_back(std::move(f));
   std::string out =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tauext-gate\">\n";
-  for (const auto& [layer, list] : layers) {
+  for (const auto& entry : layers) {
+    const auto& layer = entry.first;
+    const auto& list = entry.second;
     const auto count = [&](auto pred) { return std::count_if(list.begin(), list.end(), pred); };
     const auto skipped = [](const Finding& f) {
       return f.verdict == Verdict::kInconclusive && !f.harness_error;

@@ -8,9 +8,19 @@
 
 #include "bench/bandwidth_study.h"
 #include "bench/detection_study.h"
+#include "bench/suite.h"
 
 namespace tauext::test {
 namespace {
+
+TEST(Suite, EveryEntryOfTheRosterPasses) {
+  Suite suite(SuiteOptions{});
+  for (const Entry& e : entries()) {
+    const Score score = suite.score(e);
+    EXPECT_EQ(score.error, "") << e.name();
+    EXPECT_EQ(score.get("allocs").value_or(0), 0) << e.name();
+  }
+}
 
 TEST(DetectionStudy, CalibrationDoesNotDependOnTheNumberOfThreads) {
   CalibrationOptions o;
