@@ -113,7 +113,7 @@ TEST_F(Time, FivePercentMoreWorkFails) {
       << "the other way round it is faster: " << text_;
 }
 
-TEST_F(Time, FivePercentOfDividesFailsThoughInstructionsAreTheSame) {
+TEST_F(Time, ADivideInTheChainFailsThoughInstructionsAreTheSame) {
   EXPECT_EQ(run({"check", "--base", plugin("base"), "--head", plugin("divides"), "--bench", "",
                  "--baselines", baselines()}),
             kSlower)
