@@ -52,6 +52,24 @@ struct At {
   }
 };
 
+void read_columns(const std::string& line, const At& at, Golden& g) {
+  const std::vector<std::string> f = fields_of(line);
+  if (f.size() < 4 || f[0] != "entry") at.fail("the names of the columns were expected");
+  g.seeds.assign(f.begin() + 3, f.end());
+}
+
+void read_metric(const std::string& line, const At& at, Golden& g) {
+  const std::vector<std::string> f = fields_of(line);
+  if (f.size() != g.seeds.size() + 3) {
+    at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 3));
+  }
+  GoldenLine l{at.number(f[2]), {}};
+  for (std::size_t i = 3; i < f.size(); ++i) {
+    l.values.push_back(f[i] == "never" ? kNever : at.number(f[i]));
+  }
+  if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");
+}
+
 bool differs(double a, double b, double tolerance) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
   return std::abs(a - b) > tolerance * std::max({1., std::abs(a), std::abs(b)});
@@ -203,7 +221,7 @@ Golden parse_golden(const std::string& text, const std::string& path) {
   std::string line;
   int number = 0;
   bool end = false;
-  for (; !end && std::getline(in, line);) {
+  while (!end && std::getline(in, line)) {
     const At at{path, ++number};
     const auto colon = line.find(": ");
     if (number == 1) {
@@ -213,19 +231,9 @@ Golden parse_golden(const std::string& text, const std::string& path) {
     } else if (line.starts_with("# ") && colon != std::string::npos) {
       g.header[line.substr(2, colon - 2)] = line.substr(colon + 2);
     } else if (g.seeds.empty()) {
-      const std::vector<std::string> f = fields_of(line);
-      if (f.size() < 4 || f[0] != "entry") at.fail("the names of the columns were expected");
-      for (std::size_t i = 3; i < f.size(); ++i) g.seeds.push_back(f[i]);
+      read_columns(line, at, g);
     } else {
-      const std::vector<std::string> f = fields_of(line);
-      if (f.size() != g.seeds.size() + 3) {
-        at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 3));
-      }
-      GoldenLine l{at.number(f[2]), {}};
-      for (std::size_t i = 3; i < f.size(); ++i) {
-        l.values.push_back(f[i] == "never" ? kNever : at.number(f[i]));
-      }
-      if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");
+      read_metric(line, at, g);
     }
   }
   if (number == 0) throw std::runtime_error(path + ": is empty");
@@ -293,7 +301,9 @@ std::vector<std::string> not_repeated(const Golden& once, const Golden& again) {
       }
       const double a = first->second.values[static_cast<std::size_t>(seed - once.seeds.begin())];
       const double b = line.values[i];
-      if (std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b))) continue;
+      if (std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+          (std::isnan(a) && std::isnan(b)))
+        continue;
       all.push_back(fmt::format("{} {}, {}: {:.17g}, then {:.17g}", key.first, key.second,
                                 again.seeds[i], a, b));
     }

@@ -143,6 +143,56 @@ std::vector<Finding> accuracy_findings(const GateResult& r) {
   return all;
 }
 
+// the kernel that changed most, with its interval
+void add_compared(const std::vector<KernelTime>& kernels, std::vector<std::string>& lines) {
+  const auto by_median = [](const KernelTime& a, const KernelTime& b) {
+    return a.verdict.median < b.verdict.median;
+  };
+  const KernelTime& most = *std::max_element(kernels.begin(), kernels.end(), by_median);
+  lines.push_back(fmt::format(
+      "time          {} kernels, {} ok; the most: {} {:+.2f} % ({:+.2f} to {:+.2f}), limit {:+.0f} "
+      "%",
+      kernels.size(),
+      std::count_if(kernels.begin(), kernels.end(),
+                    [](const KernelTime& k) { return k.verdict.verdict == Verdict::kPass; }),
+      most.kernel, 100 * (most.verdict.median - 1), 100 * (most.verdict.low - 1),
+      100 * (most.verdict.high - 1), 100 * TimeLimits().limit));
+}
+
+// the slowest of those that nothing can be compared with; it comes last
+void add_alone(std::vector<KernelTime> kernels, std::vector<std::string>& lines) {
+  std::sort(kernels.begin(), kernels.end(),
+            [](const KernelTime& a, const KernelTime& b) { return a.head_ns < b.head_ns; });
+  const KernelTime& slowest = kernels.back();
+  lines.push_back(fmt::format(
+      "time          {} kernels with nothing to compare with; the slowest: {}, {:.1f} ns a step{}",
+      kernels.size(), slowest.kernel, slowest.head_ns,
+      slowest.over_budget ? ", MORE THAN A TENTH OF THE CONTROL PERIOD" : ""));
+}
+
+void add_summary(const TimeReport& t, std::vector<std::string>& lines) {
+  if (t.identical) {
+    lines.push_back(fmt::format(
+        "time          identical: {} kernels, the same code to the last byte", t.kernels.size()));
+  }
+  if (!t.kernels.empty() && t.kernels[0].verdict.verdict != Verdict::kIdentical) {
+    add_compared(t.kernels, lines);
+  }
+  if (!t.alone.empty()) add_alone(t.alone, lines);
+  for (const std::string& k : t.gone) lines.push_back("time          gone from head: " + k);
+}
+
+void add_summary(const InstructionReport& r, std::vector<std::string>& lines) {
+  const auto add = [&](const char* name, const std::vector<CountChange>& changes) {
+    lines.push_back(
+        fmt::format("instructions  {} kernels beside {}: {} differ, {} by more than +{:.0f} %",
+                    r.kernels, name, changes.size(),
+                    std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
+  };
+  if (r.base && r.other_key.empty()) add("base", r.beside_base);
+  if (r.no_baseline.empty()) add("the committed", r.beside_committed);
+}
+
 }  // namespace
 
 std::string kernel_header() {
@@ -185,46 +235,8 @@ std::vector<Finding> findings(const GateResult& r) {
 // a line for each layer
 std::vector<std::string> summary(const GateResult& r) {
   std::vector<std::string> lines = r.notes;
-  if (r.time) {
-    const auto& kernels = r.time->kernels;
-    if (r.time->identical) {
-      lines.push_back(fmt::format(
-          "time          identical: {} kernels, the same code to the last byte", kernels.size()));
-    }
-    if (!kernels.empty() && kernels[0].verdict.verdict != Verdict::kIdentical) {
-      const auto by_median = [](const KernelTime& a, const KernelTime& b) {
-        return a.verdict.median < b.verdict.median;
-      };
-      const KernelTime& most = *std::max_element(kernels.begin(), kernels.end(), by_median);
-      lines.push_back(fmt::format(
-          "time          {} kernels, {} ok; the most: {} {:+.2f} % ({:+.2f} to {:+.2f}), limit +2 "
-          "%",
-          kernels.size(),
-          std::count_if(kernels.begin(), kernels.end(),
-                        [](const KernelTime& k) { return k.verdict.verdict == Verdict::kPass; }),
-          most.kernel, 100 * (most.verdict.median - 1), 100 * (most.verdict.low - 1),
-          100 * (most.verdict.high - 1), 100 * TimeLimits().limit));
-    }
-    for (const KernelTime& k : r.time->alone) {
-      lines.push_back(
-          fmt::format("time          {}: {:.1f} ns a step, nothing to compare with{}", k.kernel,
-                      k.head_ns, k.over_budget ? ": MORE THAN A TENTH OF THE CONTROL PERIOD" : ""));
-    }
-    for (const std::string& k : r.time->gone) lines.push_back("time          gone from head: " + k);
-  }
-  const auto counts = [&](const char* name, const std::vector<CountChange>& changes, int kernels) {
-    lines.push_back(
-        fmt::format("instructions  {} kernels beside {}: {} differ, {} by more than +{:.0f} %",
-                    kernels, name, changes.size(),
-                    std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
-  };
-  if (r.instructions) {
-    if (r.instructions->base && r.instructions->other_key.empty())
-      counts("base", r.instructions->beside_base, r.instructions->kernels);
-    if (r.instructions->no_baseline.empty()) {
-      counts("the committed", r.instructions->beside_committed, r.instructions->kernels);
-    }
-  }
+  if (r.time) add_summary(*r.time, lines);
+  if (r.instructions) add_summary(*r.instructions, lines);
   if (r.accuracy && r.accuracy->no_baseline.empty()) {
     lines.push_back(fmt::format(
         "accuracy      {} metrics: {} changed, {} of them worse by more than {:.1f} %",

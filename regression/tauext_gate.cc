@@ -90,86 +90,103 @@ std::string sibling(const std::string& name) {
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
-void add_flags(CLI::App& app, Flags& f) {
-  const std::string plugin = sibling("tauext_plugin.so"), bench = sibling("tauext-bench");
-  f.gate.head = f.update.head = f.calibrate.base = plugin;
-  f.gate.bench = f.update.bench = bench;
-  f.gate.baselines = f.update.baselines = "regression/baselines";
-  f.update.changelog = "regression/CHANGELOG.md";
-  const auto add_base = [&](CLI::App* sub) {
-    sub->add_option("--base", f.gate.base, "plug-in to compare with")->type_name("SO");
-    sub->add_option("--head", f.gate.head, "plug-in to be judged; else the one beside this program")
-        ->type_name("SO");
-    sub->add_option("--kernels", f.gate.kernels, "those that match alone")->type_name("REGEX");
-  };
-  const auto add_bench = [&](CLI::App* sub) {
-    sub->add_option("--bench", f.gate.bench,
-                    "program with --golden; else the tauext-bench beside this one")
-        ->type_name("PROGRAM");
-    sub->add_option("--entries", f.gate.entries, "those that match alone")->type_name("REGEX");
-  };
-  const auto add_baselines = [&](CLI::App* sub, std::string& to) {
-    sub->add_option("--baselines", to, "folder of what was committed")
-        ->type_name("FOLDER")
-        ->capture_default_str();
-  };
-  const auto add_reports = [&](CLI::App* sub) {
-    sub->add_flag("--all", f.all, "show what is well, too");
-    sub->add_option("--junit", f.junit, "JUnit XML")->type_name("FILE");
-    sub->add_option("--markdown", f.markdown, "for a CI job's summary")->type_name("FILE");
-    sub->add_option("--base-json", f.base_json, "times of base, for Google Benchmark's compare.py")
-        ->type_name("FILE");
-    sub->add_option("--head-json", f.head_json, "times of head, likewise")->type_name("FILE");
-  };
-  const auto add_time = [&](CLI::App* sub) {
-    sub->add_flag("--even-if-identical", f.gate.even_if_identical,
-                  "time also what is the same code");
-    sub->add_option("--period", f.gate.period, "of control [s]; a step may take a tenth")
-        ->capture_default_str();
-  };
+void add_plugins(CLI::App* sub, Flags& f) {
+  sub->add_option("--base", f.gate.base, "plug-in to compare with")->type_name("SO");
+  sub->add_option("--head", f.gate.head, "plug-in to be judged; else the one beside this program")
+      ->type_name("SO");
+  sub->add_option("--kernels", f.gate.kernels, "those that match alone")->type_name("REGEX");
+}
 
+void add_bench(CLI::App* sub, Flags& f) {
+  sub->add_option("--bench", f.gate.bench,
+                  "program with --golden; else the tauext-bench beside this one")
+      ->type_name("PROGRAM");
+  sub->add_option("--entries", f.gate.entries, "those that match alone")->type_name("REGEX");
+}
+
+void add_baselines(CLI::App* sub, std::string& to) {
+  sub->add_option("--baselines", to, "folder of what was committed")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+void add_reports(CLI::App* sub, Flags& f) {
+  sub->add_flag("--all", f.all, "show what is well, too");
+  sub->add_option("--junit", f.junit, "JUnit XML")->type_name("FILE");
+  sub->add_option("--markdown", f.markdown, "for a CI job's summary")->type_name("FILE");
+  sub->add_option("--base-json", f.base_json, "times of base, for Google Benchmark's compare.py")
+      ->type_name("FILE");
+  sub->add_option("--head-json", f.head_json, "times of head, likewise")->type_name("FILE");
+}
+
+void add_time(CLI::App* sub, Flags& f) {
+  sub->add_flag("--even-if-identical", f.gate.even_if_identical, "time also what is the same code");
+  sub->add_option("--period", f.gate.period, "of control [s]; a step may take a tenth")
+      ->capture_default_str();
+}
+
+// each of these judges one layer or all of them
+void add_judging(CLI::App& app, Flags& f) {
   CLI::App* sub = app.add_subcommand("check", "every layer: time, instructions, accuracy");
-  add_base(sub), add_bench(sub), add_baselines(sub, f.gate.baselines), add_time(sub),
-      add_reports(sub);
+  add_plugins(sub, f), add_bench(sub, f), add_baselines(sub, f.gate.baselines);
+  add_time(sub, f), add_reports(sub, f);
+
   sub = app.add_subcommand("time",
                            "base against head, interleaved in one process, in many processes");
-  add_base(sub), add_time(sub), add_reports(sub);
+  add_plugins(sub, f), add_time(sub, f), add_reports(sub, f);
   sub->get_option("--base")->required();
   sub->callback([&f] { f.gate.instructions = f.gate.accuracy = false; });
+
   sub = app.add_subcommand("count", "instructions of head beside base's and beside the committed");
-  add_base(sub), add_baselines(sub, f.gate.baselines), add_reports(sub);
+  add_plugins(sub, f), add_baselines(sub, f.gate.baselines), add_reports(sub, f);
   sub->callback([&f] { f.gate.time = f.gate.accuracy = false; });
+
   sub =
       app.add_subcommand("accuracy", "metrics of every entry, seed by seed, beside the committed");
-  add_bench(sub), add_baselines(sub, f.gate.baselines), add_reports(sub);
+  add_bench(sub, f), add_baselines(sub, f.gate.baselines), add_reports(sub, f);
   sub->callback([&f] { f.gate.time = f.gate.instructions = false; });
-  sub = app.add_subcommand("update", "write what head has as the new baselines");
-  sub->add_option("--reason", f.update.reason, "why, for the changelog")->required();
-  sub->add_option("--accept-worse", f.update.accept_worse, "why what is worse is right");
-  sub->add_option("--head", f.update.head, "plug-in; \"\": no counts")->type_name("SO");
-  sub->add_option("--bench", f.update.bench, "program with --golden; \"\": no accuracy")
+}
+
+void add_update(CLI::App& app, UpdateOptions& o) {
+  CLI::App* sub = app.add_subcommand("update", "write what head has as the new baselines");
+  sub->add_option("--reason", o.reason, "why, for the changelog")->required();
+  sub->add_option("--accept-worse", o.accept_worse, "why what is worse is right");
+  sub->add_option("--head", o.head, "plug-in; \"\": no counts")->type_name("SO");
+  sub->add_option("--bench", o.bench, "program with --golden; \"\": no accuracy")
       ->type_name("PROGRAM");
-  sub->add_option("--kernels", f.update.kernels, "those that match alone; others stay")
+  sub->add_option("--kernels", o.kernels, "those that match alone; others stay")
       ->type_name("REGEX");
-  sub->add_option("--entries", f.update.entries, "likewise")->type_name("REGEX");
-  sub->add_option("--changelog", f.update.changelog)->type_name("FILE")->capture_default_str();
-  add_baselines(sub, f.update.baselines);
-  sub =
+  sub->add_option("--entries", o.entries, "likewise")->type_name("REGEX");
+  sub->add_option("--changelog", o.changelog)->type_name("FILE")->capture_default_str();
+  add_baselines(sub, o.baselines);
+}
+
+void add_calibrate(CLI::App& app, CalibrateOptions& o) {
+  CLI::App* sub =
       app.add_subcommand("calibrate", "this machine's false alarms, and what slowdowns are found");
-  sub->add_option("--base", f.calibrate.base, "plug-in")->type_name("SO");
-  sub->add_option("--head", f.calibrate.head, "one that is slower, instead of injected steps")
+  sub->add_option("--base", o.base, "plug-in")->type_name("SO");
+  sub->add_option("--head", o.head, "one that is slower, instead of injected steps")
       ->type_name("SO");
-  sub->add_option("--kernels", f.calibrate.kernels, "those that match alone")->type_name("REGEX");
-  sub->add_option("--slowdowns", f.calibrate.slowdowns,
-                  "to inject [1]; 0: a copy, for false alarms")
+  sub->add_option("--kernels", o.kernels, "those that match alone")->type_name("REGEX");
+  sub->add_option("--slowdowns", o.slowdowns, "to inject [1]; 0: a copy, for false alarms")
       ->delimiter(',')
       ->check(CLI::Range(0., 1.))
       ->capture_default_str();
-  sub->add_option("--trials", f.calibrate.trials, "complete runs")->capture_default_str();
-  sub = app.add_subcommand("explain", "all that is known of one kernel or entry");
+  sub->add_option("--trials", o.trials, "complete runs")->capture_default_str();
+}
+
+void add_flags(CLI::App& app, Flags& f) {
+  f.gate.head = f.update.head = f.calibrate.base = sibling("tauext_plugin.so");
+  f.gate.bench = f.update.bench = sibling("tauext-bench");
+  f.gate.baselines = f.update.baselines = "regression/baselines";
+  f.update.changelog = "regression/CHANGELOG.md";
+  add_judging(app, f);
+  add_update(app, f.update);
+  add_calibrate(app, f.calibrate);
+  CLI::App* sub = app.add_subcommand("explain", "all that is known of one kernel or entry");
   sub->add_option("subject", f.subject, "<robot>/<kernel> or <robot>/<scenario>/<estimator>")
       ->required();
-  add_base(sub), add_bench(sub), add_baselines(sub, f.gate.baselines);
+  add_plugins(sub, f), add_bench(sub, f), add_baselines(sub, f.gate.baselines);
   app.require_subcommand(1);
 }
 
@@ -182,6 +199,25 @@ int run(const CLI::App& app, Flags& f) {
     return kPassed;
   }
   return check(f);
+}
+
+// what goes wrong becomes a line and an exit code
+int run_and_say(const CLI::App& app, Flags& f) {
+  const auto fail = [](int code, const std::string& what) {
+    fmt::print(stderr, "tauext-gate: {}\n", what);
+    return code;
+  };
+  try {
+    const int code = run(app, f);
+    if (std::fflush(stdout) != 0) return fail(kHarnessError, "cannot write to standard output");
+    return code;
+  } catch (const std::invalid_argument& e) {
+    return fail(kUsage, e.what());
+  } catch (const std::regex_error& e) {
+    return fail(kUsage, fmt::format("no regular expression: {}", e.what()));
+  } catch (const std::exception& e) {
+    return fail(kHarnessError, e.what());
+  }
 }
 
 int main(int argc, char** argv) {
@@ -206,20 +242,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "tauext-gate: {}\ntauext-gate: see tauext-gate --help\n", e.what());
     return kUsage;
   }
-  try {
-    const int code = run(app, f);
-    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
-    return code;
-  } catch (const std::invalid_argument& e) {
-    fmt::print(stderr, "tauext-gate: {}\n", e.what());
-    return kUsage;
-  } catch (const std::regex_error& e) {
-    fmt::print(stderr, "tauext-gate: no regular expression: {}\n", e.what());
-    return kUsage;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "tauext-gate: {}\n", e.what());
-    return kHarnessError;
-  }
+  return run_and_say(app, f);
 }
 
 }  // namespace

@@ -30,6 +30,40 @@ bool slower(const std::vector<double>& sorted_values, double limit) {
   return median(sorted_values) > 1 + limit && low_of(sorted_values) > 1;
 }
 
+// the first stage may have been unlucky: later processes have to say so among themselves, and if they are no more
+// than those of the first stage, the first stage, too
+void confirm(const std::vector<ProcessRatios>& all, const TimeLimits& limits, TimeVerdict& v) {
+  const auto first_stage = static_cast<std::size_t>(limits.stages[0]);
+  const std::vector<ProcessRatios> stage(all.begin(),
+                                         all.begin() + static_cast<std::ptrdiff_t>(first_stage));
+  const std::vector<double> fresh = sorted(all, &ProcessRatios::head, first_stage);
+  if (fresh.size() < first_stage) {
+    v.why = "slower in the first processes, to be confirmed";
+    return;
+  }
+  const bool early = slower(sorted(stage, &ProcessRatios::head), limits.limit);
+  if (slower(fresh, limits.limit) && (early || fresh.size() > first_stage)) {
+    v.verdict = Verdict::kFail;
+  } else {
+    v.why = "some processes say slower, and others do not confirm it";
+  }
+}
+
+// why these processes cannot be trusted; false if they can
+bool too_noisy(const TimeLimits& limits, TimeVerdict& v) {
+  if (!(std::abs(v.aa - 1) <= limits.limit / 2)) {
+    v.why = fmt::format("a copy of base beside itself is off by {:+.1f} %", 100 * (v.aa - 1));
+    return true;
+  }
+  if (!(v.canary > 1 + limits.canary / 2)) {
+    v.why = fmt::format("of {:.0f} % injected, {:.1f} % were seen", 100 * limits.canary,
+                        100 * (v.canary - 1));
+    v.harness_error = true;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 const char* name_of(Verdict v) {
@@ -59,10 +93,10 @@ double median(std::vector<double> values) {
 }
 
 TimeVerdict judge(const std::vector<ProcessRatios>& all, const TimeLimits& limits) {
-  const auto first_stage = static_cast<std::size_t>(limits.stages[0]);
-  if (all.size() < std::max<std::size_t>(first_stage, 4)) {
-    throw std::logic_error(fmt::format("{} processes, where a verdict needs {}", all.size(),
-                                       std::max<std::size_t>(first_stage, 4)));
+  const std::size_t least = std::max<std::size_t>(static_cast<std::size_t>(limits.stages[0]), 4);
+  if (all.size() < least) {
+    throw std::logic_error(
+        fmt::format("{} processes, where a verdict needs {}", all.size(), least));
   }
   const std::vector<double> head = sorted(all, &ProcessRatios::head);
   TimeVerdict v;
@@ -72,33 +106,10 @@ TimeVerdict judge(const std::vector<ProcessRatios>& all, const TimeLimits& limit
   v.high = high_of(head);
   v.aa = median(sorted(all, &ProcessRatios::aa));
   v.canary = median(sorted(all, &ProcessRatios::canary));
-
-  if (!(std::abs(v.aa - 1) <= limits.limit / 2)) {
-    v.why = fmt::format("a copy of base beside itself is off by {:+.1f} %", 100 * (v.aa - 1));
-    return v;
-  }
-  if (!(v.canary > 1 + limits.canary / 2)) {
-    v.why = fmt::format("of {:.0f} % injected, {:.1f} % were seen", 100 * limits.canary,
-                        100 * (v.canary - 1));
-    v.harness_error = true;
-    return v;
-  }
+  if (too_noisy(limits, v)) return v;
   if (slower(head, limits.limit)) {
-    // the first stage may have been unlucky: those after it have to say so, too
-    const std::vector<double> fresh = sorted(all, &ProcessRatios::head, first_stage);
-    const std::vector<ProcessRatios> stage(all.begin(),
-                                           all.begin() + static_cast<std::ptrdiff_t>(first_stage));
-    const bool early = slower(sorted(stage, &ProcessRatios::head), limits.limit);
-    if (fresh.size() < first_stage) {
-      v.why = "slower in the first processes, to be confirmed";
-    } else if (slower(fresh, limits.limit) && (early || fresh.size() > first_stage)) {
-      v.verdict = Verdict::kFail;
-    } else {
-      v.why = "some processes say slower, and others do not confirm it";
-    }
-    return v;
-  }
-  if (v.high <= 1 + limits.limit) {
+    confirm(all, limits, v);
+  } else if (v.high <= 1 + limits.limit) {
     v.verdict = Verdict::kPass;
   } else {
     v.why = "the interval holds the limit";

@@ -14,9 +14,9 @@ const char* name_of(Verdict v);
 
 /// One process' ratios of times, each a median over its pairs.
 struct ProcessRatios {
-  double head = 1;    ///< head / base
-  double aa = 1;      ///< a copy of base / base: 1, but for noise
-  double canary = 1;  ///< base with 5 % more steps / base: 1.05, if the harness can see that
+  double head = 1;    ///< [1] head / base
+  double aa = 1;      ///< [1] a copy of base / base: 1, but for noise
+  double canary = 1;  ///< [1] base with 5 % more steps / base: 1.05, if the harness can see that
 };
 
 /// When a kernel is slower.
