@@ -28,7 +28,8 @@ std::string functions_of(const Counts& head, const Counts* base, const std::stri
       before = it == functions.end() ? "-"
                                      : fmt::format("{:.1f}", static_cast<double>(it->second) / 1e3);
     }
-    out += fmt::format("{:10.1f} {:>10}  {}\n", static_cast<double>(n) / 1e3, before, function);
+    out += fmt::format("{:10.1f} {:>10}  {}\n", static_cast<double>(n) / 1e3, before,
+                       short_name(function));
   }
   return out;
 }

@@ -63,9 +63,8 @@ std::vector<Finding> time_findings(const GateResult& r) {
       f.more.push_back(reason);
     if (f.verdict == Verdict::kFail) {
       if (count) f.more.insert(f.more.end(), count->gained.begin(), count->gained.end());
-      f.more.push_back(
-          fmt::format("again: tauext-gate time --base BASE.so --head HEAD.so --kernels '{}'",
-                      exactly(k.kernel)));
+      f.more.push_back(fmt::format("again: tauext-gate time --base {} --head {} --kernels '{}'",
+                                   r.base, r.head, exactly(k.kernel)));
     }
     all.push_back(std::move(f));
   }

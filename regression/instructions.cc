@@ -71,18 +71,6 @@ std::uint64_t whole(const std::string& text, const std::string& path) {
   return value;
 }
 
-// without template arguments and parameters, which fill the screen
-std::string short_name(const std::string& name) {
-  std::string out;
-  int depth = 0;
-  for (const char c : name) {
-    if (c == '<' || c == '(') ++depth;
-    if (depth == 0) out += c;
-    if ((c == '>' || c == ')') && depth > 0) --depth;
-  }
-  return out;
-}
-
 // "(7) name" defines, "(7)" recalls
 std::string function_name(const std::string& text, std::map<std::string, std::string>& known) {
   const auto close = text.find(')');
@@ -260,6 +248,17 @@ std::vector<CountChange> compare_counts(const Counts& before, const Counts& afte
     changes.push_back(std::move(c));
   }
   return changes;
+}
+
+std::string short_name(const std::string& name) {
+  std::string out;
+  int depth = 0;
+  for (const char c : name) {
+    if (c == '<' || c == '(') ++depth;
+    if (depth == 0) out += c;
+    if ((c == '>' || c == ')') && depth > 0) --depth;
+  }
+  return out;
 }
 
 std::string key_difference(const Key& there, const Key& here) {

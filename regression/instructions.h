@@ -74,6 +74,9 @@ inline constexpr double kCountLimit = 0.01, kCountNote = 0.002;
 /// @throws std::invalid_argument if the keys differ: such counts are never compared
 std::vector<CountChange> compare_counts(const Counts& before, const Counts& after);
 
+/// A function's name without template arguments and parameters, which fill the screen.
+std::string short_name(const std::string& name);
+
 /// "glibc: 2.36 there, 2.37 here; .." of two keys.
 std::string key_difference(const Key& there, const Key& here);
 

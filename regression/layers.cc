@@ -74,7 +74,8 @@ InstructionReport compare_instructions(const GateOptions& o) {
 void compare_golden(const GateOptions& o, GateResult& result) {
   const std::string path = golden_path(o.baselines);
   if (!fs::exists(path)) {
-    result.accuracy.emplace().no_baseline = path + " is not there";
+    result.accuracy.emplace().no_baseline =
+        fs::absolute(path).string() + " is not there; --baselines FOLDER looks elsewhere";
     return;
   }
   const Golden baseline = read_golden(path);
@@ -116,7 +117,7 @@ bool too_many(const CountChange& c) {
 
 GateResult run_layers(const GateOptions& options) {
   GateOptions o = options;
-  GateResult r{.bench = o.bench};
+  GateResult r{.base = o.base, .head = o.head, .bench = o.bench};
   if (o.accuracy && o.bench.empty()) {
     if (!o.time && !o.instructions) throw std::invalid_argument("accuracy wants a --bench PROGRAM");
     r.notes.emplace_back("no --bench: accuracy was not looked at");
@@ -124,7 +125,7 @@ GateResult run_layers(const GateOptions& options) {
   if (!o.base.empty() && (o.time || o.instructions)) {
     try {
       const TemporaryFolder folder;
-      Plugin{folder.copy(o.base, "base.so")};
+      Plugin(folder.copy(o.base, "base.so"), o.base);
     } catch (const OtherAbi& e) {
       r.notes.push_back(fmt::format("{}: nothing to compare with", e.what()));
       o.base.clear();

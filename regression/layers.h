@@ -55,7 +55,7 @@ struct GateResult {
   std::optional<AccuracyReport> accuracy;
   std::vector<std::string> not_repeated;  ///< T0
   std::vector<std::string> notes;         ///< what could not be compared, and why
-  std::string bench;                      ///< to be named in commands
+  std::string base, head, bench;          ///< to be named in commands
 };
 
 /// Runs the layers that were asked for.

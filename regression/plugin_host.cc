@@ -9,13 +9,16 @@
 
 namespace tauext::gate {
 
-Plugin::Plugin(const std::string& path) {
+Plugin::Plugin(const std::string& file_path, const std::string& shown) {
+  const std::string path = shown.empty() ? file_path : shown;
   // with a slash dlopen looks at this file and nowhere else
-  const std::string file = std::filesystem::absolute(path).string();
+  const std::string file = std::filesystem::absolute(file_path).string();
   library_ = std::shared_ptr<void>(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* l) {
     if (l) ::dlclose(l);
   });
-  if (!library_) throw std::runtime_error(fmt::format("{}: no plug-in: {}", path, ::dlerror()));
+  if (!library_)
+    throw std::runtime_error(
+        fmt::format("{}: no plug-in; tauext_add_plugin makes one ({})", path, ::dlerror()));
   using Get = const tauext_plugin* (*)();
   const auto get = reinterpret_cast<Get>(::dlsym(library_.get(), TAUEXT_PLUGIN_SYMBOL));
   if (!get) {

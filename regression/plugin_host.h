@@ -21,7 +21,8 @@ struct OtherAbi : std::runtime_error {
 class Plugin {
  public:
   /// @throws OtherAbi; std::runtime_error naming the path: no plug-in, or two kernels of one name
-  explicit Plugin(const std::string& path);
+  /// @param shown the path for errors, if it is a copy that is loaded
+  explicit Plugin(const std::string& path, const std::string& shown = "");
 
   int count() const { return api_->count; }
   std::string name(int kernel) const { return api_->name(kernel); }

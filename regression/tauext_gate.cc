@@ -46,7 +46,15 @@ void require_writable(const Flags& f) {
 void show_progress(GateOptions& o) {
   if (::isatty(STDERR_FILENO) == 1) {
     o.progress = [](const std::string& what) { fmt::print(stderr, "\r\033[K{}", what); };
+    return;
   }
+  // a log gets a line for each layer
+  o.progress = [last = std::string()](const std::string& what) mutable {
+    const std::string begin = what.substr(0, what.find(' '));
+    if (!what.empty() && begin != last)
+      fmt::print(stderr, "gate: {}\n", what.substr(0, what.find(':')));
+    last = begin;
+  };
 }
 
 int check(Flags& f) {
@@ -239,7 +247,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    fmt::print(stderr, "tauext-gate: {}\ntauext-gate: see tauext-gate --help\n", e.what());
+    const auto known =
+        app.get_subcommands([&](CLI::App* sub) { return argc > 1 && sub->check_name(argv[1]); });
+    const bool unknown = argc > 1 && argv[1][0] != '-' && known.empty();
+    fmt::print(stderr, "tauext-gate: {}\ntauext-gate: see tauext-gate --help\n",
+               unknown ? fmt::format("unknown subcommand '{}'", argv[1]) : e.what());
     return kUsage;
   }
   return run_and_say(app, f);

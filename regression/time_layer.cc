@@ -106,7 +106,7 @@ KernelNames kernel_names(const std::string& base, const std::string& head,
     std::vector<std::string> found;
     if (plugin.empty()) return found;
     require_self_contained(plugin);
-    const Plugin p(folder.copy(plugin, copy));
+    const Plugin p(folder.copy(plugin, copy), plugin);
     const std::regex wanted(filter);
     for (int i = 0; i < p.count(); ++i) {
       if (std::regex_search(p.name(i), wanted)) found.push_back(p.name(i));

@@ -19,13 +19,13 @@ KernelTime kernel(const std::string& name, double ratio, Verdict verdict) {
 }
 
 GateResult times(std::vector<KernelTime> kernels) {
-  GateResult r{.bench = "tauext-bench"};
+  GateResult r{.base = "base.so", .head = "head.so", .bench = "tauext-bench"};
   r.time = TimeReport{.kernels = std::move(kernels)};
   return r;
 }
 
 GateResult metric(Change change) {
-  GateResult r{.bench = "tauext-bench"};
+  GateResult r{.base = "base.so", .head = "head.so", .bench = "tauext-bench"};
   r.accuracy = AccuracyReport{.lines = 1};
   r.accuracy->changes.push_back({.entry = "arm/step/a+b",
                                  .metric = "rmse_Nm",
@@ -94,7 +94,8 @@ TEST(Terminal, SaysWhyAKernelIsSlower) {
   const std::string text = format_terminal(r, false);
   EXPECT_NE(text.find("more work: +10.0 % instructions"), std::string::npos) << text;
   EXPECT_NE(text.find("+0.1 a step in f"), std::string::npos) << text;
-  EXPECT_NE(text.find("--kernels '^arm/ekf$'"), std::string::npos) << text;
+  EXPECT_NE(text.find("--base base.so --head head.so --kernels '^arm/ekf$'"), std::string::npos)
+      << text;
   r.time->kernels[0] = kernel("arm/ekf", 1, Verdict::kPass);
   EXPECT_NE(format_terminal(r, true).find("more instructions at no cost in time"),
             std::string::npos);
