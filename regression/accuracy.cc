@@ -8,13 +8,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
+
+#include "regression/files.h"
 
 namespace tauext::gate {
 namespace {
@@ -245,9 +245,7 @@ Golden parse_golden(const std::string& text, const std::string& path) {
 }
 
 Golden read_golden(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot be read");
-  return parse_golden({std::istreambuf_iterator<char>(in), {}}, path);
+  return parse_golden(read_file(path), path);
 }
 
 int AccuracyReport::worse() const {

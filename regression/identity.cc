@@ -4,21 +4,14 @@
 #include <elf.h>
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "regression/files.h"
+
 namespace tauext::gate {
 namespace {
-
-std::string read(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  if (!in.good() && !in.eof()) throw std::runtime_error(path + ": cannot be read");
-  return bytes;
-}
 
 // a struct at an offset of the file
 template <class T>
@@ -56,7 +49,7 @@ void for_each_section(const std::string& bytes, const std::string& path, Visit&&
 // names and contents of .text, .rodata and .data, in the order of the file
 std::string code_of(const std::string& path) {
   std::string code;
-  for_each_section(read(path), path, [&](std::string_view name, std::string_view content) {
+  for_each_section(read_file(path), path, [&](std::string_view name, std::string_view content) {
     if (name != ".text" && name != ".rodata" && name != ".data") return;
     code.append(name).push_back('\0');
     code.append(content);
@@ -78,7 +71,7 @@ bool identical(const std::string& a, const std::string& b) {
 }
 
 std::vector<std::string> needed_libraries(const std::string& path) {
-  const std::string bytes = read(path);
+  const std::string bytes = read_file(path);
   std::string_view names, entries;
   for_each_section(bytes, path, [&](std::string_view name, std::string_view content) {
     if (name == ".dynstr") names = content;

@@ -9,15 +9,14 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 
 #include "regression/child.h"
+#include "regression/files.h"
 #include "regression/plugin_host.h"
 
 namespace tauext::gate {
@@ -54,12 +53,6 @@ Key key_of(const Plugin& p) {
           {"eigen", p.api().eigen},
           {"glibc", gnu_get_libc_version()},
           {"libm", libm_variant()}};
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::uint64_t whole(const std::string& text, const std::string& path) {

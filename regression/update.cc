@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <regex>
 #include <set>
@@ -18,18 +16,13 @@
 
 #include "mjcf/atomic_file.h"
 #include "regression/child.h"
+#include "regression/files.h"
 #include "regression/plugin_host.h"
 
 namespace tauext::gate {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void require_one_line(const std::string& what, const std::string& text) {
   if (text.find_first_not_of(" \t") == std::string::npos) {
@@ -44,7 +37,7 @@ void require_one_line(const std::string& what, const std::string& text) {
 class Files {
  public:
   void add(const std::string& path, const std::string& text) {
-    if (fs::exists(path) && content(path) == text) return;
+    if (fs::exists(path) && read_file(path) == text) return;
     files_.push_back(std::make_unique<AtomicFile>(path));
     files_.back()->write(text);
     names_.push_back(path);
@@ -109,7 +102,7 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
   const std::string out = folder.path() + "/golden.tsv", path = golden_path(o.baselines);
   run_child(
       {o.bench, "--golden", out, "--benchmark_filter=" + (o.entries.empty() ? "." : o.entries)});
-  std::string text = content(out);
+  std::string text = read_file(out);
   const Golden head = parse_golden(text, out);
   if (fs::exists(path)) {
     const AccuracyReport r = compare_accuracy(read_golden(path), head, o.entries);
@@ -125,7 +118,7 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
       (bad ? worse : changed) += line;
     }
-    if (!o.entries.empty()) text = merged(content(path), text, o.entries);
+    if (!o.entries.empty()) text = merged(read_file(path), text, o.entries);
   }
   if (!fs::exists(path)) {
     for (const auto& [key, line] : head.lines) {
@@ -155,7 +148,7 @@ UpdateResult update_baselines(const UpdateOptions& o) {
     throw std::invalid_argument("nothing to update: no --head, no --bench");
   fs::create_directories(o.baselines);
   std::string log =
-      fs::exists(o.changelog) ? content(o.changelog) : "# Baselines\nEach line moved them.\n\n";
+      fs::exists(o.changelog) ? read_file(o.changelog) : "# Baselines\nEach line moved them.\n\n";
   Files files;
   std::string worse, changed;
   if (!o.head.empty()) update_counts(o, files, worse, changed);
