@@ -238,9 +238,7 @@ int bench_main(int argc, char** argv) {
          [&](const std::string& path) { flags.suite.thresholds = read_thresholds(path); },
          "the detectors' thresholds, as tauext-detect --calibrate writes them")
       ->type_name("FILE");
-  app.add_option("--noise_probe", flags.suite.noise_probe,
-                 "velocity noise [rad/s] behind the column noise, for ideal sensors")
-      ->capture_default_str();
+  app.add_option("--noise_probe", flags.suite.noise_probe)->group("");  // bench/README.md
   add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
   app.footer(
       "Google Benchmark's: --benchmark_filter=REGEX --benchmark_out=FILE (JSON)\n"
