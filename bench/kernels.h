@@ -273,6 +273,8 @@ inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
 }  // namespace detail
 }  // namespace tauext
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a name of a parameter bears none
+
 /// Followed by a block that adds to `kernels`, once in a plug-in.
 #define TAUEXT_PLUGIN(kernels)                                                                 \
   static void tauext_fill_plugin(tauext::Kernels& kernels);                                    \
@@ -280,3 +282,4 @@ inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
     return tauext::detail::make_plugin(tauext_fill_plugin);                                    \
   }                                                                                            \
   static void tauext_fill_plugin(tauext::Kernels& kernels)
+// NOLINTEND(bugprone-macro-parentheses)
