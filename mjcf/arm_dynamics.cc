@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/arm_dynamics.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/layout.h"
+
+namespace tauext {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kSlip = 0.01;  // [rad/s] of CoulombFriction's tanh
+
+void check(const mjModel& m) {
+  if (m.nq != m.nv || m.nv == 0) {
+    throw std::invalid_argument(
+        "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
+  }
+  if (m.neq > 0)
+    throw std::invalid_argument("the model ties joints together by <equality>: not supported");
+  for (int j = 0; j < m.njnt; ++j) {
+    if (m.jnt_stiffness[j] != 0)
+      throw std::invalid_argument("the model has springs in joints: not supported");
+  }
+}
+
+// the actuators' coordinates, or MuJoCo's
+Layout coordinates(const mjModel& m, const mjData& d) {
+  try {
+    Layout l = layout_of(m, d);
+    if (l.dof == m.nv) return l;
+  } catch (const std::invalid_argument&) {
+    // position servos and the like: fine for an arm that is only watched
+  }
+  Layout l;
+  l.dof = m.nv;
+  l.S = MatrixXd::Identity(m.nv, m.nv);
+  return l;
+}
+
+}  // namespace
+
+void detail::require_equal_joints(int have, int want) {
+  if (have == want) return;
+  throw std::invalid_argument(fmt::format("the model has {} joints, not {}", have, want));
+}
+
+// rho are MuJoCo's coordinates, q = S rho + q0; forces of q are S^-T those of rho
+struct ArmDynamics::State {
+  explicit State(Model m) : model(std::move(m)), data(mj_makeData(model.get()), mj_deleteData) {
+    check(*model);
+    const int n = model->nv;
+    mj_forward(model.get(), data.get());
+    S = coordinates(*model, *data).S;
+    S_inv = S.inverse();  // once: steps below multiply, which allocates nothing
+    q0 = VectorXd::Zero(n);
+    if (!S.isIdentity(0)) {
+      q0 = VectorXd::Map(data->actuator_length, n) - S * VectorXd::Map(data->qpos, n);
+    }
+    damping = VectorXd::Map(model->dof_damping, n);
+    dry = VectorXd::Map(model->dof_frictionloss, n);
+    for (VectorXd* v : {&rho, &force, &at, &moved}) *v = VectorXd::Zero(n);
+    M = B_ahead = RowMajor::Zero(n, n);
+    half = MatrixXd::Zero(n, n);
+  }
+
+  void move_to(const double* q, const double* qd) {
+    const int n = model->nv;
+    rho.noalias() = S_inv * (VectorXd::Map(q, n) - q0);
+    VectorXd::Map(data->qpos, n) = rho;
+    if (qd == nullptr) {
+      VectorXd::Map(data->qvel, n).setZero();
+    } else {
+      VectorXd::Map(data->qvel, n).noalias() = S_inv * VectorXd::Map(qd, n);
+    }
+    mj_kinematics(model.get(), data.get());
+    mj_comPos(model.get(), data.get());
+  }
+
+  // B = S^-T M S^-1
+  void inertia(const double* q, double* B) {
+    const int n = model->nv;
+    move_to(q, nullptr);
+    mj_crb(model.get(), data.get());
+    mj_fullM(model.get(), M.data(), data->qM);
+    half.noalias() = M * S_inv;
+    MatrixXd::Map(B, n, n).noalias() = S_inv.transpose() * half;
+  }
+
+  void bias(const double* q, const double* qd, double* out) {
+    const int n = model->nv;
+    move_to(q, qd);
+    mj_comVel(model.get(), data.get());
+    mj_rne(model.get(), data.get(), 0, force.data());
+    VectorXd::Map(out, n).noalias() = S_inv.transpose() * force;
+  }
+
+  Model model;
+  std::unique_ptr<mjData, decltype(&mj_deleteData)> data;
+  MatrixXd S, S_inv, half;
+  RowMajor M, B_ahead;
+  VectorXd q0, damping, dry, rho, force, at, moved;
+};
+
+ArmDynamics::ArmDynamics(Model model) : state_(std::make_unique<State>(std::move(model))) {}
+ArmDynamics::ArmDynamics(const ArmDynamics& other) : ArmDynamics(other.state_->model) {}
+ArmDynamics::~ArmDynamics() = default;
+
+int ArmDynamics::dof() const noexcept {
+  return state_->model->nv;
+}
+
+void ArmDynamics::inertia(const double* q, double* B) const noexcept {
+  state_->inertia(q, B);
+}
+
+void ArmDynamics::bias(const double* q, const double* qd, double* out) const noexcept {
+  state_->bias(q, qd, out);
+}
+
+void ArmDynamics::gravity(const double* q, double* out) const noexcept {
+  state_->bias(q, nullptr, out);
+}
+
+void ArmDynamics::momentum_bias(const double* q, const double* qd, double* out) const noexcept {
+  State& s = *state_;
+  const int n = dof();
+  auto result = VectorXd::Map(out, n);
+  const auto speed = VectorXd::Map(qd, n);
+  // C^T qd - g = dB/dt qd - (C qd + g), g being in both
+  s.bias(q, qd, out);
+  result = -result;
+  const double norm = speed.norm();
+  if (norm == 0) return;
+  // (8 (B(+e) - B(-e)) - (B(+2e) - B(-2e))) / 12e along the motion
+  const double step = 1e-2 / norm;
+  constexpr double kWeights[][2] = {{1, 8}, {-1, -8}, {2, -1}, {-2, 1}};
+  for (const auto& [ahead, weight] : kWeights) {
+    s.at = VectorXd::Map(q, n) + ahead * step * speed;
+    s.inertia(s.at.data(), s.B_ahead.data());  // symmetric: its order of storage does not matter
+    s.moved.noalias() = s.B_ahead * speed;
+    result += weight / (12 * step) * s.moved;
+  }
+}
+
+void ArmDynamics::friction(const double* qd, double* out) const noexcept {
+  State& s = *state_;
+  const int n = dof();
+  s.rho.noalias() = s.S_inv * VectorXd::Map(qd, n);
+  for (int j = 0; j < n; ++j) {
+    s.force[j] = s.damping[j] * s.rho[j] + s.dry[j] * std::tanh(s.rho[j] / kSlip);
+  }
+  VectorXd::Map(out, n).noalias() = s.S_inv.transpose() * s.force;
+}
+
+}  // namespace tauext
