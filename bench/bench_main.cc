@@ -16,6 +16,7 @@
 #include "bench/bandwidth_study.h"
 #include "bench/cli.h"
 #include "bench/degradation.h"
+#include "bench/entry_tap.h"
 #include "bench/golden.h"
 #include "bench/reliability.h"
 #include "bench/reporter.h"
@@ -55,8 +56,11 @@ std::string never_label(const Score& score) {
 }
 
 // score first; a wrong answer is an error and is not timed
-void run_entry(benchmark::State& state, Suite& suite, Row& row) {
-  if (row.score.metrics.empty()) row.score = suite.score(row.entry);
+void run_entry(benchmark::State& state, Suite& suite, Row& row, const EntryTap& tap) {
+  if (row.score.metrics.empty()) {
+    row.score = suite.score(row.entry);
+    if (tap.logs()) tap.log(row.entry, suite.run(row.entry), row.score);
+  }
   if (!row.score.error.empty()) {
     state.SkipWithError(row.score.error.c_str());
     return;
@@ -96,7 +100,8 @@ struct Flags {
   SuiteOptions suite;
   bool list = false, list_tests = false, paper = false, reliability = false, pareto = false;
   std::optional<double> equal_bandwidth;  // [rad/s]
-  std::optional<std::string> out, format, golden;
+  std::optional<std::string> out, format, golden, lcm;
+  std::string lcm_log;
   std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
 
   // what runs instead of the suite
@@ -151,6 +156,18 @@ int run_golden(const Flags& f, const std::string& filter) {
   return kGood;
 }
 
+// the entry that is through, with its time
+void publish(const std::string& name, const std::vector<Row>& rows, const Reporter& reporter,
+             EntryTap& tap) {
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.entry.name() == name; });
+  if (row == rows.end()) return;
+  Score score = row->score;
+  const auto time = reporter.cpu_ns().find(name);
+  if (time != reporter.cpu_ns().end()) score.metrics["cpu_ns"] = time->second;
+  tap.publish(row->entry, score);
+}
+
 int run(const Flags& flags) {
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
@@ -158,6 +175,9 @@ int run(const Flags& flags) {
     throw std::invalid_argument(
         "--reliability, --equal-bandwidth and --pareto run instead of the suite: no "
         "--benchmark_filter, --benchmark_out or --list");
+  }
+  if ((flags.study() || flags.golden) && (flags.lcm || !flags.lcm_log.empty())) {
+    throw std::invalid_argument("--lcm and --lcm-log go with the suite alone");
   }
   if (flags.study()) return run_study(flags);
   if (flags.golden) return run_golden(flags, all ? "" : filter);
@@ -169,15 +189,18 @@ int run(const Flags& flags) {
   const auto display = make_display(flags.format);
 
   Suite suite(flags.suite);
+  EntryTap tap(flags.lcm, flags.lcm_log);
   std::vector<Row> rows;
   for (const Entry& e : entries()) rows.push_back({e, {}});
   for (Row& row : rows) {
-    benchmark::RegisterBenchmark(row.entry.name().c_str(),
-                                 [&suite, &row](benchmark::State& s) { run_entry(s, suite, row); });
+    benchmark::RegisterBenchmark(
+        row.entry.name().c_str(),
+        [&suite, &row, &tap](benchmark::State& s) { run_entry(s, suite, row, tap); });
   }
   benchmark::AddCustomContext("tauext", build_line(suite));
   Reporter reporter(display.get(), ::isatty(STDERR_FILENO) == 1,
                     all ? static_cast<int>(rows.size()) : 0);
+  reporter.on_done = [&](const std::string& name) { publish(name, rows, reporter, tap); };
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
     throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
   }
@@ -238,8 +261,14 @@ int bench_main(int argc, char** argv) {
          [&](const std::string& path) { flags.suite.thresholds = read_thresholds(path); },
          "the detectors' thresholds, as tauext-detect --calibrate writes them")
       ->type_name("FILE");
+  app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
+      ->type_name("[URL]")
+      ->expected(0, 1);
+  app.add_option("--lcm-log", flags.lcm_log, "write each entry's samples and estimates as LCM log")
+      ->type_name("DIR");
   app.add_option("--noise_probe", flags.suite.noise_probe)->group("");  // bench/README.md
   add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
+  for (const char* less_used : {"--kp", "--kd"}) app.get_option(less_used)->group("");
   app.footer(
       "Google Benchmark's: --benchmark_filter=REGEX --benchmark_out=FILE (JSON)\n"
       "  --benchmark_repetitions=N --benchmark_min_time=SECONDS --benchmark_format=console|json");

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "bench/degradation.h"
+#include "bench/lcm_trace.h"
 #include "bench/robot.h"
 
 namespace tauext {
@@ -103,6 +104,21 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
       log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order);
   for (const std::string& line : s.first) fmt::print(stderr, "  {}\n", line);
   if (s.total() > static_cast<int>(s.first.size())) fmt::print(stderr, "  ...\n");
+}
+
+Trace read_log_or_csv(const std::string& path, const std::string& channel) {
+  if (!is_lcm_log(path)) {
+    SkippedRows skipped;
+    Trace trace = read_csv(path, &skipped);
+    report_skipped(skipped, path);
+    return trace;
+  }
+  LogReport report;
+  Trace trace = read_lcm(path, channel, &report);
+  if (const std::string faults = report.in_words(); !faults.empty()) {
+    fmt::print(stderr, "{}: channel {}: {}\n", path, report.channel, faults);
+  }
+  return trace;
 }
 
 void refuse_same_file(const std::string& log, const std::string& out) {

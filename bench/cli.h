@@ -27,6 +27,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
 /// Says on standard error what read_csv left out, if anything.
 void report_skipped(const SkippedRows& skipped, const std::string& log);
 
+/// A recorded log, CSV or LCM; what was skipped goes to standard error.
+/// @throws std::runtime_error naming the path and the reason
+Trace read_log_or_csv(const std::string& path, const std::string& channel);
+
 /// @throws std::invalid_argument if writing `out` would overwrite the log that is read
 void refuse_same_file(const std::string& log, const std::string& out);
 

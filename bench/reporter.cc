@@ -31,6 +31,7 @@ void Reporter::ReportRuns(const std::vector<Run>& runs) {
   }
   json_.ReportRuns(finite);
   if (display_ != nullptr) display_->ReportRuns(finite);
+  if (on_done && !runs.empty()) on_done(runs[0].run_name.function_name);
   if (progress_ && !runs.empty()) {
     ++done_;
     const std::string of = total_ > 0 ? fmt::format("/{}", total_) : "";

@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <functional>
 #include <map>
 #include <sstream>
 #include <string>
@@ -31,6 +32,9 @@ class Reporter : public benchmark::BenchmarkReporter {
 
   /// [ns] CPU time of a step by benchmark name: the median if there are repetitions.
   const std::map<std::string, double>& cpu_ns() const { return cpu_ns_; }
+
+  /// Called with the name of each benchmark that is through, its repetitions included.
+  std::function<void(const std::string&)> on_done;
 
   /// Erases the progress line.
   void clear_progress() const;

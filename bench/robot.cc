@@ -35,6 +35,11 @@ std::unique_ptr<Runner> Robot::runner(std::string_view estimator, std::string_vi
   return stages->runner(estimator, detector, trace, s);
 }
 
+std::unique_ptr<Stepper> Robot::stepper(std::string_view estimator, std::string_view detector,
+                                        const Trace& trace, const DetectorSettings& s) const {
+  return stages->stepper(estimator, detector, trace, s);
+}
+
 std::unique_ptr<Runner> Robot::tuned(std::string_view estimator, double w,
                                      const Trace& trace) const {
   return stages->tuned(estimator, w, trace);

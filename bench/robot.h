@@ -45,6 +45,11 @@ class Robot {
   std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                  const Trace& trace, const DetectorSettings& settings = {}) const;
 
+  /// The same for a live run. The trace is what an estimator that copies the truth copies; else it may be empty.
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
+                                   const Trace& trace, const DetectorSettings& settings = {}) const;
+
   /// A tunable estimator at bandwidth w [rad/s] of its own formula.
   std::unique_ptr<Runner> tuned(std::string_view estimator, double w, const Trace& trace) const;
 

@@ -70,6 +70,8 @@ struct Robot::Stages {
   virtual ~Stages() = default;
   virtual std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                          const Trace& trace, const DetectorSettings& s) const = 0;
+  virtual std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
+                                           const Trace& trace, const DetectorSettings& s) const = 0;
   virtual std::unique_ptr<Runner> tuned(std::string_view estimator, double w,
                                         const Trace& trace) const = 0;
   virtual Supervisor supervisor(std::string_view estimator, std::string_view detector,
@@ -163,15 +165,26 @@ struct StagesOf final : Robot::Stages {
     return name.empty() ? nullptr : find(detectors, "detector", name)(s);
   }
 
-  std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector_name,
+  EstimatorPtr estimator(std::string_view name, const Trace& trace) const {
+    const auto& make = find(estimators, "estimator", name);
+    if (needs_truth(name) && !trace.has_truth()) {
+      throw std::invalid_argument(
+          fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", name));
+    }
+    return make(trace);
+  }
+
+  std::unique_ptr<Runner> runner(std::string_view estimator_name, std::string_view detector_name,
                                  const Trace& trace, const DetectorSettings& s) const override {
     check(trace);
-    const auto& make = find(estimators, "estimator", estimator);
-    if (needs_truth(estimator) && !trace.has_truth()) {
-      throw std::invalid_argument(
-          fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", estimator));
-    }
-    return std::make_unique<RunnerOf<N>>(make(trace), detector(detector_name, s), trace);
+    return std::make_unique<RunnerOf<N>>(estimator(estimator_name, trace),
+                                         detector(detector_name, s), trace);
+  }
+
+  std::unique_ptr<Stepper> stepper(std::string_view estimator_name, std::string_view detector_name,
+                                   const Trace& trace, const DetectorSettings& s) const override {
+    return std::make_unique<StepperOf<N>>(estimator(estimator_name, trace),
+                                          detector(detector_name, s));
   }
 
   std::unique_ptr<Runner> tuned(std::string_view estimator, double w,
@@ -187,15 +200,12 @@ struct StagesOf final : Robot::Stages {
       throw std::invalid_argument(
           fmt::format("estimator '{}' copies the truth: it cannot stop a motor", estimator));
     }
-    const std::shared_ptr<EstimatorStage<N>> e = find(estimators, "estimator", estimator)(Trace());
-    const std::shared_ptr<DetectorStage<N>> d = find(detectors, "detector", detector_name)(s);
-    return [=](const Sample& y) {
-      const Measurement<N> in{y.t, y.q, y.qd, y.tau};
-      Estimate<N> estimate;
-      Detection detection;
-      e->run({&in, 1}, {&estimate, 1});
-      d->run({&in, 1}, {&estimate, 1}, {&detection, 1});
-      return detection.mark;
+    const std::shared_ptr<Stepper> pair =
+        std::make_shared<StepperOf<N>>(find(estimators, "estimator", estimator)(Trace()),
+                                       find(detectors, "detector", detector_name)(s));
+    return [pair](const Sample& y) {
+      Vec<N> tau_ext;
+      return pair->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext.data()).detection.mark;
     };
   }
 

@@ -97,6 +97,52 @@ class Runner {
   static constexpr int kBatch = 1000;  ///< samples
 };
 
+/// What became of one sample of a live run.
+struct Stepped {
+  Status status = Status::kOk;
+  Detection detection;  ///< of the detector, if there is one
+};
+
+/// An estimator, and a detector behind it if there is one, one sample after the other.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  virtual void reset() noexcept = 0;
+  /// Reads a value for each joint of q [rad], qd [rad/s] and tau [N m] at time t [s], and writes tau_ext [N m].
+  /// Allocates nothing.
+  virtual Stepped step(double t, const double* q, const double* qd, const double* tau,
+                       double* tau_ext) noexcept = 0;
+};
+
+template <int N>
+class StepperOf final : public Stepper {
+ public:
+  StepperOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<N>> d)
+      : estimator_(std::move(e)), detector_(std::move(d)) {}
+
+  void reset() noexcept override {
+    estimator_->reset();
+    if (detector_) detector_->reset();
+  }
+
+  Stepped step(double t, const double* q, const double* qd, const double* tau,
+               double* tau_ext) noexcept override {
+    using Values = Eigen::Map<const Vec<N>>;
+    const Measurement<N> y{t, Values(q), Values(qd), Values(tau)};
+    Estimate<N> estimate;
+    Stepped out;
+    estimator_->run({&y, 1}, {&estimate, 1});
+    if (detector_) detector_->run({&y, 1}, {&estimate, 1}, {&out.detection, 1});
+    Vec<N>::Map(tau_ext) = estimate.tau_ext;
+    out.status = estimate.status;
+    return out;
+  }
+
+ private:
+  std::unique_ptr<EstimatorStage<N>> estimator_;
+  std::unique_ptr<DetectorStage<N>> detector_;
+};
+
 template <int N>
 class RunnerOf final : public Runner {
  public:

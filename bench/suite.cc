@@ -220,6 +220,14 @@ std::unique_ptr<Runner> Suite::runner(const Entry& e) {
   return robot(e.robot).runner(e.estimator, e.detector, scored(e), settings(e));
 }
 
+Suite::Run Suite::run(const Entry& e) {
+  Run r{scored(e), runner(e)->run(), {}};
+  if (!e.detector.empty()) {
+    r.detections = robot(e.robot).detect(e.detector, r.trace, r.output, settings(e));
+  }
+  return r;
+}
+
 Score Suite::score(const Entry& e) {
   const Scenario& s = scenario(e.robot, e.scenario);
   const Robot& r = robot(e.robot);

@@ -75,6 +75,14 @@ class Suite {
 
   Score score(const Entry& entry);
 
+  /// What score() judges: the trace, and what the entry makes of it.
+  struct Run {
+    const Trace& trace;
+    Output output;
+    std::vector<Detection> detections;  ///< empty without a detector
+  };
+  Run run(const Entry& entry);
+
   /// A runner over the trace that was scored, for the clock.
   std::unique_ptr<Runner> runner(const Entry& entry);
 

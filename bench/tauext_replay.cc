@@ -100,17 +100,18 @@ void print_metrics(const Trace& trace, const std::vector<Column>& columns, std::
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Runs estimators over a recorded log (columns as tauext-record writes them; tau_ext\n"
-      "and contact may be missing) and writes their estimates, one row per usable sample.\n"
+      "Runs estimators over a recorded log (an LCM log, or CSV with the columns of tauext-record;\n"
+      "tau_ext and contact may be missing) and writes their estimates, one row per usable sample.\n"
       "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged (old estimate held).\n"
       "With the truth in the log, prints the errors too. Exit code 1 if most samples were "
       "unusable.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
-  std::string log, robot_name, detector, out;
+  std::string log, channel, robot_name, detector, out;
   std::vector<std::string> estimators;
   bool list = false;
-  app.add_option("log", log, "CSV to read");
+  app.add_option("log", log, "log to read: CSV or LCM");
+  app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
   app.add_option("--robot", robot_name, "robot (see --list)");
   app.add_option("--estimator", estimators, "one or more, separated by commas")
       ->delimiter(',')
@@ -129,8 +130,7 @@ int main(int argc, char** argv) {
     }
     refuse_same_file(log, out);
     const Robot& r = robot(robot_name);
-    SkippedRows skipped;
-    const Trace trace = read_csv(log, &skipped);
+    const Trace trace = read_log_or_csv(log, channel);
     std::vector<Column> columns;
     for (const std::string& e : estimators) {
       if (std::count(estimators.begin(), estimators.end(), e) > 1) {
@@ -138,7 +138,6 @@ int main(int argc, char** argv) {
       }
       columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
     }
-    report_skipped(skipped, log);
     bool good = true;
     for (const Column& c : columns) good = report_status(trace, c) && good;
     write_estimates(trace, columns, out);

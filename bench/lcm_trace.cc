@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/lcm_trace.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "lcmtypes/arrivals.h"
+#include "lcmtypes/emitter.h"
+
+namespace tauext {
+namespace {
+
+const char* channel_of(MessageType type) {
+  switch (type) {
+    case MessageType::kIiwa:
+      return "IIWA_STATUS";
+    case MessageType::kPanda:
+      return "PANDA_STATUS";
+    case MessageType::kTauext:
+      break;
+  }
+  return kSampleChannel;
+}
+
+// channels whose messages carry measurements
+std::vector<std::string> channels_in(const std::string& path) {
+  std::vector<std::string> names;
+  read_log(path, [&](const LogEvent& e) {
+    MessageType type{};
+    if (type_of(e.message, type) != Reject::kNone) return;
+    if (std::find(names.begin(), names.end(), e.channel) == names.end()) {
+      names.emplace_back(e.channel);
+    }
+  });
+  return names;
+}
+
+std::string choose_channel(const std::string& path, const std::string& wanted) {
+  const std::vector<std::string> names = channels_in(path);
+  if (names.empty()) throw std::runtime_error(fmt::format("{}: no measurements in it", path));
+  const auto has = [&](const std::string& n) {
+    return std::find(names.begin(), names.end(), n) != names.end();
+  };
+  if (!wanted.empty() && !has(wanted)) {
+    throw std::runtime_error(fmt::format("{}: no measurements on channel {}; it has {}", path,
+                                         wanted, fmt::join(names, ", ")));
+  }
+  if (!wanted.empty()) return wanted;
+  if (names.size() == 1) return names[0];
+  if (has(kSampleChannel)) return kSampleChannel;
+  throw std::runtime_error(
+      fmt::format("{}: choose one of its channels by --channel: {}", path, fmt::join(names, ", ")));
+}
+
+Eigen::VectorXd vector(const Joints& values, int n) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+}
+
+Trace trace_of(const std::vector<Reading>& all) {
+  const int n = all[0].n, size = static_cast<int>(all.size());
+  const bool truth = std::all_of(all.begin(), all.end(), [](const Reading& r) {
+    return r.reference == ReferenceKind::kTruth;
+  });
+  constexpr double kWallClock = 1e8;  // [s]
+  const double origin = all[0].t > kWallClock ? all[0].t : 0;
+  Trace trace;
+  trace.q.resize(n, size);
+  trace.qd.resize(n, size);
+  trace.tau.resize(n, size);
+  trace.tau_ext.resize(n, truth ? size : 0);
+  for (int k = 0; k < size; ++k) {
+    const Reading& r = all[k];
+    trace.t.push_back(r.t - origin);
+    trace.q.col(k) = vector(r.q, n);
+    trace.qd.col(k) = vector(r.qd, n);
+    trace.tau.col(k) = vector(r.tau, n);
+    if (truth) trace.tau_ext.col(k) = vector(r.tau_ext, n);
+    if (truth) trace.contact.push_back(r.contact);
+  }
+  return trace;
+}
+
+void append(const char* channel, const summary_t& m, LogBuffer& log) {
+  std::vector<std::byte> bytes(m.getEncodedSize());
+  const std::size_t size = encode(m, bytes);
+  log.append(channel, m.utime, {bytes.data(), size});
+}
+
+}  // namespace
+
+std::int64_t utime_of(double t) {
+  return std::llround(t * 1e6);
+}
+
+std::vector<Reading> readings_of(const Trace& trace) {
+  const int n = trace.dof();
+  if (n > kMaxJoints) {
+    throw std::invalid_argument(fmt::format("{} joints: a message holds {}", n, kMaxJoints));
+  }
+  std::vector<Reading> all(trace.size());
+  for (int k = 0; k < trace.size(); ++k) {
+    Reading& r = all[k];
+    r.seq = k;
+    r.t = trace.t[k];
+    r.utime = utime_of(r.t);
+    r.n = n;
+    Eigen::VectorXd::Map(r.q.data(), n) = trace.q.col(k);
+    Eigen::VectorXd::Map(r.qd.data(), n) = trace.qd.col(k);
+    Eigen::VectorXd::Map(r.tau.data(), n) = trace.tau.col(k);
+    if (trace.has_truth()) {
+      r.reference = ReferenceKind::kTruth;
+      Eigen::VectorXd::Map(r.tau_ext.data(), n) = trace.tau_ext.col(k);
+    }
+    if (!trace.contact.empty()) r.contact = trace.contact[k] != 0;
+  }
+  return all;
+}
+
+void append_samples(const std::vector<Reading>& readings, MessageType type, LogBuffer& log) {
+  for (const Reading& r : readings) log.append(channel_of(type), r.utime, write(r, type));
+}
+
+summary_t summary_of(const Entry& entry, const Score& score) {
+  summary_t m{};
+  m.entry = entry.name();
+  m.error = score.error;
+  m.rmse_Nm = score.get("rmse_Nm").value_or(-1);
+  m.step_ns = score.get("cpu_ns").value_or(-1);
+  for (const auto& [key, value] : score.metrics) {
+    if (!std::isfinite(value)) continue;
+    m.key.push_back(key);
+    m.value.push_back(value);
+  }
+  m.n = static_cast<std::int32_t>(m.key.size());
+  return m;
+}
+
+void append_entry(const Entry& entry, const Trace& trace, const Output& output,
+                  const std::vector<Detection>& detections, const Score& score, LogBuffer& log) {
+  Emitter emitter({{entry.estimator, entry.detector}}, 0,
+                  [&](const char* channel, std::int64_t utime, Bytes message) {
+                    log.append(channel, utime, message);
+                    return true;
+                  });
+  const std::vector<Reading> readings = readings_of(trace);
+  for (int k = 0; k < trace.size(); ++k) {
+    const Reading& r = readings[k];
+    log.append(kSampleChannel, r.utime, write(r, MessageType::kTauext));
+    LiveSample s;
+    s.reading = r;
+    Eigen::VectorXd::Map(s.tau_ext_hat.data(), r.n) = output.tau_ext.col(k);
+    s.status = static_cast<std::int8_t>(output.status[k]);
+    if (!detections.empty()) {
+      s.mark = detections[k].mark;
+      s.score = detections[k].score;
+      s.contact = static_cast<std::int8_t>(detections[k].contact);
+    }
+    emitter.add(s);
+  }
+  summary_t summary = summary_of(entry, score);
+  summary.utime = trace.size() > 0 ? readings.back().utime : 0;
+  summary.samples = trace.size();
+  summary.published = emitter.counts().sent;
+  append(kSummaryChannel, summary, log);
+}
+
+std::string LogReport::in_words() const {
+  std::string text;
+  const auto add = [&](std::int64_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(rejected, "messages rejected");
+  add(out_of_order, "late or repeated");
+  add(lost, "lost");
+  add(faults.junk_bytes, "bytes of junk between events");
+  add(faults.truncated, "event cut off at the end");
+  return text;
+}
+
+Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report) {
+  LogReport unused;
+  LogReport& found = report == nullptr ? unused : *report;
+  found.channel = choose_channel(path, channel);
+  Arrivals arrivals;
+  std::vector<Reading> all;
+  found.faults = read_log(path, [&](const LogEvent& e) {
+    if (e.channel != found.channel) return;
+    MessageType type{};
+    Reading r;
+    const bool good =
+        type_of(e.message, type) == Reject::kNone && read(e.message, type, r) == Reject::kNone;
+    if (!good || (!all.empty() && r.n != all[0].n)) {
+      ++found.rejected;
+      return;
+    }
+    if (arrivals.take(r) == Arrival::kNext) all.push_back(r);
+  });
+  const Arrivals::Counts& counts = arrivals.counts();
+  found.out_of_order = counts.late + counts.repeated;
+  found.lost = counts.lost;
+  if (counts.restarts > 0) {
+    throw std::runtime_error(fmt::format(
+        "{}: time goes back on channel {}: the sender was restarted, or there are several", path,
+        found.channel));
+  }
+  if (all.empty()) {
+    throw std::runtime_error(fmt::format("{}: {} messages on channel {}, and none is good", path,
+                                         found.rejected, found.channel));
+  }
+  return trace_of(all);
+}
+
+bool is_lcm_log(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.ends_with(".lcm") || name.starts_with("lcmlog");
+}
+
+}  // namespace tauext

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Traces as LCM logs, and back.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/stages.h"
+#include "bench/suite.h"
+#include "lcmtypes/log.h"
+#include "lcmtypes/reading.h"
+#include "mjcf/trace.h"
+
+namespace tauext {
+
+/// [us] of a time [s].
+std::int64_t utime_of(double t);
+
+/// The samples of a trace as they travel; its truth, if it has one, as their reference.
+/// @throws std::invalid_argument for an arm of more than 8 joints
+std::vector<Reading> readings_of(const Trace& trace);
+
+/// Adds a trace's samples to a log, on TAUEXT_SAMPLE, IIWA_STATUS or PANDA_STATUS.
+void append_samples(const std::vector<Reading>& readings, MessageType type, LogBuffer& log);
+
+/// The samples of an entry, its estimates and detections, one message each, and its summary: all that is to be
+/// seen of it in lcm-spy. Time is simulated, and nothing else is in it that differs from run to run.
+void append_entry(const Entry& entry, const Trace& trace, const Output& output,
+                  const std::vector<Detection>& detections, const Score& score, LogBuffer& log);
+
+/// A summary_t of an entry's score, without counts.
+summary_t summary_of(const Entry& entry, const Score& score);
+
+/// What a log had beside the samples that were used.
+struct LogReport {
+  std::string channel;        ///< that was read
+  std::int64_t rejected = 0;  ///< messages on it that were no good, or of another number of joints
+  std::int64_t out_of_order = 0;  ///< late or repeated
+  std::int64_t lost = 0;          ///< never recorded
+  LogFaults faults;
+  /// "" if there was nothing of that, else in words.
+  std::string in_words() const;
+};
+
+/// Reads a log's measurements from one channel: by its name, or "" for the only one that has any (of several,
+/// TAUEXT_SAMPLE). Times count from 0 if they are those of a wall clock (more than 10^8 s).
+/// @throws std::runtime_error naming path and reason: unreadable, no such channel, several to choose from
+Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report);
+
+/// Whether a path names an LCM log (it ends in .lcm, or lcm-logger's name with a date is in it).
+bool is_lcm_log(const std::string& path);
+
+}  // namespace tauext

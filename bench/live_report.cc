@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live_report.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tauext {
+namespace {
+
+constexpr double kUs = 1e-3;  // from ns
+
+std::string format_stream(const StreamReport& s) {
+  if (!s.asked) return "stream     none; --lcm streams\n";
+  return fmt::format("stream     {}: {} messages published, {} failed; {} samples dropped{}\n",
+                     s.url, s.counts.published, s.counts.failed, s.counts.dropped,
+                     s.hung ? "; it hangs, and was left" : "");
+}
+
+std::string format_loop(const LiveReport& r) {
+  const Histogram& h = *r.late;
+  return fmt::format(
+      "loop       late by {:.0f} us (half of the cycles at most), {:.0f} us (99 %), {:.0f} us "
+      "(all); "
+      "a period is {:.0f} us\n",
+      h.quantile(0.5) * kUs, h.quantile(0.99) * kUs, h.largest() * kUs, r.period * kUs);
+}
+
+std::string format_arrivals(const LiveReport& r) {
+  const Arrivals::Counts& a = r.arrivals;
+  return fmt::format(
+      "input      {} used, {} lost, {} late, {} repeated, {} rejected; {} restarts of the sender\n",
+      a.used, a.lost, a.late, a.repeated, r.rejected, a.restarts);
+}
+
+std::string number_or_dash(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3f}", value) : "-";
+}
+
+}  // namespace
+
+std::string format(const LiveReport& r, const LiveEstimation& e) {
+  std::string out = fmt::format("{}: {} samples in {:.1f} s\n", r.title, e.samples(), r.seconds);
+  out += r.subscribed ? format_arrivals(r) : format_loop(r);
+  out += format_stream(r.stream);
+  out += fmt::format("\n{:<18} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>6}\n", "estimator", "rmse",
+                     "max", "step 50%", "99%", "all", "unusable", "marks");
+  out += fmt::format("{:<18} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>6}\n", "", "N m", "N m", "us",
+                     "us", "us", "samples", "");
+  for (int i = 0; i < e.size(); ++i) {
+    const LiveFigures& f = e.figures(i);
+    const bool compared = f.compared > 0;
+    out += fmt::format("{:<18} {:>9} {:>9} {:>8.2f} {:>8.2f} {:>8.2f} {:>9} {:>6}\n", e.name(i),
+                       number_or_dash(f.rmse()), compared ? number_or_dash(f.largest_error) : "-",
+                       f.step_ns.quantile(0.5) * kUs, f.step_ns.quantile(0.99) * kUs,
+                       f.step_ns.largest() * kUs, f.unusable.load(), f.marks.load());
+  }
+  return out;
+}
+
+std::vector<summary_t> summaries_of(const LiveReport& r, const LiveEstimation& e,
+                                    const std::string& detector) {
+  std::vector<summary_t> all;
+  for (int i = 0; i < e.size(); ++i) {
+    const LiveFigures& f = e.figures(i);
+    summary_t m{};
+    m.utime = std::chrono::duration_cast<std::chrono::microseconds>(
+                  std::chrono::system_clock::now().time_since_epoch())
+                  .count();
+    m.program = "tauext-live";
+    m.entry = r.title + "/" + e.name(i) + (detector.empty() ? "" : "+" + detector);
+    m.rmse_Nm = f.compared > 0 ? f.rmse() : -1;
+    m.step_ns = f.step_ns.quantile(0.5);
+    m.samples = e.samples();
+    m.rejected = r.rejected;
+    m.lost = r.arrivals.lost;
+    const auto add = [&m](const char* key, double value) {
+      m.key.emplace_back(key);
+      m.value.push_back(value);
+    };
+    if (f.compared > 0) add("max_Nm", f.largest_error);
+    add("step_p99_ns", f.step_ns.quantile(0.99));
+    add("marks", static_cast<double>(f.marks));
+    add("unusable", static_cast<double>(f.unusable));
+    if (r.late != nullptr) add("late_p99_ns", r.late->quantile(0.99));
+    m.n = static_cast<std::int32_t>(m.key.size());
+    all.push_back(std::move(m));
+  }
+  return all;
+}
+
+StatusLine::StatusLine()
+    : terminal_(::isatty(STDERR_FILENO) == 1), begin_(std::chrono::steady_clock::now()) {}
+
+void StatusLine::show(const LiveEstimation& e, const Histogram* late, const LiveStream* stream) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ || now - shown_ < std::chrono::milliseconds(500)) return;
+  shown_ = now;
+  if (e.samples() == 0 && !waiting_.empty()) {
+    fmt::print(stderr, "\r\033[Kwaiting for {}", waiting_);
+    return;
+  }
+  std::string line = fmt::format("{:.0f} s  {} samples",
+                                 std::chrono::duration<double>(now - begin_).count(), e.samples());
+  if (late != nullptr) {
+    line += fmt::format("  late {:.0f} us (99 %), {:.0f} us", late->quantile(0.99) * kUs,
+                        late->largest() * kUs);
+  }
+  for (int i = 0; i < e.size(); ++i) {
+    line += fmt::format("  {} {:.1f} us", e.name(i), e.figures(i).step_ns.quantile(0.99) * kUs);
+  }
+  if (stream != nullptr) {
+    const LiveStream::Counts c = stream->counts();
+    line += fmt::format("  {} published, {} failed, {} dropped", c.published, c.failed, c.dropped);
+  }
+  fmt::print(stderr, "\r\033[K{}", line);
+}
+
+void StatusLine::clear() const {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+}  // namespace tauext

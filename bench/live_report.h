@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What tauext-live says: a line while it runs, a summary at its end.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "bench/live.h"
+#include "lcmtypes/arrivals.h"
+
+namespace tauext {
+
+/// How a stream fared.
+struct StreamReport {
+  bool asked = false;  ///< whether there was to be one
+  bool hung = false;   ///< it did not end; what follows may be too small
+  std::string url;
+  LiveStream::Counts counts;
+};
+
+/// A run, once it is over.
+struct LiveReport {
+  std::string title;                ///< robot and source
+  double seconds = 0;               ///< [s] by the clock
+  bool subscribed = false;          ///< else it was played
+  const Histogram* late = nullptr;  ///< of the cycles, if it was played
+  double period = 1e6;              ///< [ns] of them
+  Arrivals::Counts arrivals;        ///< if it was subscribed
+  std::int64_t rejected = 0;        ///< messages on the channel that were no good
+  StreamReport stream;
+};
+
+/// The report as a text of some lines.
+std::string format(const LiveReport& report, const LiveEstimation& estimation);
+
+/// A summary_t for each estimator, without what the stream counts.
+std::vector<summary_t> summaries_of(const LiveReport& report, const LiveEstimation& estimation,
+                                    const std::string& detector);
+
+/// The line of a running program on a terminal's standard error, twice a second; nothing elsewhere.
+class StatusLine {
+ public:
+  StatusLine();
+  /// What to say until the first sample has come.
+  void waiting_for(const std::string& what) { waiting_ = what; }
+  void show(const LiveEstimation& estimation, const Histogram* late, const LiveStream* stream);
+  void clear() const;
+
+ private:
+  bool terminal_;
+  std::string waiting_;
+  std::chrono::steady_clock::time_point shown_, begin_;
+};
+
+}  // namespace tauext

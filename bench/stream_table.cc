@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/stream_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tauext {
+namespace {
+
+const char* contact_name(std::int8_t contact) {
+  constexpr const char* kNames[] = {"", "intentional", "collision", "clamping"};
+  return contact >= 0 && contact < 4 ? kNames[contact] : "?";
+}
+
+const char* status_name(std::int8_t status) {
+  constexpr const char* kNames[] = {"ok", "started", "bad sample", "singular", "diverged"};
+  return status >= 0 && status < 5 ? kNames[status] : "?";
+}
+
+// a text from outside may hold anything; a terminal should not obey it
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out;
+}
+
+}  // namespace
+
+template <class Message>
+bool StreamTable::decoded(Bytes message, Message& m) {
+  const Reject reject = decode(message, m);
+  if (reject == Reject::kNone) {
+    ++good_;
+  } else {
+    ++rejects_[reject];
+  }
+  return reject == Reject::kNone;
+}
+
+void StreamTable::take(std::string_view channel, std::int64_t arrived, Bytes message) {
+  const std::int64_t hash = hash_of(message);
+  if (hash == detection_t::getHash()) {
+    if (detection_t d; decoded(message, d)) take_detection(d, arrived);
+  } else if (hash == summary_t::getHash()) {
+    if (summary_t s; decoded(message, s)) take_summary(s);
+  } else if (hash == sample_t::getHash()) {
+    sample_t s{};
+    if (!decoded(message, s)) return;
+    Channel& c = channels_[printable(channel)];
+    c.newest.n = s.n;
+    c.newest.t = s.t;
+    c.newest.reference = s.reference;
+    std::copy_n(s.tau_ext_true, kMaxJoints, c.newest.tau_ext_true);
+    count(c, s.seq, arrived);
+  } else {
+    estimate_t e{};
+    if (!decoded(message, e)) return;
+    Channel& c = channels_[printable(channel)];
+    c.newest = e;
+    c.estimate = true;
+    count(c, e.seq, arrived);
+  }
+}
+
+void StreamTable::count(Channel& c, std::int64_t seq, std::int64_t arrived) {
+  ++c.count;
+  // one that is not next: lost ones, or a sender that was restarted
+  const std::int64_t lost = c.next_seq >= 0 ? std::max<std::int64_t>(seq - c.next_seq, 0) : 0;
+  c.lost += lost;
+  lost_ += lost;
+  c.next_seq = seq + 1;
+  c.arrivals.push_back(arrived);
+  while (c.arrivals.front() <= arrived - 1'000'000) c.arrivals.pop_front();
+}
+
+void StreamTable::take_detection(const detection_t& d, std::int64_t arrived) {
+  const std::string pair = printable(d.estimator) + "+" + printable(d.detector);
+  count(pairs_[pair], d.seq, arrived);
+  if (d.mark == 0) return;
+  events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
+                                pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
+}
+
+void StreamTable::take_summary(const summary_t& s) {
+  std::string line = printable(s.entry);
+  if (!s.error.empty()) line += "  FAILED: " + printable(s.error);
+  if (s.rmse_Nm >= 0) line += fmt::format("  rmse {:.4g} N m", s.rmse_Nm);
+  if (s.step_ns >= 0) line += fmt::format("  step {:.4g} ns", s.step_ns);
+  if (s.published > 0)
+    line += fmt::format("  {} messages, {} samples dropped", s.published, s.ring_drops);
+  events_.push_back(line);
+}
+
+std::vector<std::string> StreamTable::events() {
+  return std::exchange(events_, {});
+}
+
+std::int64_t StreamTable::rejected() const {
+  std::int64_t sum = 0;
+  for (const auto& [reason, count] : rejects_) sum += count;
+  return sum;
+}
+
+std::string StreamTable::format() const {
+  std::string out = fmt::format(
+      "{:<30} {:>7} {:>7} {:>5} {:>10} {:>10} {:>10} {:>10}  {:<10} {:>7}\n", "channel", "rate",
+      "lost", "joint", "tau_ext", "least", "largest", "reference", "status", "step");
+  out += fmt::format("{:<30} {:>7} {:>7} {:>5} {:>10} {:>10} {:>10} {:>10}  {:<10} {:>7}\n", "",
+                     "1/s", "", "", "N m", "N m", "N m", "N m", "", "us");
+  for (const auto& [name, c] : channels_) {
+    const estimate_t& e = c.newest;
+    for (int j = 0; j < e.n; ++j) {
+      out += j > 0 ? fmt::format("{:<30} {:>7} {:>7}", "", "", "")
+                   : fmt::format("{:<30} {:>7} {:>7}", name, c.arrivals.size(), c.lost);
+      out += fmt::format(" {:>5}", j + 1);
+      out += c.estimate ? fmt::format(" {:>10.3f} {:>10.3f} {:>10.3f}", e.tau_ext_hat[j],
+                                      e.tau_ext_hat_min[j], e.tau_ext_hat_max[j])
+                        : fmt::format(" {:>10} {:>10} {:>10}", "-", "-", "-");
+      out += e.reference == estimate_t::kNone ? fmt::format(" {:>10}", "-")
+                                              : fmt::format(" {:>10.3f}", e.tau_ext_true[j]);
+      if (j == 0 && c.estimate) {
+        out += fmt::format("  {:<10} {:>7.1f}", status_name(e.status), e.step_us);
+      }
+      out += "\n";
+    }
+  }
+  return out;
+}
+
+std::string StreamTable::totals() const {
+  std::string out = fmt::format("{} messages, {} lost, {} rejected", good_, lost_, rejected());
+  for (const auto& [reason, count] : rejects_)
+    out += fmt::format("; {} {}", count, describe(reason));
+  return out + "\n";
+}
+
+}  // namespace tauext

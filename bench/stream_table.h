@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What arrives from any tauext stream, as a table for a terminal.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lcmtypes/reading.h"
+
+namespace tauext {
+
+/// Takes messages as they come, checks them and keeps the newest of each channel.
+class StreamTable {
+ public:
+  /// @param arrived [us] on any clock that goes on
+  void take(std::string_view channel, std::int64_t arrived, Bytes message);
+
+  /// A row for each joint of each channel; rates are those of the last second.
+  std::string format() const;
+  /// "good, lost, rejected" of all channels, and why.
+  std::string totals() const;
+
+  /// Lines that are events: marks and summaries that came since the last call.
+  std::vector<std::string> events();
+
+  std::int64_t good() const { return good_; }
+  std::int64_t lost() const { return lost_; }
+  std::int64_t rejected() const;
+
+ private:
+  struct Channel {
+    std::int64_t count = 0, lost = 0, next_seq = -1;
+    std::deque<std::int64_t> arrivals;  // [us] of the last second
+    estimate_t newest{};                // a sample_t's fields, too
+    bool estimate = false;              // else samples alone
+  };
+
+  template <class Message>
+  bool decoded(Bytes message, Message& m);
+  void count(Channel& c, std::int64_t seq, std::int64_t arrived);
+  void take_detection(const detection_t& d, std::int64_t arrived);
+  void take_summary(const summary_t& s);
+
+  std::map<std::string, Channel, std::less<>> channels_;
+  std::map<std::string, Channel> pairs_;  // detections, by estimator and detector
+  std::map<Reject, std::int64_t> rejects_;
+  std::vector<std::string> events_;
+  std::int64_t good_ = 0, lost_ = 0;
+};
+
+}  // namespace tauext

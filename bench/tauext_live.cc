@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-live: estimates while it happens, and streams them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/cli.h"
+#include "bench/live_modes.h"
+
+int main(int argc, char** argv) {
+  using namespace tauext;
+  CLI::App app(
+      "Runs a scenario, a recorded log (--from) or a robot on LCM (--subscribe) through "
+      "estimators\n"
+      "in real time and streams what they say, or shows a stream (--listen). Opens no socket "
+      "without\n"
+      "--lcm, --subscribe or --listen. Ctrl-C ends it with a summary.\n\n"
+      "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
+      "tauext-live");
+  LiveOptions o;
+  bool list = false, listen = false;
+  app.add_option("--robot", o.robot, "robot (see --list), or an MJCF file of up to 7 joints")
+      ->type_name("R|FILE.xml");
+  app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
+  app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
+  app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
+      ->type_name("CHANNEL");
+  app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
+  app.add_option("--channel", o.channel, "with --from x.lcm: which of its channels");
+  app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
+  app.add_option("--estimator", o.estimators, "one or more, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--detector", o.detector, "detector behind each estimator");
+  app.add_option("--thresholds", o.thresholds,
+                 "the detectors' thresholds, from tauext-detect --calibrate")
+      ->type_name("FILE");
+  CLI::Option* const lcm =
+      app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
+          ->type_name("[URL]")
+          ->expected(0, 1);
+  app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
+      ->capture_default_str();
+  app.add_option("--speed", o.pace.speed, "simulated seconds in a second")->capture_default_str();
+  app.add_flag("--loop", o.pace.again, "begin again at the end");
+  app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")
+      ->capture_default_str();
+  add_recording_flags(app, o.sensors, o.model_error, o.recording);
+  for (const char* of_scenarios : {"--degrade", "--sensors", "--loadcell", "--model_error",
+                                   "--velocity_noise", "--seed", "--kp", "--kd"}) {
+    app.get_option(of_scenarios)->group("");
+  }
+  app.add_flag("--list", list, "list robots, scenarios, estimators and detectors, and stop");
+  app.footer(
+      "With --scenario: tauext-record's --sensors, --model_error, --degrade, --seed, --kp, --kd.");
+  return run_program(app, argc, argv, [&]() -> int {
+    if (list) {
+      fmt::print("{}", list_known());
+      return kGood;
+    }
+    o.stream = lcm->count() > 0;
+    check(o, listen);
+    if (listen) return run_listen(o);
+    return o.subscribe.empty() ? run_recorded(o) : run_subscribed(o);
+  });
+}

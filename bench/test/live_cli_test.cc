@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-live, and LCM in the other programs. Whatever sends does so in a network namespace of its own.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <string>
+
+#include "bench/test/programs.h"
+#include "lcmtypes/log.h"
+#include "lcmtypes/test/samples.h"
+
+namespace tauext::test {
+namespace {
+
+constexpr const char* kRun =
+    "tauext-live --robot wallmobot3 --scenario collision --estimator ekf,mo2,ndob ";
+
+class LivePrograms : public Programs {
+ protected:
+  // a script in a network of its own, with tauext's programs in the path
+  Outcome in_network(const std::string& script, bool route = true) const {
+    const std::string up =
+        route ? "ip link set lo up multicast on\nip route add 224.0.0.0/4 dev lo\n" : "";
+    write("script", "export PATH=" TAUEXT_BIN ":$PATH\n" + up + script);
+    return run_system("unshare -rn timeout 60 bash script");
+  }
+
+  bool forbidden() const { return std::system("unshare -rn true 2>/dev/null") != 0; }
+
+  // the number before a word
+  static std::int64_t number(const Outcome& o, const std::string& before) {
+    std::smatch m;
+    const std::regex pattern("([0-9]+) " + before);
+    return std::regex_search(o.text, m, pattern) ? std::stoll(m[1]) : -1;
+  }
+
+  void put_log(const std::string& name, LogBuffer& log) const {
+    write(name, std::string(log.bytes()));
+  }
+};
+
+#define SKIP_WITHOUT_NAMESPACE()                                          \
+  if (forbidden())                                                        \
+  GTEST_SKIP() << "no network namespace of our own here: unshare -rn is " \
+                  "forbidden"
+
+TEST_F(LivePrograms, PlaysAScenarioByTheClockAndSumsItUp) {
+  const Outcome o = run(std::string(kRun) + "--detector pan_tompkins --speed 20 --seed 3");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("wallmobot3/collision: 30000 samples in 1.5 s")) << o.text;
+  EXPECT_TRUE(o.says("stream     none; --lcm streams")) << o.text;
+  EXPECT_TRUE(std::regex_search(o.text, std::regex("\nekf +[0-9.]+ +[0-9.]+ .* 0 +1\n"))) << o.text;
+}
+
+TEST_F(LivePrograms, OpensNoSocketUnlessAsked) {
+  const std::string look = " --duration 1 & sleep 0.6; ls -l /proc/$!/fd | grep -c socket; wait";
+  const Outcome quiet = run(std::string(kRun) + look);
+  EXPECT_EQ(quiet.text.substr(0, 2), "0\n") << quiet.text;
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome streaming = in_network(std::string(kRun) + "--lcm" + look);
+  EXPECT_EQ(streaming.text.substr(0, 2), "1\n") << streaming.text;
+}
+
+TEST_F(LivePrograms, AListenerGetsEveryMessageOfOneKilohertz) {
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome o =
+      in_network("tauext-live --listen --duration 5 > heard & sleep 0.5\n" + std::string(kRun) +
+                 "--detector pan_tompkins --lcm --rate 0 --duration 3; wait; cat heard");
+  EXPECT_EQ(o.code, 0) << o.text;
+  // three estimators, an estimate and a detection each
+  EXPECT_TRUE(o.says("18000 messages published, 0 failed; 0 samples dropped")) << o.text;
+  EXPECT_TRUE(o.says("18003 messages, 0 lost, 0 rejected")) << o.text;
+  EXPECT_TRUE(o.says("TAUEXT_ESTIMATE_ndob")) << o.text;
+}
+
+TEST_F(LivePrograms, WithoutARouteTheLoopGoesOnAndTheRemedyIsTold) {
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome o = in_network(std::string(kRun) + "--lcm --duration 0.5", false);
+  EXPECT_EQ(o.code, 1) << o.text;
+  EXPECT_TRUE(o.says("streaming is off: no multicast route")) << o.text;
+  EXPECT_TRUE(o.says("sudo ip route add 224.0.0.0/4 dev lo")) << o.text;
+  EXPECT_TRUE(o.says("500 samples in 0.5 s")) << o.text;
+  const Outcome listen = in_network("tauext-live --listen", false);
+  EXPECT_EQ(listen.code, 2);
+  EXPECT_TRUE(listen.says("no multicast route")) << listen.text;
+}
+
+TEST_F(LivePrograms, ARouteThatGoesAwayIsToldOnceAndTheLoopGoesOn) {
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome o = in_network("(sleep 1; ip route del 224.0.0.0/4 dev lo) &\n" +
+                               std::string(kRun) + "--lcm --duration 2; wait");
+  EXPECT_TRUE(o.says("2000 samples in 2.0 s")) << o.text;
+  EXPECT_GT(number(o, "messages published"), 100) << o.text;
+  EXPECT_GT(number(o, "failed;"), 100) << o.text;
+  EXPECT_TRUE(o.says("fail (no route); the run goes on")) << o.text;
+  EXPECT_EQ(o.text.find("fail (no route)"), o.text.rfind("fail (no route)")) << o.text;
+}
+
+TEST_F(LivePrograms, AListenerThatIsKilledOrStoppedDoesNotMatter) {
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome o = in_network(
+      "tauext-live --listen --duration 9 > /dev/null & killed=$!\n"
+      "tauext-live --listen --duration 9 > /dev/null & stopped=$!\n"
+      "(sleep 1; kill -KILL $killed; kill -STOP $stopped) &\n" +
+      std::string(kRun) + "--lcm --rate 0 --duration 2; kill -KILL $stopped");
+  EXPECT_TRUE(o.says("6000 messages published, 0 failed; 0 samples dropped")) << o.text;
+}
+
+TEST_F(LivePrograms, ForgedAndForeignMessagesAreRejectedAndCounted) {
+  SKIP_WITHOUT_NAMESPACE();
+  LogBuffer log;
+  for (int k = 0; k < 50; ++k) {
+    auto forged = bytes_of(estimate());
+    forged[8 + 24 + 3] = std::byte{9};  // joints
+    const auto good = bytes_of(estimate()), foreign = tauext::write(reading(k), MessageType::kIiwa);
+    log.append("TAUEXT_ESTIMATE_x", 3000 * k, good);
+    log.append("TAUEXT_ESTIMATE_x", 3000 * k + 1000, forged);
+    log.append("TAUEXT_ESTIMATE_x", 3000 * k + 2000, foreign);
+    log.append("SOMETHING_ELSE", 3000 * k + 2500, foreign);
+  }
+  put_log("forged.lcm", log);
+  const Outcome o = in_network(
+      "(sleep 0.7; lcm-logplayer forged.lcm > /dev/null) &\ntauext-live --listen --duration 2; "
+      "wait");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(
+      o.says("50 messages, 0 lost, 100 rejected; 50 of another type; 50 with an impossible count"))
+      << o.text;
+}
+
+TEST_F(LivePrograms, EstimatesARobotOnTheAir) {
+  SKIP_WITHOUT_NAMESPACE();
+  for (const std::string type : {"iiwa", "panda", "tauext"}) {
+    const std::string channel = type == "iiwa"    ? "IIWA_STATUS"
+                                : type == "panda" ? "PANDA_STATUS"
+                                                  : "TAUEXT_SAMPLE";
+    const Outcome o = in_network(
+        "tauext-record --robot wallmobot3 --scenario collision --type " + type +
+        " --out robot.lcm 2> /dev/null\n"
+        "(sleep 0.7; lcm-logplayer --speed=20 robot.lcm > /dev/null) &\n"
+        "tauext-live --robot wallmobot3 --estimator mo1 --detector pan_tompkins --subscribe " +
+        channel + " --type " + type + " --lcm --duration 3.5; wait");
+    EXPECT_EQ(o.code, 0) << o.text;
+    EXPECT_TRUE(o.says("input      30000 used, 0 lost, 0 late, 0 repeated, 0 rejected; 0 restarts"))
+        << o.text;
+    EXPECT_TRUE(std::regex_search(o.text, std::regex("\nmo1 +0?.* 0 +1\n"))) << o.text;
+    EXPECT_GT(number(o, "messages published"), 400) << o.text;
+  }
+}
+
+TEST_F(LivePrograms, WhatANetworkDoesToMessagesIsHandledAndCounted) {
+  SKIP_WITHOUT_NAMESPACE();
+  LogBuffer log;
+  std::int64_t time = 0;
+  const auto add = [&](std::int64_t k, int n = 3) {
+    log.append("ARM", time += 1000, tauext::write(reading(k, n), MessageType::kTauext));
+  };
+  for (int k = 0; k < 500; ++k) {
+    if (k % 100 == 50) continue;      // 5 lost
+    add(k % 100 == 60 ? k - 20 : k);  // 5 late instead of their own: 5 more lost
+    if (k % 100 == 70) add(k);        // 5 repeated
+    if (k % 100 == 80) add(k, 2);     // 5 of another arm
+  }
+  put_log("bad.lcm", log);
+  const Outcome o = in_network(
+      "(sleep 0.7; lcm-logplayer bad.lcm > /dev/null) &\n"
+      "tauext-live --robot wallmobot3 --estimator mo1 --subscribe ARM --duration 2; wait");
+  EXPECT_EQ(o.code, 0) << o.text;
+  // a late one takes one from the lost, as far as anybody can know
+  EXPECT_TRUE(o.says("input      490 used, 5 lost, 5 late, 5 repeated, 5 rejected; 0 restarts"))
+      << o.text;
+}
+
+TEST_F(LivePrograms, ARobotFromAFileEstimatesWhatTheClosedFormDoes) {
+  ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario in_motion --out log.lcm").code, 0);
+  const std::string rest = " --from log.lcm --estimator mo1,dkf,eao --speed 100";
+  const Outcome closed = run("tauext-live --robot wallmobot3" + rest);
+  const Outcome file = run("tauext-live --robot " TAUEXT_MJCF "/wallmobot3.xml" + rest);
+  ASSERT_EQ(file.code, 0) << file.text;
+  for (const char* e : {"mo1", "dkf", "eao"}) {
+    const std::regex rmse(std::string("\n") + e + " +([0-9.]+) +([0-9.]+) ");
+    std::smatch a, b;
+    ASSERT_TRUE(std::regex_search(closed.text, a, rmse)) << closed.text;
+    ASSERT_TRUE(std::regex_search(file.text, b, rmse)) << file.text;
+    EXPECT_EQ(a[1], b[1]) << e;  // three decimals of N m
+    EXPECT_EQ(a[2], b[2]) << e;
+  }
+}
+
+TEST_F(LivePrograms, TheBenchmarkIsOnTheAirAsEntriesFinish) {
+  SKIP_WITHOUT_NAMESPACE();
+  const Outcome o = in_network(
+      "tauext-live --listen --duration 6 > heard & sleep 0.7\n"
+      "tauext-bench --benchmark_filter='testbed1/hold/mo.$' --lcm --benchmark_min_time=0.01 > "
+      "/dev/null; wait; cat heard");
+  EXPECT_TRUE(o.says("testbed1/hold/mo1  rmse ")) << o.text;
+  EXPECT_TRUE(o.says("testbed1/hold/mo3  rmse ")) << o.text;
+  EXPECT_TRUE(o.says("3 messages, 0 lost, 0 rejected")) << o.text;
+}
+
+TEST_F(LivePrograms, InterruptedItSumsUp) {
+  const Outcome o = run_system("timeout --preserve-status -s INT 1 " TAUEXT_BIN "/" +
+                               std::string(kRun) + "--loop");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("loop       late by")) << o.text;
+}
+
+TEST_F(LivePrograms, LogsRepeatByteByByteAndADiskThatIsFullIsAnError) {
+  const std::string log =
+      "tauext-bench --benchmark_filter='testbed1/collision/mo1.contact_classifier' "
+      "--benchmark_min_time=0.01 --lcm-log ";
+  EXPECT_EQ(run(log + "a").code, 0);
+  EXPECT_EQ(run(log + "b").code, 0);
+  const std::string name = "/testbed1_collision_mo1+contact_classifier.lcm";
+  EXPECT_GT(content("a" + name).size(), 1'000'000u);
+  EXPECT_TRUE(content("a" + name) == content("b" + name));
+  fs::create_symlink("/dev/full", folder_ / "full.lcm");
+  const Outcome o = run("tauext-record --robot testbed1 --scenario hold --out full.lcm");
+  EXPECT_EQ(o.code, 2) << o.text;
+  EXPECT_TRUE(o.says("No space left on device")) << o.text;
+}
+
+TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
+  const auto refuses = [&](const std::string& flags, const std::string& why) {
+    const Outcome o = run("tauext-live " + flags);
+    EXPECT_EQ(o.code, 2) << flags << "\n" << o.text;
+    EXPECT_TRUE(o.says(why)) << flags << "\n" << o.text;
+  };
+  refuses("", "one of --scenario, --from, --subscribe and --listen is required");
+  refuses("--robot wallmobot3 --scenario step --from x.csv --estimator ekf", "one of");
+  refuses("--robot wallmobot3 --scenario step", "--robot and --estimator are required");
+  refuses("--robot wallmobot9 --scenario step --estimator ekf", "unknown robot 'wallmobot9'");
+  refuses("--robot wallmobot3 --scenario stepp --estimator ekf", "unknown scenario 'stepp'");
+  refuses("--robot wallmobot3 --scenario step --estimator ekff", "unknown estimator 'ekff'");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --speed 0", "--speed 0");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --rate -1", "--rate -1");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm http://x",
+          "an LCM URL begins with");
+  refuses("--robot wallmobot3 --subscribe A --type ur5 --estimator ekf",
+          "unknown type of message 'ur5'");
+  refuses("--robot wallmobot3 --subscribe TAUEXT_ESTIMATE_ekf --estimator ekf", "would come back");
+  refuses("--robot wallmobot3 --from nothing.lcm --estimator ekf",
+          "nothing.lcm: cannot read: No such file");
+  refuses("--robot nothing.xml --subscribe A --estimator mo1", "nothing.xml");
+  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --scenario step --estimator mo1",
+          "has no scenarios");
+  refuses("--listen --robot wallmobot3", "--listen shows streams");
+  refuses("--listen --duration -1", "--duration -1");
+  write("junk.lcm", "t,q1\n1,2\n");
+  refuses("--robot wallmobot3 --from junk.lcm --estimator ekf", "junk.lcm: no LCM log");
+}
+
+}  // namespace
+}  // namespace tauext::test

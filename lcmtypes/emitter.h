@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// From samples to messages: fewer messages than samples, with every peak held.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/reading.h"
+
+namespace tauext {
+
+/// What an estimator, and the detector behind it, said of one sample. Plain: it crosses threads.
+struct LiveSample {
+  Reading reading;
+  Joints tau_ext_hat{};     ///< [N m] sign of (3)
+  double step_us = 0;       ///< [us] what the update took
+  double score = 0;         ///< [1] of the detector
+  int stream = 0;           ///< which of the emitter's streams
+  std::int8_t status = 0;   ///< of estimate_t
+  std::int8_t contact = 0;  ///< of detection_t
+  bool mark = false;
+};
+
+/// An estimator's messages: estimate_t on TAUEXT_ESTIMATE_<estimator>, and detection_t on TAUEXT_DETECTION if
+/// there is a detector.
+struct Stream {
+  std::string estimator;
+  std::string detector;  ///< "" for none
+};
+
+inline constexpr const char* kDetectionChannel = "TAUEXT_DETECTION";
+inline constexpr const char* kSummaryChannel = "TAUEXT_SUMMARY";
+inline constexpr const char* kSampleChannel = "TAUEXT_SAMPLE";
+inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";  ///< and the estimator's name
+
+/// Takes a message's channel, time [us] and bytes; false if it could not be sent.
+using Sink = std::function<bool(const char* channel, std::int64_t utime, Bytes message)>;
+
+/// Turns samples into messages; at most `rate` of them a second of sample time and channel, each with minima,
+/// maxima, marks and scores held over the samples since the one before. Allocates nothing after construction.
+class Emitter {
+ public:
+  struct Counts {
+    std::int64_t sent = 0, failed = 0;  ///< messages
+  };
+
+  /// @param rate [1/s]; 0: a message for every sample
+  /// @throws std::invalid_argument for a rate below 0 or not finite, or a channel longer than LCM's 63 characters
+  Emitter(const std::vector<Stream>& streams, double rate, Sink sink);
+
+  void add(const LiveSample& sample);
+  /// Sends what is held back.
+  void flush();
+
+  Counts counts() const { return counts_; }
+  /// Of one stream, its detections included.
+  const Counts& counts(int stream) const { return channels_[stream].counts; }
+
+ private:
+  struct Channel {
+    std::string name;
+    estimate_t estimate{};
+    detection_t detection{};
+    std::int64_t slot = 0;  // of the last message
+    bool started = false;
+    Counts counts;
+  };
+
+  void hold(Channel& c, const LiveSample& s);
+  void emit(Channel& c);
+  template <class Message>
+  void send(Channel& c, const char* name, Message& m);
+
+  double rate_;
+  Sink sink_;
+  std::vector<Channel> channels_;
+  std::vector<std::byte> buffer_;
+  std::int64_t first_utime_ = 0;
+  bool any_ = false;
+  Counts counts_;
+};
+
+}  // namespace tauext

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The way out of a control loop: the loop pushes into a ring, a thread of ours does the rest.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/emitter.h"
+#include "lcmtypes/transport.h"
+
+namespace tauext {
+
+/// Publishes what one thread, the loop, pushes. The loop never waits: a push copies into a lock-free ring,
+/// without a system call or an allocation; where the ring is full the sample is dropped and counted.
+class LiveStream {
+ public:
+  struct Counts {
+    std::int64_t published = 0, failed = 0;  ///< messages
+    std::int64_t dropped = 0;                ///< samples that did not fit into the ring
+  };
+
+  /// @param transport used by no other thread until finish(); null or not good: messages are counted as failed
+  /// @param capacity samples that the ring holds
+  LiveStream(Transport* transport, const std::vector<Stream>& streams, double rate,
+             std::size_t capacity = 8192);
+  ~LiveStream();
+  LiveStream(const LiveStream&) = delete;
+  LiveStream& operator=(const LiveStream&) = delete;
+
+  /// From the loop's thread alone. False: dropped.
+  bool push(const LiveSample& sample) noexcept;
+
+  /// From any thread.
+  Counts counts() const noexcept;
+  /// Messages of one stream, once finish() is through.
+  Emitter::Counts counts(int stream) const;
+
+  /// Sends what is left and ends the thread. Gives up after `patience` seconds: a tcpq:// server that does not
+  /// answer holds a message for longer. False then: the transport must not be used any more.
+  bool finish(double patience = 2);
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;  // outlives us where the thread hangs
+};
+
+}  // namespace tauext

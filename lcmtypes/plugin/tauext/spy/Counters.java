@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+package tauext.spy;
+
+/** What became of the messages since the window was opened. All in [1]. */
+final class Counters implements Cloneable {
+  long messages;   // that are well-formed
+  long lost;       // that never came: jumps of seq
+  long malformed;  // that are no estimate or detection, or have a wrong n; they are ignored
+  long restarts;   // of the stream: utime or seq went back, or n changed
+  long failed;     // estimates whose status says that a sample went wrong
+
+  byte status;          // of the last message
+  byte failure;         // the last status that was a failure
+  double failure_t;     // [s] when it was
+  double step_us;       // [us] of the last message; 0 if it was not live
+
+  @Override
+  public Counters clone() {
+    try {
+      return (Counters) super.clone();
+    } catch (CloneNotSupportedException e) {
+      throw new AssertionError(e);
+    }
+  }
+}

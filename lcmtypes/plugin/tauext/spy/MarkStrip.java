@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+package tauext.spy;
+
+import java.awt.Graphics2D;
+
+/** Above the charts: what each mark says. Labels that would overlap go into a row of their own. */
+final class MarkStrip extends Strip {
+  private static final int kRows = 3;
+  private static final int kRow = 15;  // [pixels]
+
+  MarkStrip() {
+    super(kRows * kRow + 3);
+  }
+
+  @Override
+  void paint(Graphics2D g) {
+    int[] end = new int[kRows];
+    g.setColor(kMark);
+    for (Mark m : snapshot.marks) {
+      String label = m.label(snapshot.base);
+      int width = g.getFontMetrics().stringWidth(label);
+      int x = x(m.t());
+      int left = Math.min(x + 5, getWidth() - width - 4);
+      int row = free(end, left);
+      if (row >= 0) {
+        end[row] = left + width + 12;
+        int y = getHeight() - 4 - row * kRow;
+        g.drawString(label, left, y);
+        g.fillRect(x, y - 9, 2, getHeight());
+      }
+    }
+  }
+
+  /** The lowest row that is free from x on; -1 if none is. */
+  private static int free(int[] end, int x) {
+    for (int row = 0; row < end.length; ++row) {
+      if (end[row] <= x) {
+        return row;
+      }
+    }
+    return -1;
+  }
+}

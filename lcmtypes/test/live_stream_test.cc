@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lcmtypes/live_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/allocations.h"
+#include "lcmtypes/listener.h"
+#include "lcmtypes/test/samples.h"
+
+namespace tauext::test {
+namespace {
+
+TEST(LiveStreamTest, ASubscriberGetsEveryMessageInOrder) {
+  Transport transport("memq://");
+  ASSERT_TRUE(transport.good());
+  std::map<std::string, std::vector<std::int64_t>> seqs;
+  Listener listener(transport.handle(), "TAUEXT_.*",
+                    [&](std::string_view channel, std::int64_t, Bytes m) {
+                      estimate_t e{};
+                      ASSERT_EQ(decode(m, e), Reject::kNone);
+                      seqs[std::string(channel)].push_back(e.seq);
+                    });
+  LiveStream stream(&transport, {{"ekf", ""}, {"mo1", ""}}, 0);
+  for (int k = 0; k < 1000; ++k) {
+    EXPECT_TRUE(stream.push(live_sample(k, 0)));
+    EXPECT_TRUE(stream.push(live_sample(k, 1)));
+  }
+  EXPECT_TRUE(stream.finish());
+  while (listener.wait(0)) {
+  }
+  EXPECT_EQ(stream.counts().published, 2000);
+  EXPECT_EQ(stream.counts().dropped, 0);
+  for (const char* channel : {"TAUEXT_ESTIMATE_ekf", "TAUEXT_ESTIMATE_mo1"}) {
+    ASSERT_EQ(seqs[channel].size(), 1000u);
+    for (int k = 0; k < 1000; ++k) ASSERT_EQ(seqs[channel][k], k);
+  }
+}
+
+TEST(LiveStreamTest, AFullRingDropsCountsAndNeverWaits) {
+  Transport transport("memq://");
+  LiveStream stream(&transport, {{"ekf", ""}}, 0, 16);
+  int accepted = 0;
+  for (int k = 0; k < 20000; ++k) accepted += stream.push(live_sample(k));
+  EXPECT_TRUE(stream.finish());
+  EXPECT_EQ(stream.counts().dropped, 20000 - accepted);
+  EXPECT_EQ(stream.counts().published, accepted);
+  EXPECT_GT(stream.counts().dropped, 0);
+}
+
+TEST(LiveStreamTest, WithoutATransportMessagesFailAndTheLoopGoesOn) {
+  LiveStream stream(nullptr, {{"ekf", ""}}, 200);
+  for (int k = 0; k < 1000; ++k) EXPECT_TRUE(stream.push(live_sample(k)));
+  EXPECT_TRUE(stream.finish());
+  EXPECT_EQ(stream.counts().published, 0);
+  EXPECT_NEAR(static_cast<double>(stream.counts().failed), 200, 2);
+}
+
+TEST(LiveStreamTest, APushAllocatesNothing) {
+  if (!allocations_are_counted()) GTEST_SKIP() << "sanitizers bring their own malloc";
+  LiveStream stream(nullptr, {{"ekf", "pan_tompkins"}}, 200, 1 << 14);
+  const LiveSample s = live_sample(1);
+  EXPECT_EQ(allocations_of([&] {
+              for (int k = 0; k < 5000; ++k) stream.push(s);
+            }),
+            0u);
+}
+
+TEST(TransportTest, TroublesHaveARemedyAndNonsenseIsRefused) {
+  for (const char* url :
+       {"nonsense", "http://localhost", "udpm://1.2.3.4:7667", "udpm://239.1.1.1:0",
+        "udpm://239.1.1.1:99999", "udpm://239.1.1.1:x", "udpm://239.1.1:7667"}) {
+    EXPECT_THROW(Transport{url}, std::invalid_argument) << url;
+  }
+  EXPECT_EQ(lcm_url("memq://"), "memq://");
+  EXPECT_EQ(trouble_with("memq://"), "");
+}
+
+TEST(TransportTest, TheTestsOwnDefaultStaysInThisProcess) {
+  EXPECT_EQ(lcm_url(""), "memq://");  // LCM_DEFAULT_URL of this test
+}
+
+TEST(TransportTest, AServerThatIsNotThereIsToldAndNothingWaits) {
+  Transport transport("tcpq://127.0.0.1:1");
+  const LiveSample s = live_sample(1);
+  LiveStream stream(&transport, {{"ekf", ""}}, 0);
+  stream.push(s);
+  EXPECT_TRUE(stream.finish(20));
+  EXPECT_EQ(stream.counts().published, 0);
+}
+
+}  // namespace
+}  // namespace tauext::test

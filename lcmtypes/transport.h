@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Messages into LCM's network. Nothing here is made unless somebody asked for a URL.
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "lcmtypes/wire.h"
+
+namespace tauext {
+
+/// The URL that stands for "": $LCM_DEFAULT_URL, else LCM's own group on this machine alone (ttl 0).
+std::string lcm_url(const std::string& url);
+
+/// Why nothing could be sent to or received from the URL: no multicast route, with the commands that add
+/// one. "" if there is no reason to think so. Opens a socket and sends nothing.
+std::string trouble_with(const std::string& url);
+
+using LcmHandle = std::unique_ptr<lcm_t, decltype(&lcm_destroy)>;
+
+/// LCM on that URL; null, and why, if that cannot be.
+LcmHandle open_lcm(const std::string& url, std::string& why);
+
+/// Publishes messages that are already encoded. Safe from one thread.
+class Transport {
+ public:
+  /// Never throws for a network that is not there: see good().
+  /// @throws std::invalid_argument for a URL that LCM does not know
+  explicit Transport(const std::string& url);
+
+  const std::string& url() const { return url_; }
+  bool good() const { return lcm_ != nullptr; }
+  /// Why it is not good, in one line, and what to do.
+  const std::string& trouble() const { return trouble_; }
+
+  /// False if it could not be sent. A slow subscriber never makes it wait, except on tcpq://.
+  bool publish(const char* channel, Bytes message) noexcept;
+
+  lcm_t* handle() const { return lcm_.get(); }
+
+ private:
+  std::string url_, trouble_;
+  LcmHandle lcm_;
+};
+
+}  // namespace tauext

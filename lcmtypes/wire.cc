@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lcmtypes/wire.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace tauext {
+namespace {
+
+// walks over a message without believing it
+class Cursor {
+ public:
+  explicit Cursor(Bytes rest) : rest_(rest) {}
+
+  std::uint64_t big_endian(std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (const std::byte b : take(bytes)) value = value << 8 | std::to_integer<std::uint64_t>(b);
+    return value;
+  }
+  std::int32_t int32() { return static_cast<std::int32_t>(big_endian(4)); }
+  void skip(std::size_t bytes) { take(bytes); }
+
+  // a count that the message claims
+  std::int32_t count(std::int32_t least, std::int32_t most) {
+    const std::int32_t n = int32();
+    if (reject_ == Reject::kNone && (n < least || n > most)) reject_ = Reject::kWrongCount;
+    return reject_ == Reject::kNone ? n : 0;
+  }
+  void text() {  // its length counts a final 0
+    const Bytes t = take(static_cast<std::size_t>(count(1, kMaxText)));
+    // and that is its only one
+    if (reject_ == Reject::kNone && std::find(t.begin(), t.end(), std::byte{0}) != t.end() - 1) {
+      reject_ = Reject::kWrongCount;
+    }
+  }
+  Reject finish() {
+    if (reject_ == Reject::kNone && !rest_.empty()) reject_ = Reject::kWrongSize;
+    return reject_;
+  }
+
+ private:
+  Bytes take(std::size_t bytes) {
+    if (bytes > rest_.size()) reject_ = reject_ == Reject::kNone ? Reject::kWrongSize : reject_;
+    if (reject_ != Reject::kNone) return {};
+    const Bytes taken = rest_.first(bytes);
+    rest_ = rest_.subspan(bytes);
+    return taken;
+  }
+
+  Bytes rest_;
+  Reject reject_ = Reject::kNone;
+};
+
+// what the body must look like, type by type
+
+void walk(Cursor& c, const sample_t&) {
+  c.skip(3 * 8);
+  c.count(1, kMaxJoints);
+  c.skip(2 + 4 * kMaxJoints * 8);
+}
+
+void walk(Cursor& c, const estimate_t&) {
+  c.skip(3 * 8);
+  c.count(1, kMaxJoints);
+  c.skip(4 + 2 + (9 * kMaxJoints + 1) * 8);
+}
+
+void walk(Cursor& c, const detection_t&) {
+  c.skip(2 * 8 + 4 + 1 + 8 + 2 + 8);
+  c.text();
+  c.text();
+}
+
+void walk(Cursor& c, const summary_t&) {
+  c.skip(8);
+  for (int i = 0; i < 3; ++i) c.text();
+  c.skip(8 * 8);
+  const int n = c.count(0, kMaxMetrics);
+  for (int i = 0; i < n; ++i) c.text();
+  c.skip(static_cast<std::size_t>(n) * 8);
+}
+
+void walk(Cursor& c, const iiwa_status_t&) {
+  c.skip(8);
+  c.skip(static_cast<std::size_t>(c.count(1, kMaxJoints)) * 7 * 8);
+}
+
+void walk(Cursor& c, const panda_status_t&) {
+  c.skip(8);
+  c.skip(static_cast<std::size_t>(c.count(1, kMaxJoints)) * 8 * 8);
+  c.skip(8 + 1 + 8 + 3);
+}
+
+}  // namespace
+
+const char* describe(Reject reject) noexcept {
+  switch (reject) {
+    case Reject::kNone:
+      return "good";
+    case Reject::kForeign:
+      return "of another type";
+    case Reject::kWrongSize:
+      return "of a wrong size";
+    case Reject::kWrongCount:
+      return "with an impossible count or length";
+  }
+  return "?";
+}
+
+std::int64_t hash_of(Bytes message) noexcept {
+  return message.size() < 8 ? 0 : static_cast<std::int64_t>(Cursor(message).big_endian(8));
+}
+
+template <class Message>
+Reject decode(Bytes message, Message& out) {
+  if (message.size() < 8 || hash_of(message) != Message::getHash()) return Reject::kForeign;
+  Cursor c(message.subspan(8));
+  walk(c, out);
+  if (const Reject reject = c.finish(); reject != Reject::kNone) return reject;
+  const int size = static_cast<int>(message.size());
+  return out.decode(message.data(), 0, size) == size ? Reject::kNone : Reject::kWrongSize;
+}
+
+template <class Message>
+std::size_t encode(const Message& message, std::span<std::byte> to) noexcept {
+  const int size = message.encode(to.data(), 0, static_cast<int>(to.size()));
+  return static_cast<std::size_t>(std::max(size, 0));
+}
+
+// lcm-gen declares constants without defining them: whoever takes a reference to one needs it here
+const std::int8_t sample_t::kNone;
+const std::int8_t sample_t::kTruth;
+const std::int8_t sample_t::kSender;
+const std::int8_t estimate_t::kNone;
+const std::int8_t estimate_t::kTruth;
+const std::int8_t estimate_t::kSender;
+const std::int8_t estimate_t::kOk;
+const std::int8_t estimate_t::kStarted;
+const std::int8_t estimate_t::kBadMeasurement;
+const std::int8_t estimate_t::kSingularInertia;
+const std::int8_t estimate_t::kDiverged;
+const std::int8_t detection_t::kNone;
+const std::int8_t detection_t::kIntentional;
+const std::int8_t detection_t::kCollision;
+const std::int8_t detection_t::kClamping;
+const std::int8_t panda_status_t::kOther;
+const std::int8_t panda_status_t::kIdle;
+const std::int8_t panda_status_t::kMove;
+const std::int8_t panda_status_t::kGuiding;
+const std::int8_t panda_status_t::kReflex;
+const std::int8_t panda_status_t::kUserStopped;
+const std::int8_t panda_status_t::kAutomaticErrorRecovery;
+
+#define TAUEXT_WIRE(Message)                        \
+  template Reject decode<Message>(Bytes, Message&); \
+  template std::size_t encode<Message>(const Message&, std::span<std::byte>) noexcept;
+TAUEXT_WIRE(sample_t)
+TAUEXT_WIRE(estimate_t)
+TAUEXT_WIRE(detection_t)
+TAUEXT_WIRE(summary_t)
+TAUEXT_WIRE(iiwa_status_t)
+TAUEXT_WIRE(panda_status_t)
+#undef TAUEXT_WIRE
+
+}  // namespace tauext
