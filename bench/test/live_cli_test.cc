@@ -2,7 +2,11 @@
 // tauext-live, and LCM in the other programs. Whatever sends does so in a network namespace of its own.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <numeric>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "bench/test/programs.h"
@@ -218,6 +222,79 @@ TEST_F(LivePrograms, LogsRepeatByteByByteAndADiskThatIsFullIsAnError) {
   const Outcome o = run("tauext-record --robot testbed1 --scenario hold --out full.lcm");
   EXPECT_EQ(o.code, 2) << o.text;
   EXPECT_TRUE(o.says("No space left on device")) << o.text;
+}
+
+// the sum of all doubles of a message, which is what DecodeLog.java prints
+template <std::size_t N>
+double sum(const double (&values)[N]) {
+  return std::accumulate(values, values + N, 0.0);
+}
+double sum(const sample_t& m) {
+  return m.t + sum(m.q) + sum(m.qd) + sum(m.tau) + sum(m.tau_ext_true);
+}
+double sum(const estimate_t& m) {
+  return m.t + sum(m.q) + sum(m.qd) + sum(m.tau) + sum(m.tau_ext_true) + sum(m.tau_ext_hat) +
+         sum(m.tau_ext_true_min) + sum(m.tau_ext_true_max) + sum(m.tau_ext_hat_min) +
+         sum(m.tau_ext_hat_max) + m.step_us;
+}
+double sum(const detection_t& m) {
+  return m.score;
+}
+double sum(const summary_t& m) {
+  return m.rmse_Nm + m.step_ns + std::accumulate(m.value.begin(), m.value.end(), 0.0);
+}
+
+struct Decoded {
+  std::string type;
+  std::int64_t count = 0, first = 0, last = 0;
+  double doubles = 0;
+
+  template <class Message>
+  void add(Bytes bytes, const char* name) {
+    Message m{};
+    ASSERT_EQ(decode(bytes, m), Reject::kNone);
+    type = name;
+    if (count++ == 0) first = m.utime;
+    last = m.utime;
+    doubles += sum(m);
+  }
+};
+
+TEST_F(LivePrograms, LcmSpyDecodesAnEntrysLogAsWeDo) {
+#ifndef TAUEXT_DECODE_LOG
+  GTEST_SKIP() << "no Java at build time: default-jdk-headless, liblcm-java";
+#else
+  ASSERT_EQ(run("tauext-bench --benchmark_filter='testbed1/collision/mo1.contact_classifier' "
+                "--benchmark_min_time=0.01 --lcm-log .")
+                .code,
+            0);
+  const std::string log = "testbed1_collision_mo1+contact_classifier.lcm";
+  std::map<std::string, Decoded> expected;
+  read_log((folder_ / log).string(), [&](const LogEvent& e) {
+    Decoded& d = expected[std::string(e.channel)];
+    if (e.channel == kSampleChannel) d.add<sample_t>(e.message, "tauext.sample_t");
+    if (e.channel == kDetectionChannel) d.add<detection_t>(e.message, "tauext.detection_t");
+    if (e.channel == kSummaryChannel) d.add<summary_t>(e.message, "tauext.summary_t");
+    if (e.channel.starts_with(kEstimateChannel)) d.add<estimate_t>(e.message, "tauext.estimate_t");
+  });
+  const Outcome java = run_system(TAUEXT_DECODE_LOG " " + log);
+  ASSERT_EQ(java.code, 0) << java.text;
+  std::istringstream lines(java.text);
+  std::size_t channels = 0;
+  Decoded got;
+  for (std::string name;
+       lines >> name >> got.type >> got.count >> got.first >> got.last >> got.doubles;) {
+    ASSERT_TRUE(expected.contains(name)) << java.text;
+    const Decoded& e = expected[name];
+    EXPECT_EQ(got.type, e.type);
+    EXPECT_EQ(got.count, e.count);
+    EXPECT_EQ(got.first, e.first);
+    EXPECT_EQ(got.last, e.last);
+    EXPECT_NEAR(got.doubles, e.doubles, 1e-9 * (1 + std::abs(e.doubles))) << name;
+    ++channels;
+  }
+  EXPECT_EQ(channels, 4u) << java.text;
+#endif
 }
 
 TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
