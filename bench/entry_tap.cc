@@ -54,7 +54,7 @@ void EntryTap::log(const Entry& entry, const Suite::Run& run, const Score& score
 void EntryTap::publish(const Entry& entry, const Score& score) {
   if (!outlet_) return;
   summary_t m = summary_of(entry, score);
-  m.program = "tauext-bench";
+  m.program = "tauext-bench " TAUEXT_VERSION;
   m.utime = std::chrono::duration_cast<std::chrono::microseconds>(
                 std::chrono::system_clock::now().time_since_epoch())
                 .count();

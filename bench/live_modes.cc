@@ -210,10 +210,16 @@ int run_subscribed(const LiveOptions& o) {
   LiveReport report;
   report.subscribed = true;
   Listener listener(o.url, o.subscribe, [&](std::string_view channel, std::int64_t, Bytes message) {
+    if (channel != o.subscribe) return;  // the name is a regular expression to LCM
     Reading reading;
-    if (channel != o.subscribe || read(message, type, reading) != Reject::kNone ||
-        reading.n != r.dof) {
-      ++report.rejected;
+    const Reject reject = read(message, type, reading);
+    if (reject != Reject::kNone || reading.n != r.dof) {
+      if (report.rejected++ > 0) return;
+      const std::string why = reject == Reject::kNone ? fmt::format("of {} joints, and {} has {}",
+                                                                    reading.n, r.name, r.dof)
+                                                      : describe(reject);
+      fmt::print(stderr, "\r\033[K{}: a message {}; the first that was rejected\n", o.subscribe,
+                 why);
       return;
     }
     const Arrival arrival = arrivals.take(reading);

@@ -69,7 +69,7 @@ std::vector<summary_t> summaries_of(const LiveReport& r, const LiveEstimation& e
     m.utime = std::chrono::duration_cast<std::chrono::microseconds>(
                   std::chrono::system_clock::now().time_since_epoch())
                   .count();
-    m.program = "tauext-live";
+    m.program = "tauext-live " TAUEXT_VERSION;
     m.entry = r.title + "/" + e.name(i) + (detector.empty() ? "" : "+" + detector);
     m.rmse_Nm = f.compared > 0 ? f.rmse() : -1;
     m.step_ns = f.step_ns.quantile(0.5);

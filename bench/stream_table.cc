@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lcmtypes/arrivals.h"
+
 namespace tauext {
 namespace {
 
@@ -66,10 +68,12 @@ void StreamTable::take(std::string_view channel, std::int64_t arrived, Bytes mes
 
 void StreamTable::count(Channel& c, std::int64_t seq, std::int64_t arrived) {
   ++c.count;
-  // one that is not next: lost ones, or a sender that was restarted
-  const std::int64_t lost = c.next_seq >= 0 ? std::max<std::int64_t>(seq - c.next_seq, 0) : 0;
-  c.lost += lost;
-  lost_ += lost;
+  // one that is not next: lost ones, or another sender
+  const std::int64_t jump = c.next_seq >= 0 ? seq - c.next_seq : 0;
+  if (jump > 0 && jump <= Arrivals::kLargestLoss) {
+    c.lost += jump;
+    lost_ += jump;
+  }
   c.next_seq = seq + 1;
   c.arrivals.push_back(arrived);
   while (c.arrivals.front() <= arrived - 1'000'000) c.arrivals.pop_front();

@@ -37,14 +37,18 @@ Arrival Arrivals::accept(const Reading& r, Arrival as) noexcept {
 
 void Arrivals::count_lost(const Reading& r) noexcept {
   if (r.seq >= 0 && newest_seq_ >= 0) {
-    counts_.lost += std::max<std::int64_t>(r.seq - newest_seq_ - 1, 0);
+    add_lost(r.seq - newest_seq_ - 1);
     return;
   }
   const std::int64_t step = r.utime - newest_;
   if (periods_known_ >= 5) {
-    counts_.lost += std::max<std::int64_t>((step + period() / 2) / period() - 1, 0);
+    add_lost((step + period() / 2) / period() - 1);
   }
   periods_[periods_known_++ % periods_.size()] = step;
+}
+
+void Arrivals::add_lost(std::int64_t messages) noexcept {
+  if (messages > 0 && messages <= kLargestLoss) counts_.lost += messages;
 }
 
 std::int64_t Arrivals::period() const noexcept {

@@ -24,6 +24,8 @@ enum class Arrival : std::uint8_t {
 class Arrivals {
  public:
   static constexpr int kPatience = 20;  ///< readings: 20 ms at 1 kHz
+  /// Messages: a larger jump is another sender, or one that was away, and no loss.
+  static constexpr std::int64_t kLargestLoss = 1'000'000;
 
   struct Counts {
     std::int64_t used = 0;  ///< given to the estimator
@@ -39,6 +41,7 @@ class Arrivals {
  private:
   Arrival accept(const Reading& r, Arrival as) noexcept;
   void count_lost(const Reading& r) noexcept;
+  void add_lost(std::int64_t messages) noexcept;
   std::int64_t period() const noexcept;
 
   Counts counts_;

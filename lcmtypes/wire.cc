@@ -20,6 +20,12 @@ class Cursor {
   std::int32_t int32() { return static_cast<std::int32_t>(big_endian(4)); }
   void skip(std::size_t bytes) { take(bytes); }
 
+  // whose differences and sums cannot overflow
+  void time() {
+    constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
+    if (big_endian(8) > kLargest && reject_ == Reject::kNone) reject_ = Reject::kWrongTime;
+  }
+
   // a count that the message claims
   std::int32_t count(std::int32_t least, std::int32_t most) {
     const std::int32_t n = int32();
@@ -54,25 +60,33 @@ class Cursor {
 // what the body must look like, type by type
 
 void walk(Cursor& c, const sample_t&) {
-  c.skip(3 * 8);
+  c.time();
+  c.time();  // seq
+  c.skip(8);
   c.count(1, kMaxJoints);
   c.skip(2 + 4 * kMaxJoints * 8);
 }
 
 void walk(Cursor& c, const estimate_t&) {
-  c.skip(3 * 8);
+  c.time();
+  c.time();  // seq
+  c.skip(8);
   c.count(1, kMaxJoints);
   c.skip(4 + 2 + (9 * kMaxJoints + 1) * 8);
 }
 
 void walk(Cursor& c, const detection_t&) {
-  c.skip(2 * 8 + 4 + 1 + 8 + 2 + 8);
+  c.time();
+  c.time();  // seq
+  c.skip(4 + 1);
+  c.time();  // of the mark
+  c.skip(2 + 8);
   c.text();
   c.text();
 }
 
 void walk(Cursor& c, const summary_t&) {
-  c.skip(8);
+  c.time();
   for (int i = 0; i < 3; ++i) c.text();
   c.skip(8 * 8);
   const int n = c.count(0, kMaxMetrics);
@@ -81,12 +95,12 @@ void walk(Cursor& c, const summary_t&) {
 }
 
 void walk(Cursor& c, const iiwa_status_t&) {
-  c.skip(8);
+  c.time();
   c.skip(static_cast<std::size_t>(c.count(1, kMaxJoints)) * 7 * 8);
 }
 
 void walk(Cursor& c, const panda_status_t&) {
-  c.skip(8);
+  c.time();
   c.skip(static_cast<std::size_t>(c.count(1, kMaxJoints)) * 8 * 8);
   c.skip(8 + 1 + 8 + 3);
 }
@@ -103,6 +117,8 @@ const char* describe(Reject reject) noexcept {
       return "of a wrong size";
     case Reject::kWrongCount:
       return "with an impossible count or length";
+    case Reject::kWrongTime:
+      return "with an impossible time or number";
   }
   return "?";
 }

@@ -27,10 +27,11 @@ inline constexpr int kMaxMetrics = 1000, kMaxText = 4096;
 
 /// Why a message was not decoded.
 enum class Reject : std::uint8_t {
-  kNone,       ///< it was
-  kForeign,    ///< shorter than a hash, or the hash of another type
-  kWrongSize,  ///< longer or shorter than its type and its counts say
-  kWrongCount  ///< a number of joints or metrics, or a length of a text, out of range
+  kNone,        ///< it was
+  kForeign,     ///< shorter than a hash, or the hash of another type
+  kWrongSize,   ///< longer or shorter than its type and its counts say
+  kWrongCount,  ///< a number of joints or metrics, or a length of a text, out of range
+  kWrongTime,   ///< a time or a message's number that is negative or beyond 2^53
 };
 
 /// In words.

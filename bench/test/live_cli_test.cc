@@ -170,6 +170,7 @@ TEST_F(LivePrograms, WhatANetworkDoesToMessagesIsHandledAndCounted) {
       "(sleep 0.7; lcm-logplayer bad.lcm > /dev/null) &\n"
       "tauext-live --robot wallmobot3 --estimator mo1 --subscribe ARM --duration 2; wait");
   EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("ARM: a message of 2 joints, and wallmobot3 has 3")) << o.text;
   // a late one takes one from the lost, as far as anybody can know
   EXPECT_TRUE(o.says("input      490 used, 5 lost, 5 late, 5 repeated, 5 rejected; 0 restarts"))
       << o.text;

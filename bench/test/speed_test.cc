@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <thread>
 #include <vector>
 
+#include "bench/histogram.h"
+#include "bench/live.h"
 #include "bench/robot.h"
 #include "bench/stages.h"
 #include "estimators/test/textbook_ekf.h"
@@ -86,6 +89,37 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
     std::printf("ekf / %s: %.2f\n", name, r);
     EXPECT_GE(r, least) << name;
   }
+}
+
+// pushes as a cycle with three estimators makes them, five times as often, while the other thread takes them out
+void push_for_a_second(Histogram& push_ns) {
+  LiveStream stream(nullptr, streams_of({"a", "b", "c"}, "d"), 200);
+  LiveSample s;
+  s.reading.n = 3;
+  for (int cycle = 0; cycle < 5000; ++cycle) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    s.reading.utime = 1000 * cycle;
+    for (s.stream = 0; s.stream < 3; ++s.stream) {
+      const auto begin = std::chrono::steady_clock::now();
+      ASSERT_TRUE(stream.push(s));
+      push_ns.add((std::chrono::steady_clock::now() - begin).count());
+    }
+  }
+}
+
+TEST(Push, CostsTheLoopNextToNothing) {
+  // the best of up to five: a neighbour can spoil a second, a push that waits spoils them all
+  double median = 1e9, rare = 1e9;
+  for (int attempt = 0; attempt < 5 && (median >= 150 || rare >= 10'000); ++attempt) {
+    Histogram push_ns;
+    push_for_a_second(push_ns);
+    median = std::min(median, push_ns.quantile(0.5));
+    rare = std::min(rare, push_ns.quantile(0.999));
+  }
+  std::printf("a push: %.0f ns (median), %.0f ns (99.9 %%), the clock's own time included\n",
+              median, rare);
+  EXPECT_LT(median, 150);
+  EXPECT_LT(rare, 10'000);
 }
 
 }  // namespace

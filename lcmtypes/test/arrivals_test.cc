@@ -72,6 +72,13 @@ TEST(ArrivalsTest, OneFalseTimeFarAheadDoesNotSilenceTheStream) {
   EXPECT_EQ(used, 998 - (Arrivals::kPatience - 1));
 }
 
+TEST(ArrivalsTest, AnotherSendersNumbersAreNoLoss) {
+  Arrivals a;
+  a.take(at(0, 0));
+  a.take(at(1, std::int64_t{1} << 53));
+  EXPECT_EQ(a.counts().lost, 0);
+}
+
 TEST(ArrivalsTest, StrayLateOnesAreNoRestart) {
   Arrivals a;
   for (int k = 100; k < 1000; ++k) {

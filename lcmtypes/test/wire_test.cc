@@ -112,6 +112,16 @@ TEST(Wire, AForgedCountIsRejected) {
   }
 }
 
+TEST(Wire, AForgedTimeOrNumberIsRejected) {
+  for (const std::size_t at : {8u, 16u}) {  // utime, seq
+    std::vector<std::byte> bytes = bytes_of(estimate());
+    forge(bytes, at, -1);
+    expect_reject<estimate_t>(Reject::kWrongTime, bytes, "negative");
+    forge(bytes, at, 1 << 22);
+    expect_reject<estimate_t>(Reject::kWrongTime, bytes, "2^54");
+  }
+}
+
 TEST(Wire, AForgedLengthOfATextIsRejected) {
   for (const std::int32_t length : {0, -1, 5000, std::numeric_limits<std::int32_t>::max()}) {
     std::vector<std::byte> bytes = bytes_of(summary());
