@@ -30,13 +30,16 @@ class Histogram {
     return static_cast<double>(largest_.load(std::memory_order_relaxed));
   }
 
-  /// [ns] the upper edge of the bucket that at least this share of the values does not exceed; 0 without one.
+  /// [ns] what this share of the values does not exceed, exact to a bucket and straight within it; 0 without one.
   double quantile(double share) const noexcept {
-    const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count())));
-    std::uint64_t seen = 0;
+    const double wanted = std::ceil(share * static_cast<double>(count()));
+    double seen = 0;
     for (int b = 0; b < kBuckets; ++b) {
-      seen += buckets_[b].load(std::memory_order_relaxed);
-      if (seen >= wanted && seen > 0) return std::min(upper_edge(b), largest());
+      const auto here = static_cast<double>(buckets_[b].load(std::memory_order_relaxed));
+      seen += here;
+      if (seen < wanted || here == 0) continue;
+      const double lower = b == 0 ? 0 : upper_edge(b - 1) + 1, upper = upper_edge(b);
+      return std::min(upper - (upper - lower) * (seen - wanted) / here, largest());
     }
     return largest();
   }
