@@ -21,7 +21,7 @@ constexpr const char* kSchemes[] = {"udpm", "file", "memq", "tcpq", "mpudpm"};
 
 std::string scheme_of(const std::string& url) {
   const auto end = url.find("://");
-  const std::string scheme = end == std::string::npos ? "" : url.substr(0, end);
+  std::string scheme = end == std::string::npos ? "" : url.substr(0, end);
   for (const char* known : kSchemes) {
     if (scheme == known) return scheme;
   }

@@ -167,15 +167,17 @@ const std::int8_t panda_status_t::kReflex;
 const std::int8_t panda_status_t::kUserStopped;
 const std::int8_t panda_status_t::kAutomaticErrorRecovery;
 
-#define TAUEXT_WIRE(Message)                        \
-  template Reject decode<Message>(Bytes, Message&); \
-  template std::size_t encode<Message>(const Message&, std::span<std::byte>) noexcept;
-TAUEXT_WIRE(sample_t)
-TAUEXT_WIRE(estimate_t)
-TAUEXT_WIRE(detection_t)
-TAUEXT_WIRE(summary_t)
-TAUEXT_WIRE(iiwa_status_t)
-TAUEXT_WIRE(panda_status_t)
-#undef TAUEXT_WIRE
+template Reject decode(Bytes, sample_t&);
+template Reject decode(Bytes, estimate_t&);
+template Reject decode(Bytes, detection_t&);
+template Reject decode(Bytes, summary_t&);
+template Reject decode(Bytes, iiwa_status_t&);
+template Reject decode(Bytes, panda_status_t&);
+template std::size_t encode(const sample_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const estimate_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const detection_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const summary_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const iiwa_status_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const panda_status_t&, std::span<std::byte>) noexcept;
 
 }  // namespace tauext
