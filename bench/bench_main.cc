@@ -59,7 +59,11 @@ std::string never_label(const Score& score) {
 void run_entry(benchmark::State& state, Suite& suite, Row& row, const EntryTap& tap) {
   if (row.score.metrics.empty()) {
     row.score = suite.score(row.entry);
-    if (tap.logs()) tap.log(row.entry, suite.run(row.entry), row.score);
+    try {
+      if (tap.logs()) tap.log(row.entry, suite.run(row.entry), row.score);
+    } catch (const std::runtime_error& e) {  // a full disk costs this entry, not the run
+      row.score.error = e.what();
+    }
   }
   if (!row.score.error.empty()) {
     state.SkipWithError(row.score.error.c_str());

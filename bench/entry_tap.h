@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// @file
-/// The suite's entries, tapped: to a stream as each finishes, to a log as each is scored. Never inside a timed loop.
+/// @file The suite's entries, tapped: to a stream as each finishes, to a log as each is scored.
+/// Never inside a timed loop.
 #pragma once
 
 #include <memory>
@@ -15,16 +15,19 @@ class EntryTap {
  public:
   /// @param url where summaries go; none: nowhere
   /// @param folder where logs go, one for each entry; "": nowhere
-  /// @throws std::invalid_argument for a URL that LCM does not know; std::runtime_error for a folder that cannot be made
+  /// @throws std::invalid_argument for a URL that LCM does not know; std::runtime_error for a
+  /// folder that cannot be made
   EntryTap(const std::optional<std::string>& url, std::string folder);
   ~EntryTap();
 
-  /// Writes <robot>_<scenario>_<estimator>[+<detector>].lcm: samples, estimates, detections, summary.
+  /// Writes <robot>_<scenario>_<estimator>[+<detector>].lcm: samples, estimates, detections,
+  /// summary.
   /// @throws std::runtime_error naming the file
   void log(const Entry& entry, const Suite::Run& run, const Score& score) const;
   bool logs() const { return !folder_.empty(); }
 
-  /// Publishes the entry's summary_t. A network that is not there is told once, and the run goes on.
+  /// Publishes the entry's summary_t. A network that is not there is told once, and the run goes
+  /// on.
   void publish(const Entry& entry, const Score& score);
 
  private:

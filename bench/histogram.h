@@ -12,7 +12,8 @@
 
 namespace tauext {
 
-/// Counts of times in buckets 1/16 wide (6 %) of their value. One thread adds, any reads; allocates nothing.
+/// Counts of times in buckets 1/16 wide (6 %) of their value. One thread adds, any reads; allocates
+/// nothing.
 class Histogram {
  public:
   void add(std::int64_t ns) noexcept {
@@ -30,7 +31,8 @@ class Histogram {
     return static_cast<double>(largest_.load(std::memory_order_relaxed));
   }
 
-  /// [ns] what this share of the values does not exceed, exact to a bucket and straight within it; 0 without one.
+  /// [ns] what this share of the values does not exceed, exact to a bucket and straight within it;
+  /// 0 without one.
   double quantile(double share) const noexcept {
     const double wanted = std::ceil(share * static_cast<double>(count()));
     double seen = 0;

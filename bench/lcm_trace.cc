@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -85,6 +86,46 @@ Trace trace_of(const std::vector<Reading>& all) {
   return trace;
 }
 
+// without those of another arm than most
+std::vector<Reading> of_most_joints(std::vector<Reading> all, LogReport& found) {
+  std::array<std::size_t, kMaxJoints + 1> count{};
+  for (const Reading& r : all) ++count[r.n];
+  const auto n = std::max_element(count.begin(), count.end()) - count.begin();
+  found.rejected +=
+      static_cast<std::int64_t>(std::erase_if(all, [&](const Reading& r) { return r.n != n; }));
+  return all;
+}
+
+// those that an estimator would have got
+std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::string& path,
+                              LogReport& found) {
+  Arrivals arrivals;
+  std::vector<Reading> used, late;
+  for (const Reading& r : recorded) {
+    const Arrival arrival = arrivals.take(r);
+    if (arrival == Arrival::kNext) {
+      used.push_back(r);
+      late.clear();
+    }
+    if (arrival == Arrival::kLate) late.push_back(r);
+    if (arrival != Arrival::kRestart) continue;
+    used.pop_back();  // one false time far ahead, to which all after it were late
+    late.erase(late.begin(), late.end() - (Sequence::kPatience - 1));
+    if (!used.empty() && used.back().utime >= late.front().utime) {
+      throw std::runtime_error(fmt::format(
+          "{}: time goes back on channel {}: the sender was restarted, or there are several", path,
+          found.channel));
+    }
+    ++found.rejected;
+    found.out_of_order -= static_cast<std::int64_t>(late.size());
+    used.insert(used.end(), late.begin(), late.end());
+    used.push_back(r);
+  }
+  found.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
+  found.lost = arrivals.counts().lost;
+  return used;
+}
+
 void append(const char* channel, const summary_t& m, LogBuffer& log) {
   std::vector<std::byte> bytes(m.getEncodedSize());
   const std::size_t size = encode(m, bytes);
@@ -102,11 +143,12 @@ std::vector<Reading> readings_of(const Trace& trace) {
   if (n > kMaxJoints) {
     throw std::invalid_argument(fmt::format("{} joints: a message holds {}", n, kMaxJoints));
   }
+  const double origin = trace.size() > 0 ? std::min(trace.t[0], 0.0) : 0;
   std::vector<Reading> all(trace.size());
   for (int k = 0; k < trace.size(); ++k) {
     Reading& r = all[k];
     r.seq = k;
-    r.t = trace.t[k];
+    r.t = trace.t[k] - origin;
     r.utime = utime_of(r.t);
     r.n = n;
     Eigen::VectorXd::Map(r.q.data(), n) = trace.q.col(k);
@@ -186,28 +228,18 @@ Trace read_lcm(const std::string& path, const std::string& channel, LogReport* r
   LogReport unused;
   LogReport& found = report == nullptr ? unused : *report;
   found.channel = choose_channel(path, channel);
-  Arrivals arrivals;
-  std::vector<Reading> all;
+  std::vector<Reading> recorded;
   found.faults = read_log(path, [&](const LogEvent& e) {
     if (e.channel != found.channel) return;
     MessageType type{};
     Reading r;
-    const bool good =
-        type_of(e.message, type) == Reject::kNone && read(e.message, type, r) == Reject::kNone;
-    if (!good || (!all.empty() && r.n != all[0].n)) {
+    if (type_of(e.message, type) == Reject::kNone && read(e.message, type, r) == Reject::kNone) {
+      recorded.push_back(r);
+    } else {
       ++found.rejected;
-      return;
     }
-    if (arrivals.take(r) == Arrival::kNext) all.push_back(r);
   });
-  const Arrivals::Counts& counts = arrivals.counts();
-  found.out_of_order = counts.late + counts.repeated;
-  found.lost = counts.lost;
-  if (counts.restarts > 0) {
-    throw std::runtime_error(fmt::format(
-        "{}: time goes back on channel {}: the sender was restarted, or there are several", path,
-        found.channel));
-  }
+  const std::vector<Reading> all = in_order(of_most_joints(recorded, found), path, found);
   if (all.empty()) {
     throw std::runtime_error(fmt::format("{}: {} messages on channel {}, and none is good", path,
                                          found.rejected, found.channel));
@@ -217,7 +249,7 @@ Trace read_lcm(const std::string& path, const std::string& channel, LogReport* r
 
 bool is_lcm_log(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
-  return name.ends_with(".lcm") || name.starts_with("lcmlog");
+  return name.ends_with(".lcm") || name.starts_with("lcmlog-");
 }
 
 }  // namespace tauext

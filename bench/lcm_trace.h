@@ -3,7 +3,7 @@
 /// Traces as LCM logs, and back.
 #pragma once
 
-#include <map>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,15 +18,17 @@ namespace tauext {
 /// [us] of a time [s].
 std::int64_t utime_of(double t);
 
-/// The samples of a trace as they travel; its truth, if it has one, as their reference.
+/// The samples of a trace as they travel; its truth, if it has one, as their reference. Times below
+/// 0, which messages do not have, are shifted so that the first is 0.
 /// @throws std::invalid_argument for an arm of more than 8 joints
 std::vector<Reading> readings_of(const Trace& trace);
 
 /// Adds a trace's samples to a log, on TAUEXT_SAMPLE, IIWA_STATUS or PANDA_STATUS.
 void append_samples(const std::vector<Reading>& readings, MessageType type, LogBuffer& log);
 
-/// The samples of an entry, its estimates and detections, one message each, and its summary: all that is to be
-/// seen of it in lcm-spy. Time is simulated, and nothing else is in it that differs from run to run.
+/// The samples of an entry, its estimates and detections, one message each, and its summary: all
+/// that is to be seen of it in lcm-spy. Time is simulated, and nothing else is in it that differs
+/// from run to run.
 void append_entry(const Entry& entry, const Trace& trace, const Output& output,
                   const std::vector<Detection>& detections, const Score& score, LogBuffer& log);
 
@@ -44,12 +46,14 @@ struct LogReport {
   std::string in_words() const;
 };
 
-/// Reads a log's measurements from one channel: by its name, or "" for the only one that has any (of several,
-/// TAUEXT_SAMPLE). Times count from 0 if they are those of a wall clock (more than 10^8 s).
-/// @throws std::runtime_error naming path and reason: unreadable, no such channel, several to choose from
+/// Reads a log's measurements from one channel: by its name, or "" for the only one that has any
+/// (of several, TAUEXT_SAMPLE). Times count from 0 if they are those of a wall clock (more than
+/// 10^8 s).
+/// @throws std::runtime_error naming path and reason: unreadable, no such channel, several to
+/// choose from
 Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report);
 
-/// Whether a path names an LCM log (it ends in .lcm, or lcm-logger's name with a date is in it).
+/// Whether a path names an LCM log: it ends in .lcm, or is lcm-logger's lcmlog-<date>.
 bool is_lcm_log(const std::string& path);
 
 }  // namespace tauext

@@ -13,6 +13,17 @@
 namespace tauext {
 namespace {
 
+// the messages' numbers are the library's
+static_assert(estimate_t::kOk == static_cast<int>(Status::kOk) &&
+              estimate_t::kStarted == static_cast<int>(Status::kStarted) &&
+              estimate_t::kBadMeasurement == static_cast<int>(Status::kBadMeasurement) &&
+              estimate_t::kSingularInertia == static_cast<int>(Status::kSingularInertia) &&
+              estimate_t::kDiverged == static_cast<int>(Status::kDiverged));
+static_assert(detection_t::kNone == static_cast<int>(Contact::kNone) &&
+              detection_t::kIntentional == static_cast<int>(Contact::kIntentional) &&
+              detection_t::kCollision == static_cast<int>(Contact::kCollision) &&
+              detection_t::kClamping == static_cast<int>(Contact::kClamping));
+
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 // by the one thread that writes
@@ -27,9 +38,13 @@ std::int64_t now_ns() noexcept {
       .count();
 }
 
-void sleep_until(std::int64_t ns) noexcept {
-  const timespec until{ns / 1'000'000'000, ns % 1'000'000'000};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+// or until `stop` is set, which a gap in the samples must not outlast
+void sleep_until(std::int64_t due, const std::atomic<bool>& stop) noexcept {
+  constexpr std::int64_t kLook = 20'000'000;  // [ns]
+  for (std::int64_t now = now_ns(); now < due && !stop.load(kRelaxed); now = now_ns()) {
+    const std::int64_t ns = std::min(due, now + kLook);
+    const timespec until{ns / 1'000'000'000, ns % 1'000'000'000};
+    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
   }
 }
 
@@ -103,6 +118,9 @@ void LiveEstimation::take(const Reading& r) noexcept {
 }
 
 void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept {
+  // a driver may have none for a while
+  const auto end = r.tau_ext.begin() + r.n;
+  if (!std::all_of(r.tau_ext.begin(), end, [](double x) { return std::isfinite(x); })) return;
   double largest = f.largest_error.load(kRelaxed);
   for (int j = 0; j < r.n; ++j) {
     const double error = hat[j] - r.tau_ext[j];
@@ -126,11 +144,11 @@ void play(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation
   for (double offset = 0; !stop.load(kRelaxed); offset += round) {
     estimation.reset();
     for (const Reading& recorded : readings) {
-      if (stop.load(kRelaxed)) return;
       const double elapsed = (recorded.t - first + offset) / pace.speed;
       if (pace.duration > 0 && elapsed >= pace.duration) return;
       const std::int64_t due = start + std::llround(elapsed * 1e9);
-      sleep_until(due);
+      sleep_until(due, stop);
+      if (stop.load(kRelaxed)) return;
       late.add(now_ns() - due);
       r = recorded;
       r.seq = seq++;

@@ -3,7 +3,9 @@
 /// Estimating while it happens: the body of a control loop's cycle, and its clock.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,14 +29,15 @@ struct LiveFigures {
   double rmse() const noexcept;
 };
 
-/// Runs estimators, each with the same kind of detector behind it, on one sample after the other, and pushes what
-/// they say into a stream. `take` neither waits, allocates nor makes a system call.
+/// Runs estimators, each with the same kind of detector behind it, on one sample after the other,
+/// and pushes what they say into a stream. `take` neither waits, allocates nor makes a system call.
 class LiveEstimation {
  public:
   /// @param trace what an estimator that copies the truth copies; else it may be empty
   /// @param thresholds of each estimator's detector
   /// @param stream may be null
-  /// @throws std::invalid_argument for unknown names, an estimator named twice, or more than 8 joints
+  /// @throws std::invalid_argument for unknown names, an estimator named twice, or more than 8
+  /// joints
   LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
                  const std::string& detector, const ThresholdSet& thresholds, const Trace& trace,
                  LiveStream* stream);
@@ -74,9 +77,9 @@ struct Pace {
   double duration = 0;  ///< [s] of the clock, after which it ends; 0: never
 };
 
-/// Plays readings to the estimators by the clock until they end, `stop` is set or the time is over. The thread that
-/// calls it is the loop: all it waits for is the time of the next sample. Where they begin again, estimators are
-/// reset and time goes on.
+/// Plays readings to the estimators by the clock until they end, `stop` is set or the time is over.
+/// The thread that calls it is the loop: all it waits for is the time of the next sample. Where
+/// they begin again, estimators are reset and time goes on.
 /// @param late [ns] how much later than due a cycle began
 void play(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation& estimation,
           Histogram& late, const std::atomic<bool>& stop);

@@ -2,56 +2,27 @@
 #include "bench/live_modes.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <unistd.h>
 
-#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <optional>
+#include <cstdlib>
 #include <stdexcept>
 #include <thread>
 
 #include "bench/cli.h"
 #include "bench/file_robot.h"
+#include "bench/interrupt.h"
 #include "bench/lcm_trace.h"
+#include "bench/live_io.h"
 #include "bench/live_report.h"
-#include "bench/stream_table.h"
+#include "bench/metrics.h"
 #include "bench/thresholds.h"
-#include "lcmtypes/arrivals.h"
-#include "lcmtypes/listener.h"
 
 namespace tauext {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Ctrl-C and kill as something to be asked for; made before the first thread, so that all block them
-class Interrupt {
- public:
-  Interrupt() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-  }
-  // true once one of them has come, waiting up to so long
-  bool wait(double seconds) {
-    const auto whole = static_cast<time_t>(seconds);
-    const timespec t{whole, static_cast<long>((seconds - static_cast<double>(whole)) * 1e9)};
-    seen_ = seen_ || sigtimedwait(&signals_, nullptr, &t) > 0;
-    return seen_;
-  }
-
- private:
-  sigset_t signals_{};
-  bool seen_ = false;
-};
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 ThresholdSet thresholds_of(const LiveOptions& o) {
   if (o.thresholds.empty()) return {};
@@ -64,8 +35,7 @@ Trace recorded_trace(const LiveOptions& o, const Robot& r) {
   const Scenario& s = scenario(r.name, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) supervisor = r.supervisor(o.estimators[0], o.detector);
-  if (::isatty(STDERR_FILENO) == 1)
-    fmt::print(stderr, "simulating {} s of {}\n", s.duration, s.name);
+  fmt::print(stderr, "simulating {} s of {}\n", s.duration, s.name);
   return measure(
       simulate(load_for(r.name, s, o.model_error), s, o.recording, o.sensors, supervisor),
       o.sensors);
@@ -80,69 +50,56 @@ Robot robot_or_file(const LiveOptions& o) {
   return file_robot(o.robot);
 }
 
-std::string source_of(const LiveOptions& o) {
-  if (!o.subscribe.empty()) return o.subscribe;
-  return o.from.empty() ? o.scenario : o.from;
+std::string title_of(const LiveOptions& o) {
+  return o.robot + "/" +
+         (!o.subscribe.empty() ? o.subscribe
+          : !o.from.empty()    ? o.from
+                               : o.scenario);
 }
 
-// a stream, if one was asked for, and what is to be said of it
-class Outlet {
- public:
-  Outlet(const LiveOptions& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
-    if (!o.stream) return;
-    transport_.emplace(o.url);
-    if (!transport_->good()) fmt::print(stderr, "streaming is off: {}\n", transport_->trouble());
-    stream_.emplace(&*transport_, streams_, rate);
-  }
-
-  LiveStream* stream() { return stream_ ? &*stream_ : nullptr; }
-
-  // once: messages do not go out any more
-  void report_failures() {
-    if (!stream_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
-    reported_ = true;
-    fmt::print(stderr, "\r\033[Kmessages to {} fail ({}); the run goes on\n", transport_->url(),
-               trouble_with(transport_->url()).empty() ? "send error" : "no route");
-  }
-
-  StreamReport finish(const std::vector<summary_t>& summaries) {
-    StreamReport report;
-    report.asked = stream_.has_value();
-    if (!stream_) return report;
-    report.url = transport_->url();
-    report.hung = !stream_->finish();
-    report.counts = stream_->counts();
-    if (report.hung) return report;
-    for (int i = 0; i < static_cast<int>(summaries.size()); ++i) {
-      summary_t s = summaries[i];
-      s.published = stream_->counts(i).sent;
-      s.failed = stream_->counts(i).failed;
-      s.ring_drops = report.counts.dropped;
-      std::vector<std::byte> bytes(s.getEncodedSize());
-      const std::size_t size = encode(s, bytes);
-      transport_->publish(kSummaryChannel, {bytes.data(), size});
-    }
-    return report;
-  }
-
- private:
-  std::vector<Stream> streams_;
-  std::optional<Transport> transport_;  // outlives the stream's thread
-  std::optional<LiveStream> stream_;
-  bool reported_ = false;
-};
-
 int finish(const LiveOptions& o, Outlet& outlet, const LiveEstimation& e, LiveReport report) {
-  report.title = fmt::format("{}/{}", o.robot, source_of(o));
+  report.title = title_of(o);
   report.stream = outlet.finish(summaries_of(report, e, o.detector));
   fmt::print("{}", format(report, e));
-  if (report.stream.hung) {  // its thread still holds the transport
+  if (report.stream.hung) {  // its thread is still in LCM
     std::fflush(stdout);
     std::_Exit(kAnswerIsNo);
   }
   const bool silent = report.stream.asked && report.stream.counts.published == 0;
-  return silent || e.samples() == 0 ? kAnswerIsNo : kGood;
+  return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
 }
+
+// [ns] from one sample to the next, as most are
+double period_of(const std::vector<Reading>& all, double speed) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < all.size(); ++k) steps.push_back(all[k].t - all[k - 1].t);
+  return steps.empty() ? 0 : quantile(steps, 0.5) * 1e9 / speed;
+}
+
+// the control loop in a thread of its own, which ends with us
+class Loop {
+ public:
+  Loop(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation& estimation)
+      : thread_([&readings, pace, &estimation, this] {
+          play(readings, pace, estimation, late_, stop_);
+          ended_ = true;
+        }) {}
+  ~Loop() { stop(); }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  bool ended() const { return ended_; }
+  void stop() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  const Histogram& late() const { return late_; }
+
+ private:
+  Histogram late_;
+  std::atomic<bool> stop_ = false, ended_ = false;
+  std::thread thread_;  // last: it uses the others
+};
 
 }  // namespace
 
@@ -174,103 +131,47 @@ int run_recorded(const LiveOptions& o) {
   const Robot r = robot_or_file(o);
   const Trace trace = recorded_trace(o, r);
   const std::vector<Reading> readings = readings_of(trace);
-  Interrupt interrupt;
   Outlet outlet(o, o.rate / o.pace.speed);  // a rate of the clock's seconds
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), trace, outlet.stream());
-  Histogram late;
-  std::atomic<bool> stop = false, ended = false;
+  const Interrupt interrupt;
+  fmt::print(stderr, "playing {}{}; Ctrl-C ends\n", title_of(o), outlet.where());
   const auto begin = Clock::now();
-  std::thread loop([&] {
-    play(readings, o.pace, estimation, late, stop);
-    ended = true;
-  });
   StatusLine status;
-  while (!ended && !interrupt.wait(0.05)) {
+  Loop loop(readings, o.pace, estimation);
+  while (!loop.ended() && !interrupt.seen()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
     outlet.report_failures();
-    status.show(estimation, &late, outlet.stream());
+    status.show(estimation, &loop.late(), outlet.stream());
   }
-  stop = true;
-  loop.join();
+  loop.stop();
   status.clear();
   LiveReport report;
   report.seconds = seconds_since(begin);
-  report.late = &late;
-  report.period = 1e-3 * 1e9 / o.pace.speed;
+  report.late = &loop.late();
+  report.period = period_of(readings, o.pace.speed);
   return finish(o, outlet, estimation, report);
 }
 
 int run_subscribed(const LiveOptions& o) {
   const Robot r = robot_or_file(o);
-  const MessageType type = message_type(o.type);
-  Interrupt interrupt;
   Outlet outlet(o, o.rate);
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(),
                             outlet.stream());
-  Arrivals arrivals;
   LiveReport report;
   report.subscribed = true;
-  Listener listener(o.url, o.subscribe, [&](std::string_view channel, std::int64_t, Bytes message) {
-    if (channel != o.subscribe) return;  // the name is a regular expression to LCM
-    Reading reading;
-    const Reject reject = read(message, type, reading);
-    if (reject != Reject::kNone || reading.n != r.dof) {
-      if (report.rejected++ > 0) return;
-      const std::string why = reject == Reject::kNone ? fmt::format("of {} joints, and {} has {}",
-                                                                    reading.n, r.name, r.dof)
-                                                      : describe(reject);
-      fmt::print(stderr, "\r\033[K{}: a message {}; the first that was rejected\n", o.subscribe,
-                 why);
-      return;
-    }
-    const Arrival arrival = arrivals.take(reading);
-    if (arrival == Arrival::kRestart) estimation.reset();
-    if (arrival == Arrival::kNext || arrival == Arrival::kRestart) estimation.take(reading);
-  });
+  Inlet inlet(o, r, estimation, report);
+  const Interrupt interrupt;
+  fmt::print(stderr, "listening to {} at {}{}; Ctrl-C ends\n", o.subscribe, inlet.url(),
+             o.stream ? ", streaming" : "");
   const auto begin = Clock::now();
   StatusLine status;
-  status.waiting_for(fmt::format("{} at {}", o.subscribe, listener.url()));
-  while (!interrupt.wait(0) && !(o.pace.duration > 0 && seconds_since(begin) > o.pace.duration)) {
-    listener.wait(50);
+  while (!over(interrupt, begin, o.pace.duration) && inlet.wait()) {
     outlet.report_failures();
     status.show(estimation, nullptr, outlet.stream());
   }
   status.clear();
   report.seconds = seconds_since(begin);
-  report.arrivals = arrivals.counts();
   return finish(o, outlet, estimation, report);
-}
-
-int run_listen(const LiveOptions& o) {
-  Interrupt interrupt;
-  StreamTable table;
-  Listener listener(o.url, "TAUEXT_.*",
-                    [&](std::string_view channel, std::int64_t arrived, Bytes m) {
-                      table.take(channel, arrived, m);
-                    });
-  const bool terminal = ::isatty(STDOUT_FILENO) == 1;
-  const auto begin = Clock::now();
-  auto shown = begin;
-  std::vector<std::string> events;
-  const auto take_events = [&] {
-    for (std::string& line : table.events()) {
-      if (!terminal) fmt::print("{}\n", line);
-      events.push_back(std::move(line));
-    }
-    constexpr std::size_t kShown = 12;
-    if (events.size() > kShown) events.erase(events.begin(), events.end() - kShown);
-  };
-  while (!interrupt.wait(0) && !(o.pace.duration > 0 && seconds_since(begin) > o.pace.duration)) {
-    listener.wait(50);
-    take_events();
-    if (!terminal || seconds_since(shown) < 0.2) continue;
-    shown = Clock::now();
-    fmt::print("\033[H\033[2J{}  {:.0f} s\n\n{}\n{}\n{}\n", listener.url(), seconds_since(begin),
-               table.format(), table.totals(), fmt::join(events, "\n"));
-    std::fflush(stdout);
-  }
-  if (!terminal) fmt::print("{}{}", table.format(), table.totals());
-  if (terminal) fmt::print("\n");
-  return table.good() > 0 ? kGood : kAnswerIsNo;
 }
 
 }  // namespace tauext

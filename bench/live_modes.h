@@ -29,8 +29,8 @@ struct LiveOptions {
 /// @throws std::invalid_argument for options that are missing, out of range or do not go together
 void check(const LiveOptions& options, bool listen);
 
-/// Each runs until its end or Ctrl-C, prints a summary, and returns the exit code: 1 if a stream was asked for and
-/// nothing could be sent, or if nothing good was received.
+/// Each runs until its end or Ctrl-C, prints a summary, and returns the exit code: 1 if a stream
+/// was asked for and nothing could be sent, or if nothing good was received.
 int run_recorded(const LiveOptions& options);
 int run_subscribed(const LiveOptions& options);
 int run_listen(const LiveOptions& options);

@@ -98,10 +98,6 @@ void StatusLine::show(const LiveEstimation& e, const Histogram* late, const Live
   const auto now = std::chrono::steady_clock::now();
   if (!terminal_ || now - shown_ < std::chrono::milliseconds(500)) return;
   shown_ = now;
-  if (e.samples() == 0 && !waiting_.empty()) {
-    fmt::print(stderr, "\r\033[Kwaiting for {}", waiting_);
-    return;
-  }
   std::string line = fmt::format("{:.0f} s  {} samples",
                                  std::chrono::duration<double>(now - begin_).count(), e.samples());
   if (late != nullptr) {

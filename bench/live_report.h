@@ -25,6 +25,7 @@ struct LiveReport {
   std::string title;                ///< robot and source
   double seconds = 0;               ///< [s] by the clock
   bool subscribed = false;          ///< else it was played
+  bool failed = false;              ///< the connection broke
   const Histogram* late = nullptr;  ///< of the cycles, if it was played
   double period = 1e6;              ///< [ns] of them
   Arrivals::Counts arrivals;        ///< if it was subscribed
@@ -43,14 +44,11 @@ std::vector<summary_t> summaries_of(const LiveReport& report, const LiveEstimati
 class StatusLine {
  public:
   StatusLine();
-  /// What to say until the first sample has come.
-  void waiting_for(const std::string& what) { waiting_ = what; }
   void show(const LiveEstimation& estimation, const Histogram* late, const LiveStream* stream);
   void clear() const;
 
  private:
   bool terminal_;
-  std::string waiting_;
   std::chrono::steady_clock::time_point shown_, begin_;
 };
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "lcmtypes/arrivals.h"
-
 namespace tauext {
 namespace {
+
+constexpr std::int64_t kSecond = 1'000'000;  // [us]
 
 const char* contact_name(std::int8_t contact) {
   constexpr const char* kNames[] = {"", "intentional", "collision", "clamping"};
@@ -50,7 +50,7 @@ void StreamTable::take(std::string_view channel, std::int64_t arrived, Bytes mes
   } else if (hash == sample_t::getHash()) {
     sample_t s{};
     if (!decoded(message, s)) return;
-    Channel& c = channels_[printable(channel)];
+    Channel& c = of(channels_, printable(channel));
     c.newest.n = s.n;
     c.newest.t = s.t;
     c.newest.reference = s.reference;
@@ -59,29 +59,38 @@ void StreamTable::take(std::string_view channel, std::int64_t arrived, Bytes mes
   } else {
     estimate_t e{};
     if (!decoded(message, e)) return;
-    Channel& c = channels_[printable(channel)];
+    Channel& c = of(channels_, printable(channel));
     c.newest = e;
     c.estimate = true;
     count(c, e.seq, arrived);
   }
 }
 
+StreamTable::Channel& StreamTable::of(std::map<std::string, Channel, std::less<>>& all,
+                                      const std::string& name) {
+  constexpr std::size_t kMost = 100;  // names come from outside
+  const auto it = all.find(name);
+  if (it != all.end()) return it->second;
+  return all.size() < kMost ? all[name] : others_;
+}
+
 void StreamTable::count(Channel& c, std::int64_t seq, std::int64_t arrived) {
-  ++c.count;
-  // one that is not next: lost ones, or another sender
-  const std::int64_t jump = c.next_seq >= 0 ? seq - c.next_seq : 0;
-  if (jump > 0 && jump <= Arrivals::kLargestLoss) {
-    c.lost += jump;
-    lost_ += jump;
-  }
-  c.next_seq = seq + 1;
+  c.sequence.take(seq);
   c.arrivals.push_back(arrived);
-  while (c.arrivals.front() <= arrived - 1'000'000) c.arrivals.pop_front();
+  while (c.arrivals.front() <= arrived - kSecond) c.arrivals.pop_front();
+}
+
+std::int64_t StreamTable::lost() const {
+  std::int64_t sum = 0;
+  for (const auto* all : {&channels_, &pairs_}) {
+    for (const auto& [name, c] : *all) sum += c.sequence.lost();
+  }
+  return sum;
 }
 
 void StreamTable::take_detection(const detection_t& d, std::int64_t arrived) {
   const std::string pair = printable(d.estimator) + "+" + printable(d.detector);
-  count(pairs_[pair], d.seq, arrived);
+  count(of(pairs_, pair), d.seq, arrived);
   if (d.mark == 0) return;
   events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
                                 pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
@@ -107,7 +116,7 @@ std::int64_t StreamTable::rejected() const {
   return sum;
 }
 
-std::string StreamTable::format() const {
+std::string StreamTable::format(std::int64_t now) const {
   std::string out = fmt::format(
       "{:<30} {:>7} {:>7} {:>5} {:>10} {:>10} {:>10} {:>10}  {:<10} {:>7}\n", "channel", "rate",
       "lost", "joint", "tau_ext", "least", "largest", "reference", "status", "step");
@@ -115,9 +124,11 @@ std::string StreamTable::format() const {
                      "1/s", "", "", "N m", "N m", "N m", "N m", "", "us");
   for (const auto& [name, c] : channels_) {
     const estimate_t& e = c.newest;
+    const auto recent = std::count_if(c.arrivals.begin(), c.arrivals.end(),
+                                      [&](std::int64_t t) { return t > now - kSecond; });
     for (int j = 0; j < e.n; ++j) {
       out += j > 0 ? fmt::format("{:<30} {:>7} {:>7}", "", "", "")
-                   : fmt::format("{:<30} {:>7} {:>7}", name, c.arrivals.size(), c.lost);
+                   : fmt::format("{:<30} {:>7} {:>7}", name, recent, c.sequence.lost());
       out += fmt::format(" {:>5}", j + 1);
       out += c.estimate ? fmt::format(" {:>10.3f} {:>10.3f} {:>10.3f}", e.tau_ext_hat[j],
                                       e.tau_ext_hat_min[j], e.tau_ext_hat_max[j])
@@ -134,7 +145,7 @@ std::string StreamTable::format() const {
 }
 
 std::string StreamTable::totals() const {
-  std::string out = fmt::format("{} messages, {} lost, {} rejected", good_, lost_, rejected());
+  std::string out = fmt::format("{} messages, {} lost, {} rejected", good_, lost(), rejected());
   for (const auto& [reason, count] : rejects_)
     out += fmt::format("; {} {}", count, describe(reason));
   return out + "\n";

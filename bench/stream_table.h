@@ -11,17 +11,19 @@
 #include <vector>
 
 #include "lcmtypes/reading.h"
+#include "lcmtypes/sequence.h"
 
 namespace tauext {
 
 /// Takes messages as they come, checks them and keeps the newest of each channel.
 class StreamTable {
  public:
-  /// @param arrived [us] on any clock that goes on
+  /// @param arrived [us] on a clock that never goes back
   void take(std::string_view channel, std::int64_t arrived, Bytes message);
 
-  /// A row for each joint of each channel; rates are those of the last second.
-  std::string format() const;
+  /// A row for each joint of each channel; rates are those of the second before `now` [us, the same
+  /// clock].
+  std::string format(std::int64_t now) const;
   /// "good, lost, rejected" of all channels, and why.
   std::string totals() const;
 
@@ -29,12 +31,12 @@ class StreamTable {
   std::vector<std::string> events();
 
   std::int64_t good() const { return good_; }
-  std::int64_t lost() const { return lost_; }
+  std::int64_t lost() const;
   std::int64_t rejected() const;
 
  private:
   struct Channel {
-    std::int64_t count = 0, lost = 0, next_seq = -1;
+    Sequence sequence;
     std::deque<std::int64_t> arrivals;  // [us] of the last second
     estimate_t newest{};                // a sample_t's fields, too
     bool estimate = false;              // else samples alone
@@ -42,15 +44,17 @@ class StreamTable {
 
   template <class Message>
   bool decoded(Bytes message, Message& m);
-  void count(Channel& c, std::int64_t seq, std::int64_t arrived);
+  Channel& of(std::map<std::string, Channel, std::less<>>& all, const std::string& name);
+  static void count(Channel& c, std::int64_t seq, std::int64_t arrived);
   void take_detection(const detection_t& d, std::int64_t arrived);
   void take_summary(const summary_t& s);
 
   std::map<std::string, Channel, std::less<>> channels_;
-  std::map<std::string, Channel> pairs_;  // detections, by estimator and detector
+  std::map<std::string, Channel, std::less<>> pairs_;  // detections, by estimator and detector
+  Channel others_;                                     // of more channels than a table can hold
   std::map<Reject, std::int64_t> rejects_;
   std::vector<std::string> events_;
-  std::int64_t good_ = 0, lost_ = 0;
+  std::int64_t good_ = 0;
 };
 
 }  // namespace tauext

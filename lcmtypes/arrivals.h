@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "lcmtypes/reading.h"
+#include "lcmtypes/sequence.h"
 
 namespace tauext {
 
@@ -18,35 +20,32 @@ enum class Arrival : std::uint8_t {
   kLate,      ///< older than the newest one, or overtaken: an estimator cannot use it
 };
 
-/// Puts readings into order by dropping what comes too late, and counts what became of them. A sender
-/// whose clock goes back (it was restarted, or one false time stamp lay far ahead) is believed after
-/// kPatience late readings that are in order among themselves.
+/// Puts readings into order by dropping what comes too late, and counts what became of them. A
+/// sender whose clock goes back (it was restarted, or one false time stamp lay far ahead) is
+/// believed after Sequence::kPatience late readings that are in order among themselves.
 class Arrivals {
  public:
-  static constexpr int kPatience = 20;  ///< readings: 20 ms at 1 kHz
-  /// Messages: a larger jump is another sender, or one that was away, and no loss.
-  static constexpr std::int64_t kLargestLoss = 1'000'000;
-
   struct Counts {
     std::int64_t used = 0;  ///< given to the estimator
     std::int64_t repeated = 0, late = 0, restarts = 0;
-    /// Never came. By seq where the type has one, and then a late one is not lost; else whole periods that
-    /// are missing, the period being the median of the last ones.
+    /// Never came: by seq where the type has one (sequence.h); else whole periods that are missing,
+    /// the period being the median of the last ones.
     std::int64_t lost = 0;
   };
 
+  /// Says what to do with the next one that has come, and counts it.
   Arrival take(const Reading& reading) noexcept;
   const Counts& counts() const { return counts_; }
 
  private:
   Arrival accept(const Reading& r, Arrival as) noexcept;
-  void count_lost(const Reading& r) noexcept;
-  void add_lost(std::int64_t messages) noexcept;
+  void count_period(std::int64_t step) noexcept;
   std::int64_t period() const noexcept;
 
   Counts counts_;
+  Sequence sequence_;
   bool any_ = false;
-  std::int64_t newest_ = 0, newest_seq_ = -1;  // of what was used
+  std::int64_t newest_ = 0;  // [us] of what was used
   std::int64_t last_late_ = 0;
   int late_in_order_ = 0;
   std::array<std::int64_t, 31> periods_{};  // [us]

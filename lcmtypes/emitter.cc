@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -13,8 +14,32 @@ namespace {
 
 constexpr std::size_t kLongestChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 
-void copy(const Joints& from, double* to) {
-  std::copy(from.begin(), from.end(), to);
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+// n values and zeros behind them
+void copy(const Joints& from, int n, double* to) {
+  std::fill(std::copy_n(from.begin(), n, to), to + kMaxJoints, 0.0);
+}
+
+// the extremes of what is finite; no chart could show the rest
+void hold_extremes(const Joints& values, int n, double* least, double* most) {
+  for (int j = 0; j < n; ++j) {
+    if (!std::isfinite(values[j])) continue;
+    least[j] = std::min(least[j], values[j]);
+    most[j] = std::max(most[j], values[j]);
+  }
+}
+
+void begin_extremes(int n, double* least, double* most) {
+  std::fill(std::fill_n(least, n, kInf), least + kMaxJoints, 0.0);
+  std::fill(std::fill_n(most, n, -kInf), most + kMaxJoints, 0.0);
+}
+
+// where nothing was finite
+void end_extremes(int n, double* least, double* most) {
+  for (int j = 0; j < n; ++j) {
+    if (least[j] > most[j]) least[j] = most[j] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 }  // namespace
@@ -45,11 +70,12 @@ void Emitter::add(const LiveSample& s) {
   if (!any_) first_utime_ = s.reading.utime;
   any_ = true;
   Channel& c = channels_[s.stream];
+  if (c.estimate.samples > 0 && s.reading.n != c.estimate.n) emit(c);
   hold(c, s);
   // a message where time enters another slot of 1 / rate; 1 us for clocks that were rounded
   const double elapsed = static_cast<double>(s.reading.utime - first_utime_ + 1);
   const auto slot = static_cast<std::int64_t>(std::floor(elapsed * rate_ * 1e-6));
-  if (c.started && rate_ > 0 && slot == c.slot) return;
+  if (c.started && rate_ > 0 && slot == c.slot && !s.mark) return;
   c.started = true;
   c.slot = slot;
   emit(c);
@@ -61,53 +87,57 @@ void Emitter::flush() {
   }
 }
 
-void Emitter::hold(Channel& c, const LiveSample& s) {
+void Emitter::begin(Channel& c, int n) {
   estimate_t& e = c.estimate;
   detection_t& d = c.detection;
+  e.n = n;
+  e.status = 0;
+  e.step_us = d.score = 0;
+  begin_extremes(n, e.tau_ext_hat_min, e.tau_ext_hat_max);
+  begin_extremes(n, e.tau_ext_true_min, e.tau_ext_true_max);
+  d.mark = d.contact = d.contact_true = 0;
+  d.mark_utime = 0;
+}
+
+void Emitter::hold(Channel& c, const LiveSample& s) {
+  estimate_t& e = c.estimate;
   const Reading& r = s.reading;
-  if (e.samples == 0) {
-    e.status = 0;
-    e.step_us = d.score = 0;
-    d.mark = d.contact = d.contact_true = 0;
-    d.mark_utime = 0;
-    copy(s.tau_ext_hat, e.tau_ext_hat_min);
-    copy(s.tau_ext_hat, e.tau_ext_hat_max);
-    copy(r.tau_ext, e.tau_ext_true_min);
-    copy(r.tau_ext, e.tau_ext_true_max);
-  }
+  if (e.samples == 0) begin(c, r.n);
   ++e.samples;
   e.utime = r.utime;
   e.t = r.t;
-  e.n = r.n;
   e.reference = static_cast<std::int8_t>(r.reference);
   if (e.status == 0) e.status = s.status;
   e.step_us = std::max(e.step_us, s.step_us);
-  copy(r.q, e.q);
-  copy(r.qd, e.qd);
-  copy(r.tau, e.tau);
-  copy(r.tau_ext, e.tau_ext_true);
-  copy(s.tau_ext_hat, e.tau_ext_hat);
-  for (int j = 0; j < kMaxJoints; ++j) {
-    e.tau_ext_hat_min[j] = std::min(e.tau_ext_hat_min[j], s.tau_ext_hat[j]);
-    e.tau_ext_hat_max[j] = std::max(e.tau_ext_hat_max[j], s.tau_ext_hat[j]);
-    e.tau_ext_true_min[j] = std::min(e.tau_ext_true_min[j], r.tau_ext[j]);
-    e.tau_ext_true_max[j] = std::max(e.tau_ext_true_max[j], r.tau_ext[j]);
-  }
-  d.utime = r.utime;
+  copy(r.q, r.n, e.q);
+  copy(r.qd, r.n, e.qd);
+  copy(r.tau, r.n, e.tau);
+  copy(r.tau_ext, r.n, e.tau_ext_true);
+  copy(s.tau_ext_hat, r.n, e.tau_ext_hat);
+  hold_extremes(s.tau_ext_hat, r.n, e.tau_ext_hat_min, e.tau_ext_hat_max);
+  hold_extremes(r.tau_ext, r.n, e.tau_ext_true_min, e.tau_ext_true_max);
+  hold(c.detection, s);
+}
+
+void Emitter::hold(detection_t& d, const LiveSample& s) {
+  d.utime = s.reading.utime;
   d.score = std::max(d.score, s.score);
-  d.contact_true = static_cast<std::int8_t>(d.contact_true != 0 || r.contact);
+  d.contact_true = static_cast<std::int8_t>(d.contact_true != 0 || s.reading.contact);
   if (d.mark == 0) d.contact = s.contact;
   if (s.mark && d.mark == 0) {
     d.mark = 1;
-    d.mark_utime = r.utime;
+    d.mark_utime = s.reading.utime;
   }
 }
 
 void Emitter::emit(Channel& c) {
-  c.detection.samples = c.estimate.samples;
-  send(c, c.name.c_str(), c.estimate);
+  estimate_t& e = c.estimate;
+  end_extremes(e.n, e.tau_ext_hat_min, e.tau_ext_hat_max);
+  end_extremes(e.n, e.tau_ext_true_min, e.tau_ext_true_max);
+  c.detection.samples = e.samples;
+  send(c, c.name.c_str(), e);
   if (!c.detection.detector.empty()) send(c, kDetectionChannel, c.detection);
-  c.estimate.samples = 0;
+  e.samples = 0;
 }
 
 template <class Message>

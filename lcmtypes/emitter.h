@@ -24,8 +24,8 @@ struct LiveSample {
   bool mark = false;
 };
 
-/// An estimator's messages: estimate_t on TAUEXT_ESTIMATE_<estimator>, and detection_t on TAUEXT_DETECTION if
-/// there is a detector.
+/// An estimator's messages: estimate_t on TAUEXT_ESTIMATE_<estimator>, and detection_t on
+/// TAUEXT_DETECTION if there is a detector.
 struct Stream {
   std::string estimator;
   std::string detector;  ///< "" for none
@@ -39,8 +39,9 @@ inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";  ///< and th
 /// Takes a message's channel, time [us] and bytes; false if it could not be sent.
 using Sink = std::function<bool(const char* channel, std::int64_t utime, Bytes message)>;
 
-/// Turns samples into messages; at most `rate` of them a second of sample time and channel, each with minima,
-/// maxima, marks and scores held over the samples since the one before. Allocates nothing after construction.
+/// Turns samples into messages; at most `rate` of them a second of sample time and channel, and one
+/// at once for a mark. Each holds minima, maxima, marks and scores over the samples since the one
+/// before. Allocates nothing after construction.
 class Emitter {
  public:
   struct Counts {
@@ -48,7 +49,8 @@ class Emitter {
   };
 
   /// @param rate [1/s]; 0: a message for every sample
-  /// @throws std::invalid_argument for a rate below 0 or not finite, or a channel longer than LCM's 63 characters
+  /// @throws std::invalid_argument for a rate below 0 or not finite, or a channel longer than LCM's
+  /// 63 characters
   Emitter(const std::vector<Stream>& streams, double rate, Sink sink);
 
   void add(const LiveSample& sample);
@@ -69,7 +71,9 @@ class Emitter {
     Counts counts;
   };
 
-  void hold(Channel& c, const LiveSample& s);
+  static void begin(Channel& c, int n);
+  static void hold(Channel& c, const LiveSample& s);
+  static void hold(detection_t& d, const LiveSample& s);
   void emit(Channel& c);
   template <class Message>
   void send(Channel& c, const char* name, Message& m);

@@ -2,6 +2,7 @@
 #include "lcmtypes/listener.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <stdexcept>
 #include <utility>
@@ -23,6 +24,7 @@ Listener::Listener(const std::string& url, const std::string& channels, Handler 
   own_ = open_lcm(with_large_buffer(url_), why);
   if (!own_) throw std::runtime_error(fmt::format("{}: {}", url_, why));
   lcm_ = own_.get();
+  require_connection();
   subscribe(channels);
 }
 
@@ -48,10 +50,28 @@ void Listener::subscribe(const std::string& channels) {
   lcm_subscription_set_queue_capacity(subscription_, 0);  // no limit: the default drops at 30
 }
 
+std::string Listener::expression(const std::string& channel) {
+  std::string out;
+  for (const char c : channel) {
+    if (std::string_view("\\^$.|?*+()[]{}").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 bool Listener::wait(int milliseconds) {
-  const int handled = lcm_handle_timeout(lcm_, milliseconds);
-  if (handled < 0) throw std::runtime_error(fmt::format("{}: the connection is gone", url_));
-  return handled > 0;
+  require_connection();
+  pollfd ready{lcm_get_fileno(lcm_), POLLIN, 0};
+  if (::poll(&ready, 1, milliseconds) <= 0) return false;  // or a signal came
+  if (lcm_handle(lcm_) != 0)
+    throw std::runtime_error(fmt::format("{}: the connection is gone", url_));
+  return true;
+}
+
+// LCM hands a closed tcpq:// to select(), which aborts
+void Listener::require_connection() const {
+  if (lcm_get_fileno(lcm_) >= 0) return;
+  throw std::runtime_error(fmt::format("{}: no connection; is a server there?", url_));
 }
 
 }  // namespace tauext

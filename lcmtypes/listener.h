@@ -35,8 +35,12 @@ class Listener {
 
   const std::string& url() const { return url_; }
 
+  /// The regular expression that means this channel alone.
+  static std::string expression(const std::string& channel);
+
  private:
   void subscribe(const std::string& channels);
+  void require_connection() const;
 
   std::string url_;
   LcmHandle own_;

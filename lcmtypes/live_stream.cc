@@ -8,25 +8,40 @@
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace tauext {
 
 using namespace std::chrono_literals;
 
+namespace {
+using Clock = std::chrono::steady_clock;
+constexpr auto kIdle = 100ms;  // without samples, after which nothing is held back
+}  // namespace
+
 struct LiveStream::Shared {
-  Shared(Transport* transport, const std::vector<Stream>& streams, double rate,
+  Shared(std::shared_ptr<Transport> to, const std::vector<Stream>& streams, double rate,
          std::size_t capacity)
-      : ring(capacity),
-        emitter(streams, rate, [transport](const char* channel, std::int64_t, Bytes message) {
-          return transport != nullptr && transport->publish(channel, message);
+      : transport(std::move(to)),
+        ring(capacity),
+        emitter(streams, rate, [this](const char* channel, std::int64_t, Bytes message) {
+          return transport && transport->publish(channel, message);
         }) {}
 
-  void drain() {
+  // takes out what is there; true if there was something
+  bool drain() {
+    bool any = false;
     while (const LiveSample* next = ring.peek()) {
-      emitter.add(*next);
+      if (stop.load(std::memory_order_acquire) && Clock::now() > deadline) {
+        dropped.fetch_add(1, std::memory_order_relaxed);
+      } else {
+        emitter.add(*next);
+      }
       ring.pop();
+      publish_counts();
+      any = true;
     }
-    publish_counts();
+    return any;
   }
 
   void publish_counts() {
@@ -35,8 +50,14 @@ struct LiveStream::Shared {
   }
 
   void run() {
+    auto newest = Clock::now();
     while (!stop.load(std::memory_order_acquire)) {
-      drain();
+      if (drain()) newest = Clock::now();
+      if (Clock::now() - newest >
+          kIdle) {  // the sender is silent: its last peaks and marks are news
+        emitter.flush();
+        publish_counts();
+      }
       std::this_thread::sleep_for(1ms);
     }
     drain();
@@ -47,18 +68,20 @@ struct LiveStream::Shared {
     finished.notify_all();
   }
 
+  std::shared_ptr<Transport> transport;
   moodycamel::ReaderWriterQueue<LiveSample> ring;
   Emitter emitter;  // of the thread, until done
   std::atomic<std::int64_t> published = 0, failed = 0, dropped = 0;
+  Clock::time_point deadline;  // written before stop
   std::atomic<bool> stop = false;
   std::mutex mutex;
   std::condition_variable finished;
   bool done = false;
 };
 
-LiveStream::LiveStream(Transport* transport, const std::vector<Stream>& streams, double rate,
-                       std::size_t capacity)
-    : shared_(std::make_shared<Shared>(transport, streams, rate, capacity)) {
+LiveStream::LiveStream(std::shared_ptr<Transport> transport, const std::vector<Stream>& streams,
+                       double rate, std::size_t capacity)
+    : shared_(std::make_shared<Shared>(std::move(transport), streams, rate, capacity)) {
   std::thread([shared = shared_] { shared->run(); }).detach();
 }
 
@@ -67,7 +90,8 @@ LiveStream::~LiveStream() {
 }
 
 bool LiveStream::push(const LiveSample& sample) noexcept {
-  const bool fits = shared_->ring.try_enqueue(sample);
+  const bool fits =
+      !shared_->stop.load(std::memory_order_relaxed) && shared_->ring.try_enqueue(sample);
   if (!fits) shared_->dropped.fetch_add(1, std::memory_order_relaxed);
   return fits;
 }
@@ -83,10 +107,12 @@ Emitter::Counts LiveStream::counts(int stream) const {
 }
 
 bool LiveStream::finish(double patience) {
+  const auto limit =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
+  if (!shared_->stop.load()) shared_->deadline = Clock::now() + limit / 2;
   shared_->stop.store(true, std::memory_order_release);
   std::unique_lock lock(shared_->mutex);
-  return shared_->finished.wait_for(lock, std::chrono::duration<double>(patience),
-                                    [this] { return shared_->done; });
+  return shared_->finished.wait_for(lock, limit, [this] { return shared_->done; });
 }
 
 }  // namespace tauext

@@ -13,8 +13,9 @@
 
 namespace tauext {
 
-/// Publishes what one thread, the loop, pushes. The loop never waits: a push copies into a lock-free ring,
-/// without a system call or an allocation; where the ring is full the sample is dropped and counted.
+/// Publishes what one thread, the loop, pushes. The loop never waits: a push copies into a
+/// lock-free ring, without a system call or an allocation; where the ring is full the sample is
+/// dropped and counted.
 class LiveStream {
  public:
   struct Counts {
@@ -22,15 +23,18 @@ class LiveStream {
     std::int64_t dropped = 0;                ///< samples that did not fit into the ring
   };
 
-  /// @param transport used by no other thread until finish(); null or not good: messages are counted as failed
+  /// @param transport used by no other thread until finish(); null or not good: messages count as
+  /// failed
+  /// @param rate [1/s] of messages of each channel; 0: one for every sample
   /// @param capacity samples that the ring holds
-  LiveStream(Transport* transport, const std::vector<Stream>& streams, double rate,
+  /// @throws std::invalid_argument as Emitter does
+  LiveStream(std::shared_ptr<Transport> transport, const std::vector<Stream>& streams, double rate,
              std::size_t capacity = 8192);
   ~LiveStream();
   LiveStream(const LiveStream&) = delete;
   LiveStream& operator=(const LiveStream&) = delete;
 
-  /// From the loop's thread alone. False: dropped.
+  /// From the loop's thread alone. False: dropped; after finish(), always.
   bool push(const LiveSample& sample) noexcept;
 
   /// From any thread.
@@ -38,8 +42,9 @@ class LiveStream {
   /// Messages of one stream, once finish() is through.
   Emitter::Counts counts(int stream) const;
 
-  /// Sends what is left and ends the thread. Gives up after `patience` seconds: a tcpq:// server that does not
-  /// answer holds a message for longer. False then: the transport must not be used any more.
+  /// Sends what is left and ends the thread; what it cannot send in `patience` seconds is dropped.
+  /// False if even then a message does not return (a tcpq:// server that does not answer): the
+  /// thread is left to itself, with the transport, which must not be used any more.
   bool finish(double patience = 2);
 
  private:

@@ -73,7 +73,7 @@ class Reader {
 
   // at least so many bytes behind begin_; false where the file has less
   bool fill(Length wanted) {
-    if (end_ - begin_ < wanted) {
+    if (end_ - begin_ < wanted && left_ > 0) {
       const auto left = static_cast<Length>(left_);
       read_more(std::min(left, std::max<Length>(wanted - (end_ - begin_), 1 << 16)));
     }
@@ -99,10 +99,13 @@ class Reader {
     const auto message = static_cast<std::uint32_t>(big_endian<4>(p + 24));
     if (channel == 0 || channel > kLongestChannel || message > kLongestMessage) return 0;
     const Length length = kHeader + channel + message;
-    if (!fill(length)) {
+    // before anything is read: a forged length would have the rest of the file in memory, again and
+    // again
+    if (length > end_ - begin_ + static_cast<Length>(left_)) {
       faults_.truncated = true;
       return 0;
     }
+    fill(length);
     return believable(length) ? length : 0;
   }
 

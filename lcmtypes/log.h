@@ -15,8 +15,8 @@
 
 namespace tauext {
 
-/// A log under construction, in memory: who writes it to a file decides how, and sees a full disk. With
-/// simulated times it is the same from run to run, byte by byte.
+/// A log under construction, in memory: who writes it to a file decides how, and sees a full disk.
+/// With simulated times it is the same from run to run, byte by byte.
 class LogBuffer {
  public:
   LogBuffer();

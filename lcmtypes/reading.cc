@@ -84,7 +84,7 @@ std::vector<std::byte> encoded(const Message& m) {
 sample_t sample_of(const Reading& r) {
   sample_t m{};
   m.utime = r.utime;
-  m.seq = r.seq;
+  m.seq = std::max<std::int64_t>(r.seq, 0);
   m.t = r.t;
   m.n = r.n;
   m.reference = static_cast<std::int8_t>(r.reference);

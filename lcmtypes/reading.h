@@ -53,7 +53,8 @@ Reject type_of(Bytes message, MessageType& type) noexcept;
 /// Reads a message of that type. `out` is untouched unless kNone comes back.
 Reject read(Bytes message, MessageType type, Reading& out);
 
-/// Writes a message of that type (kTauext: sample_t); what the type has and a Reading has not is zero.
+/// Writes a message of that type (kTauext: sample_t); what the type has and a Reading has not is
+/// zero.
 /// @throws std::invalid_argument for a number of joints that is not 1 to 8
 std::vector<std::byte> write(const Reading& reading, MessageType type);
 

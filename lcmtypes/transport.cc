@@ -25,9 +25,8 @@ std::string scheme_of(const std::string& url) {
   for (const char* known : kSchemes) {
     if (scheme == known) return scheme;
   }
-  throw std::invalid_argument(
-      fmt::format("--lcm {}: an LCM URL begins with udpm://, tcpq://, memq:// or file://, like {}",
-                  url, kDefault));
+  throw std::invalid_argument(fmt::format(
+      "{}: an LCM URL begins with udpm://, tcpq://, memq:// or file://, like {}", url, kDefault));
 }
 
 // 239.255.76.67:7667 of a udpm URL; port 0 if it names none
@@ -41,13 +40,13 @@ sockaddr_in address_of(const std::string& url) {
     const char* const end = place.data() + place.size();
     const auto [rest, error] = std::from_chars(place.data() + colon + 1, end, port);
     if (error != std::errc() || rest != end || port == 0) {
-      throw std::invalid_argument(fmt::format("--lcm {}: no port from 1 to 65535", url));
+      throw std::invalid_argument(fmt::format("{}: no port from 1 to 65535", url));
     }
   }
   a.sin_port = htons(port);
   const std::string group = place.substr(0, colon);
   if (!group.empty() && inet_pton(AF_INET, group.c_str(), &a.sin_addr) != 1) {
-    throw std::invalid_argument(fmt::format("--lcm {}: '{}' is no IPv4 address", url, group));
+    throw std::invalid_argument(fmt::format("{}: '{}' is no IPv4 address", url, group));
   }
   if (group.empty()) inet_pton(AF_INET, "239.255.76.67", &a.sin_addr);
   if (!IN_MULTICAST(ntohl(a.sin_addr.s_addr))) {

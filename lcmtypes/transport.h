@@ -13,16 +13,19 @@
 
 namespace tauext {
 
-/// The URL that stands for "": $LCM_DEFAULT_URL, else LCM's own group on this machine alone (ttl 0).
+/// The URL that stands for "": $LCM_DEFAULT_URL, else LCM's own group on this machine alone (ttl
+/// 0).
 std::string lcm_url(const std::string& url);
 
-/// Why nothing could be sent to or received from the URL: no multicast route, with the commands that add
-/// one. "" if there is no reason to think so. Opens a socket and sends nothing.
+/// Why nothing could be sent to or received from the URL: no multicast route, with the commands
+/// that add one. "" if there is no reason to think so. Opens a socket and sends nothing.
+/// @throws std::invalid_argument for a URL that LCM does not know
 std::string trouble_with(const std::string& url);
 
 using LcmHandle = std::unique_ptr<lcm_t, decltype(&lcm_destroy)>;
 
 /// LCM on that URL; null, and why, if that cannot be.
+/// @throws std::invalid_argument for a URL that LCM does not know
 LcmHandle open_lcm(const std::string& url, std::string& why);
 
 /// Publishes messages that are already encoded. Safe from one thread.

@@ -2,7 +2,8 @@
 #include "lcmtypes/wire.h"
 
 #include <algorithm>
-#include <type_traits>
+#include <bit>
+#include <cmath>
 
 namespace tauext {
 namespace {
@@ -23,13 +24,21 @@ class Cursor {
   // whose differences and sums cannot overflow
   void time() {
     constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
-    if (big_endian(8) > kLargest && reject_ == Reject::kNone) reject_ = Reject::kWrongTime;
+    last_time_ = big_endian(8);
+    if (last_time_ > kLargest) reject(Reject::kWrongTime);
   }
+  // t [s], which says the same as the utime [us] before it
+  void same_time_in_seconds(double utime) {
+    const double t = std::bit_cast<double>(big_endian(8));
+    constexpr double kRounding = 1e-5;  // [s]
+    if (!(std::abs(t - utime * 1e-6) <= kRounding)) reject(Reject::kWrongTime);
+  }
+  double last_time() const { return static_cast<double>(last_time_); }
 
   // a count that the message claims
   std::int32_t count(std::int32_t least, std::int32_t most) {
     const std::int32_t n = int32();
-    if (reject_ == Reject::kNone && (n < least || n > most)) reject_ = Reject::kWrongCount;
+    if (n < least || n > most) reject(Reject::kWrongCount);
     return reject_ == Reject::kNone ? n : 0;
   }
   void text() {  // its length counts a final 0
@@ -40,37 +49,45 @@ class Cursor {
     }
   }
   Reject finish() {
-    if (reject_ == Reject::kNone && !rest_.empty()) reject_ = Reject::kWrongSize;
+    if (!rest_.empty()) reject(Reject::kWrongSize);
     return reject_;
   }
 
  private:
   Bytes take(std::size_t bytes) {
-    if (bytes > rest_.size()) reject_ = reject_ == Reject::kNone ? Reject::kWrongSize : reject_;
+    if (bytes > rest_.size()) reject(Reject::kWrongSize);
     if (reject_ != Reject::kNone) return {};
     const Bytes taken = rest_.first(bytes);
     rest_ = rest_.subspan(bytes);
     return taken;
   }
 
+  // the first reason stays
+  void reject(Reject why) {
+    if (reject_ == Reject::kNone) reject_ = why;
+  }
+
   Bytes rest_;
   Reject reject_ = Reject::kNone;
+  std::uint64_t last_time_ = 0;
 };
 
 // what the body must look like, type by type
 
 void walk(Cursor& c, const sample_t&) {
   c.time();
+  const double utime = c.last_time();
   c.time();  // seq
-  c.skip(8);
+  c.same_time_in_seconds(utime);
   c.count(1, kMaxJoints);
   c.skip(2 + 4 * kMaxJoints * 8);
 }
 
 void walk(Cursor& c, const estimate_t&) {
   c.time();
+  const double utime = c.last_time();
   c.time();  // seq
-  c.skip(8);
+  c.same_time_in_seconds(utime);
   c.count(1, kMaxJoints);
   c.skip(4 + 2 + (9 * kMaxJoints + 1) * 8);
 }

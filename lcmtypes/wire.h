@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// @file
-/// Bytes to messages and back. What comes from outside is checked before anything is decoded: LCM's own
-/// decoders believe the lengths that a message claims.
+/// @file Bytes to messages and back. What comes from outside is checked before anything is decoded:
+/// LCM's own decoders believe the lengths that a message claims.
 ///
-/// The types themselves, with units and signs, are lcmtypes/*.lcm; lcm-gen makes structs of them, whose
-/// members are uninitialised unless one writes `estimate_t e{}`.
+/// The types themselves, with units and signs, are lcmtypes/*.lcm; lcm-gen makes structs of them,
+/// whose members are uninitialised unless one writes `estimate_t e{}`.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +30,9 @@ enum class Reject : std::uint8_t {
   kForeign,     ///< shorter than a hash, or the hash of another type
   kWrongSize,   ///< longer or shorter than its type and its counts say
   kWrongCount,  ///< a number of joints or metrics, or a length of a text, out of range
-  kWrongTime,   ///< a time or a message's number that is negative or beyond 2^53
+  /// a time or a message's number that is negative or beyond 2^53, or a t [s] that is not its utime
+  /// [us]
+  kWrongTime,
 };
 
 /// In words.
@@ -42,11 +43,13 @@ using Bytes = std::span<const std::byte>;
 /// The hash at the head of a message; 0 if it is shorter than that.
 std::int64_t hash_of(Bytes message) noexcept;
 
-/// Decodes one of the six types. `out` is untouched unless kNone comes back; numbers may still be NaN.
+/// Decodes one of the six types. `out` is untouched unless kNone comes back; numbers may still be
+/// NaN.
 template <class Message>
 Reject decode(Bytes message, Message& out);
 
-/// Encodes one of the six types; allocates nothing.
+/// Encodes one of the six types, whose vectors must be as long as their counts say; allocates
+/// nothing.
 /// @returns its size [bytes]; 0 if it does not fit
 template <class Message>
 std::size_t encode(const Message& message, std::span<std::byte> to) noexcept;

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "mjcf/layout.h"
@@ -20,29 +21,50 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr double kSlip = 0.01;  // [rad/s] of CoulombFriction's tanh
 
 void check(const mjModel& m) {
+  const auto refuse = [](bool present, const char* what) {
+    if (present)
+      throw std::invalid_argument(std::string("the model has ") + what + ": not supported");
+  };
   if (m.nq != m.nv || m.nv == 0) {
     throw std::invalid_argument(
         "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
   }
-  if (m.neq > 0)
-    throw std::invalid_argument("the model ties joints together by <equality>: not supported");
-  for (int j = 0; j < m.njnt; ++j) {
-    if (m.jnt_stiffness[j] != 0)
-      throw std::invalid_argument("the model has springs in joints: not supported");
+  refuse(m.neq > 0, "joints tied together by <equality>");
+  refuse(!Eigen::VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
+  for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
+    refuse(!Eigen::VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
   }
+  refuse(m.opt.density != 0 || m.opt.viscosity != 0, "air or water around it");
+}
+
+// whether some actuator's coordinate is a fixed tendon: then the actuators say what a joint is
+bool has_tendon_coordinates(const mjModel& m) {
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_trntype[i] == mjTRN_TENDON &&
+        m.wrap_type[m.tendon_adr[m.actuator_trnid[2 * i]]] == mjWRAP_JOINT) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // the actuators' coordinates, or MuJoCo's
 Layout coordinates(const mjModel& m, const mjData& d) {
-  try {
-    Layout l = layout_of(m, d);
-    if (l.dof == m.nv) return l;
-  } catch (const std::invalid_argument&) {
-    // position servos and the like: fine for an arm that is only watched
+  if (!has_tendon_coordinates(m)) {
+    Layout l;
+    l.dof = m.nv;
+    l.S = MatrixXd::Identity(m.nv, m.nv);
+    return l;
   }
-  Layout l;
-  l.dof = m.nv;
-  l.S = MatrixXd::Identity(m.nv, m.nv);
+  Layout l = layout_of(m, d);
+  for (int i = 0; i < l.dof; ++i) {
+    if (m.actuator_gear[6 * i] == 1) continue;
+    throw std::invalid_argument(
+        fmt::format("motor {} has a gear of {}: where motors on tendons say what the joint "
+                    "coordinates are, their gears must be 1",
+                    i, m.actuator_gear[6 * i]));
+  }
+  if (l.dof != m.nv) throw std::invalid_argument("the motors do not move every joint of the model");
   return l;
 }
 
@@ -74,7 +96,8 @@ struct ArmDynamics::State {
 
   void move_to(const double* q, const double* qd) {
     const int n = model->nv;
-    rho.noalias() = S_inv * (VectorXd::Map(q, n) - q0);
+    moved = VectorXd::Map(q, n) - q0;
+    rho.noalias() = S_inv * moved;
     VectorXd::Map(data->qpos, n) = rho;
     if (qd == nullptr) {
       VectorXd::Map(data->qvel, n).setZero();

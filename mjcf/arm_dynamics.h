@@ -4,22 +4,24 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "estimators/types.h"
 #include "mjcf/model.h"
 
 namespace tauext {
 
-/// MuJoCo asked for inertia and torques at states that need not be its own. Every argument and result has dof()
-/// numbers, matrices dof() times that; nothing is allocated after construction. Not for two threads at once.
+/// MuJoCo asked for inertia and torques at states that need not be its own. Every argument and
+/// result has dof() numbers, matrices dof() times that; nothing is allocated after construction.
+/// Not for two threads at once.
 ///
-/// Coordinates: where the actuators give an arm's joint coordinates (mjcf/layout.h), these; else MuJoCo's own, one
-/// for each hinge or slide in the file's order. Friction is the file's damping and frictionloss, the latter
-/// smooth over 0.01 rad/s (estimators/friction.h says why).
+/// Coordinates: MuJoCo's own, one for each hinge or slide in the file's order, whatever gears its
+/// actuators have; but where motors on fixed tendons say what the joint coordinates are
+/// (mjcf/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of joints,
+/// the latter smooth over 0.01 rad/s (estimators/friction.h says why).
 class ArmDynamics {
  public:
-  /// @throws std::invalid_argument for a model with free or ball joints, springs, or constraints between joints
+  /// @throws std::invalid_argument for what it would have to ignore: free or ball joints, springs,
+  /// equality constraints, forces of tendons, a fluid; and for motors on tendons with gears
   explicit ArmDynamics(Model model);
   ArmDynamics(const ArmDynamics& other);
   ArmDynamics& operator=(const ArmDynamics&) = delete;
@@ -29,7 +31,8 @@ class ArmDynamics {
   void inertia(const double* q, double* B) const noexcept;                   ///< [kg m^2]
   void bias(const double* q, const double* qd, double* out) const noexcept;  ///< C qd + g [N m]
   void gravity(const double* q, double* out) const noexcept;                 ///< g [N m]
-  /// C^T qd - g [N m], C^T qd being dB/dt qd - C qd; dB/dt along qd by central differences of fourth order.
+  /// C^T qd - g [N m], C^T qd being dB/dt qd - C qd; dB/dt along qd by central differences of
+  /// fourth order.
   void momentum_bias(const double* q, const double* qd, double* out) const noexcept;
   void friction(const double* qd, double* out) const noexcept;  ///< F [N m]
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "bench/allocations.h"
 #include "bench/suite.h"
 #include "mjcf/arm_dynamics.h"
 
@@ -84,6 +85,36 @@ TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
 }
 INSTANTIATE_TEST_SUITE_P(OneToSevenJoints, FileRobot, testing::Range(1, 8));
 
+TEST_P(FileRobot, NoStepAllocates) {
+  const int n = GetParam();
+  const Robot r = file_robot(put(arm(n)));
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, 0.3), qd = q, tau = q;
+  Eigen::VectorXd out(n);
+  for (const std::string& e : r.estimators) {
+    if (is_baseline(e)) continue;
+    const auto stepper = r.stepper(e, "contact_classifier", Trace());
+    stepper->step(0, q.data(), qd.data(), tau.data(), out.data());
+    EXPECT_EQ(allocations_of([&] {
+                for (int k = 1; k < 10; ++k) {
+                  stepper->step(1e-3 * k, q.data(), qd.data(), tau.data(), out.data());
+                }
+              }),
+              0u)
+        << e;
+  }
+}
+
+TEST_F(FileRobot, AGearIsTheMotorsAndNotTheJoints) {
+  std::string geared = arm(2);
+  for (std::size_t at = 0; (at = geared.find("<motor ", at)) != std::string::npos; ++at) {
+    geared.insert(at + 7, "gear='100' ");
+  }
+  const MjcfArm<2> with(load_mjcf(put(geared))), without(load_mjcf(put(arm(2))));
+  const Vec<2> q(0.1, -0.4);
+  EXPECT_EQ(with.inertia(q), without.inertia(q));
+  EXPECT_EQ(with.gravity(q), without.gravity(q));
+}
+
 TEST_F(FileRobot, PositionServosAreFineForAnArmThatIsWatched) {
   const std::string servos = put(arm(3, false));
   const MjcfArm<3> watched(load_mjcf(servos)), driven(load_mjcf(put(arm(3))));
@@ -105,6 +136,15 @@ TEST_F(FileRobot, WhatIsNoArmIsRefusedWithItsName) {
   refuses(
       "<mujoco><worldbody><body><joint stiffness='3'/><geom size='1'/></body></worldbody></mujoco>",
       "springs");
+  refuses(
+      "<mujoco><option density='1.2'/><worldbody><body><joint/><geom "
+      "size='1'/></body></worldbody></mujoco>",
+      "air");
+  refuses(
+      "<mujoco><worldbody><body><joint name='a'/><geom size='1'/></body></worldbody><tendon><fixed "
+      "damping='1'>"
+      "<joint joint='a' coef='1'/></fixed></tendon></mujoco>",
+      "tendons");
   refuses("no xml", "");
 }
 

@@ -106,8 +106,36 @@ TEST_F(LcmTrace, WhatIsWrongInALogIsCounted) {
   put(log);
   EXPECT_EQ(get().size(), 98);
   EXPECT_EQ(report_.out_of_order, 2);
-  EXPECT_GE(report_.lost, 1);
+  EXPECT_EQ(report_.lost, 2);
   EXPECT_EQ(report_.rejected, 2);  // the other arm, and the empty one
+}
+
+TEST_F(LcmTrace, OneBadMessageDoesNotSpoilALog) {
+  const std::vector<Reading> all = readings_of(truth());
+  LogBuffer log;
+  for (int k = 0; k < 200; ++k) {
+    Reading r = all[k];
+    if (k == 0) r.n = 2;  // the first is another arm's
+    if (k == 100) {       // one is far ahead
+      r.utime = std::int64_t{1} << 52;
+      r.t = static_cast<double>(r.utime) * 1e-6;
+    }
+    log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
+  }
+  put(log);
+  const Trace back = get();
+  EXPECT_EQ(back.size(), 198);
+  EXPECT_EQ(back.t[100], all[102].t);
+  EXPECT_EQ(report_.rejected, 2);
+  EXPECT_EQ(report_.out_of_order, 0);
+}
+
+TEST_F(LcmTrace, TimesBelowZeroAreShifted) {
+  Trace t = truth();
+  for (double& time : t.t) time -= 0.25;
+  const std::vector<Reading> all = readings_of(t);
+  EXPECT_EQ(all[0].t, 0);
+  EXPECT_NEAR(all.back().t, 0.499, 1e-12);
 }
 
 TEST_F(LcmTrace, ChannelsAreChosenByNameOrBecauseThereIsNoChoice) {
@@ -151,6 +179,7 @@ TEST_F(LcmTrace, NamesOfLogs) {
   EXPECT_TRUE(is_lcm_log("/x/lcmlog-2026-11-21.00"));
   EXPECT_FALSE(is_lcm_log("b.csv"));
   EXPECT_FALSE(is_lcm_log("-"));
+  EXPECT_FALSE(is_lcm_log("lcmlog.csv"));
 }
 
 }  // namespace

@@ -25,8 +25,16 @@ class LivePrograms : public Programs {
   Outcome in_network(const std::string& script, bool route = true) const {
     const std::string up =
         route ? "ip link set lo up multicast on\nip route add 224.0.0.0/4 dev lo\n" : "";
-    write("script", "export PATH=" TAUEXT_BIN ":$PATH\n" + up + script);
-    return run_system("unshare -rn timeout 60 bash script");
+    return run_script(up + script, "unshare -rn ");
+  }
+  // `says FILE TEXT` waits until the text is in the file
+  Outcome run_script(const std::string& script, const std::string& inside = "") const {
+    write("script", "export PATH=" TAUEXT_BIN
+                    ":$PATH\n"
+                    "says() { for i in $(seq 300); do grep -q \"$2\" \"$1\" 2>/dev/null && return; "
+                    "sleep 0.1; done; }\n" +
+                        script);
+    return run_system(inside + "timeout 90 bash script");
   }
 
   bool forbidden() const { return std::system("unshare -rn true 2>/dev/null") != 0; }
@@ -51,25 +59,31 @@ class LivePrograms : public Programs {
 TEST_F(LivePrograms, PlaysAScenarioByTheClockAndSumsItUp) {
   const Outcome o = run(std::string(kRun) + "--detector pan_tompkins --speed 20 --seed 3");
   EXPECT_EQ(o.code, 0) << o.text;
-  EXPECT_TRUE(o.says("wallmobot3/collision: 30000 samples in 1.5 s")) << o.text;
+  EXPECT_TRUE(o.says("playing wallmobot3/collision; Ctrl-C ends")) << o.text;
+  EXPECT_TRUE(o.says("wallmobot3/collision: 30000 samples in ")) << o.text;
+  EXPECT_TRUE(o.says("a period is 50 us")) << o.text;
   EXPECT_TRUE(o.says("stream     none; --lcm streams")) << o.text;
   EXPECT_TRUE(std::regex_search(o.text, std::regex("\nekf +[0-9.]+ +[0-9.]+ .* 0 +1\n"))) << o.text;
 }
 
 TEST_F(LivePrograms, OpensNoSocketUnlessAsked) {
-  const std::string look = " --duration 1 & sleep 0.6; ls -l /proc/$!/fd | grep -c socket; wait";
-  const Outcome quiet = run(std::string(kRun) + look);
-  EXPECT_EQ(quiet.text.substr(0, 2), "0\n") << quiet.text;
+  const std::string look =
+      " --duration 3 2> err & says err playing\n"
+      "echo $(ls -l /proc/$!/fd | grep -c socket) sockets\nwait";
+  const Outcome quiet = run_script(kRun + look);
+  EXPECT_TRUE(quiet.says("0 sockets\n")) << quiet.text;
   SKIP_WITHOUT_NAMESPACE();
-  const Outcome streaming = in_network(std::string(kRun) + "--lcm" + look);
-  EXPECT_EQ(streaming.text.substr(0, 2), "1\n") << streaming.text;
+  const Outcome streaming = in_network(kRun + ("--lcm" + look));
+  EXPECT_TRUE(streaming.says("1 sockets\n")) << streaming.text;
 }
 
 TEST_F(LivePrograms, AListenerGetsEveryMessageOfOneKilohertz) {
   SKIP_WITHOUT_NAMESPACE();
   const Outcome o =
-      in_network("tauext-live --listen --duration 5 > heard & sleep 0.5\n" + std::string(kRun) +
-                 "--detector pan_tompkins --lcm --rate 0 --duration 3; wait; cat heard");
+      in_network("tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n" +
+                 std::string(kRun) +
+                 "--detector pan_tompkins --lcm --rate 0 --duration 3\n"
+                 "sleep 0.5; kill -INT $listener; wait; cat heard");
   EXPECT_EQ(o.code, 0) << o.text;
   // three estimators, an estimate and a detection each
   EXPECT_TRUE(o.says("18000 messages published, 0 failed; 0 samples dropped")) << o.text;
@@ -83,7 +97,7 @@ TEST_F(LivePrograms, WithoutARouteTheLoopGoesOnAndTheRemedyIsTold) {
   EXPECT_EQ(o.code, 1) << o.text;
   EXPECT_TRUE(o.says("streaming is off: no multicast route")) << o.text;
   EXPECT_TRUE(o.says("sudo ip route add 224.0.0.0/4 dev lo")) << o.text;
-  EXPECT_TRUE(o.says("500 samples in 0.5 s")) << o.text;
+  EXPECT_TRUE(o.says("500 samples in ")) << o.text;
   const Outcome listen = in_network("tauext-live --listen", false);
   EXPECT_EQ(listen.code, 2);
   EXPECT_TRUE(listen.says("no multicast route")) << listen.text;
@@ -91,9 +105,9 @@ TEST_F(LivePrograms, WithoutARouteTheLoopGoesOnAndTheRemedyIsTold) {
 
 TEST_F(LivePrograms, ARouteThatGoesAwayIsToldOnceAndTheLoopGoesOn) {
   SKIP_WITHOUT_NAMESPACE();
-  const Outcome o = in_network("(sleep 1; ip route del 224.0.0.0/4 dev lo) &\n" +
-                               std::string(kRun) + "--lcm --duration 2; wait");
-  EXPECT_TRUE(o.says("2000 samples in 2.0 s")) << o.text;
+  const Outcome o = in_network("(says err playing; sleep 1; ip route del 224.0.0.0/4 dev lo) &\n" +
+                               std::string(kRun) + "--lcm --duration 3 2> err; wait; cat err");
+  EXPECT_TRUE(o.says("3000 samples in ")) << o.text;
   EXPECT_GT(number(o, "messages published"), 100) << o.text;
   EXPECT_GT(number(o, "failed;"), 100) << o.text;
   EXPECT_TRUE(o.says("fail (no route); the run goes on")) << o.text;
@@ -103,10 +117,11 @@ TEST_F(LivePrograms, ARouteThatGoesAwayIsToldOnceAndTheLoopGoesOn) {
 TEST_F(LivePrograms, AListenerThatIsKilledOrStoppedDoesNotMatter) {
   SKIP_WITHOUT_NAMESPACE();
   const Outcome o = in_network(
-      "tauext-live --listen --duration 9 > /dev/null & killed=$!\n"
-      "tauext-live --listen --duration 9 > /dev/null & stopped=$!\n"
-      "(sleep 1; kill -KILL $killed; kill -STOP $stopped) &\n" +
-      std::string(kRun) + "--lcm --rate 0 --duration 2; kill -KILL $stopped");
+      "tauext-live --listen > /dev/null 2> first & killed=$!\n"
+      "tauext-live --listen > /dev/null 2> second & stopped=$!\n"
+      "says first listening; says second listening\n"
+      "(says err playing; sleep 0.5; kill -KILL $killed; kill -STOP $stopped) &\n" +
+      std::string(kRun) + "--lcm --rate 0 --duration 2 2> err; kill -KILL $stopped");
   EXPECT_TRUE(o.says("6000 messages published, 0 failed; 0 samples dropped")) << o.text;
 }
 
@@ -124,8 +139,9 @@ TEST_F(LivePrograms, ForgedAndForeignMessagesAreRejectedAndCounted) {
   }
   put_log("forged.lcm", log);
   const Outcome o = in_network(
-      "(sleep 0.7; lcm-logplayer forged.lcm > /dev/null) &\ntauext-live --listen --duration 2; "
-      "wait");
+      "tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n"
+      "lcm-logplayer forged.lcm > /dev/null\n"
+      "sleep 0.5; kill -INT $listener; wait $listener; code=$?; cat heard; exit $code");
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(
       o.says("50 messages, 0 lost, 100 rejected; 50 of another type; 50 with an impossible count"))
@@ -134,21 +150,24 @@ TEST_F(LivePrograms, ForgedAndForeignMessagesAreRejectedAndCounted) {
 
 TEST_F(LivePrograms, EstimatesARobotOnTheAir) {
   SKIP_WITHOUT_NAMESPACE();
-  for (const std::string type : {"iiwa", "panda", "tauext"}) {
-    const std::string channel = type == "iiwa"    ? "IIWA_STATUS"
-                                : type == "panda" ? "PANDA_STATUS"
-                                                  : "TAUEXT_SAMPLE";
+  const std::map<std::string, std::string> channels = {
+      {"iiwa", "IIWA_STATUS"}, {"panda", "PANDA_STATUS"}, {"tauext", "TAUEXT_SAMPLE"}};
+  for (const auto& [type, channel] : channels) {
     const Outcome o = in_network(
-        "tauext-record --robot wallmobot3 --scenario collision --type " + type +
+        "tauext-record --robot wallmobot3 --scenario contact --type " + type +
         " --out robot.lcm 2> /dev/null\n"
-        "(sleep 0.7; lcm-logplayer --speed=20 robot.lcm > /dev/null) &\n"
         "tauext-live --robot wallmobot3 --estimator mo1 --detector pan_tompkins --subscribe " +
-        channel + " --type " + type + " --lcm --duration 3.5; wait");
+        channel + " --type " + type +
+        " --lcm > heard 2>&1 & live=$!\nsays heard listening\n"
+        "lcm-logplayer --speed=4 robot.lcm > /dev/null\n"
+        "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code");
     EXPECT_EQ(o.code, 0) << o.text;
-    EXPECT_TRUE(o.says("input      30000 used, 0 lost, 0 late, 0 repeated, 0 rejected; 0 restarts"))
-        << o.text;
-    EXPECT_TRUE(std::regex_search(o.text, std::regex("\nmo1 +0?.* 0 +1\n"))) << o.text;
-    EXPECT_GT(number(o, "messages published"), 400) << o.text;
+    // the player is known to drop one of 8000, at its begin or its end
+    EXPECT_GE(number(o, "used"), 7999) << o.text;
+    EXPECT_TRUE(o.says("used, 0 lost, 0 late, 0 repeated, 0 rejected; 0 restarts")) << o.text;
+    const std::regex marked("\nmo1 +[0-9.]+ +[0-9.]+ .* 0 +[1-9][0-9]*\n");
+    EXPECT_TRUE(std::regex_search(o.text, marked)) << o.text;
+    EXPECT_GT(number(o, "messages published"), 1000) << o.text;
   }
 }
 
@@ -161,18 +180,18 @@ TEST_F(LivePrograms, WhatANetworkDoesToMessagesIsHandledAndCounted) {
   };
   for (int k = 0; k < 500; ++k) {
     if (k % 100 == 50) continue;      // 5 lost
-    add(k % 100 == 60 ? k - 20 : k);  // 5 late instead of their own: 5 more lost
+    add(k % 100 == 60 ? k - 20 : k);  // 5 late copies instead of their own: 5 more lost
     if (k % 100 == 70) add(k);        // 5 repeated
     if (k % 100 == 80) add(k, 2);     // 5 of another arm
   }
   put_log("bad.lcm", log);
   const Outcome o = in_network(
-      "(sleep 0.7; lcm-logplayer bad.lcm > /dev/null) &\n"
-      "tauext-live --robot wallmobot3 --estimator mo1 --subscribe ARM --duration 2; wait");
+      "tauext-live --robot wallmobot3 --estimator mo1 --subscribe ARM > heard 2>&1 & live=$!\n"
+      "says heard listening; lcm-logplayer bad.lcm > /dev/null\n"
+      "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code");
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(o.says("ARM: a message of 2 joints, and wallmobot3 has 3")) << o.text;
-  // a late one takes one from the lost, as far as anybody can know
-  EXPECT_TRUE(o.says("input      490 used, 5 lost, 5 late, 5 repeated, 5 rejected; 0 restarts"))
+  EXPECT_TRUE(o.says("input      490 used, 10 lost, 5 late, 5 repeated, 5 rejected; 0 restarts"))
       << o.text;
 }
 
@@ -195,19 +214,31 @@ TEST_F(LivePrograms, ARobotFromAFileEstimatesWhatTheClosedFormDoes) {
 TEST_F(LivePrograms, TheBenchmarkIsOnTheAirAsEntriesFinish) {
   SKIP_WITHOUT_NAMESPACE();
   const Outcome o = in_network(
-      "tauext-live --listen --duration 6 > heard & sleep 0.7\n"
+      "tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n"
       "tauext-bench --benchmark_filter='testbed1/hold/mo.$' --lcm --benchmark_min_time=0.01 > "
-      "/dev/null; wait; cat heard");
+      "/dev/null\n"
+      "sleep 0.5; kill -INT $listener; wait; cat heard");
   EXPECT_TRUE(o.says("testbed1/hold/mo1  rmse ")) << o.text;
   EXPECT_TRUE(o.says("testbed1/hold/mo3  rmse ")) << o.text;
   EXPECT_TRUE(o.says("3 messages, 0 lost, 0 rejected")) << o.text;
 }
 
 TEST_F(LivePrograms, InterruptedItSumsUp) {
-  const Outcome o = run_system("timeout --preserve-status -s INT 1 " TAUEXT_BIN "/" +
-                               std::string(kRun) + "--loop");
-  EXPECT_EQ(o.code, 0) << o.text;
-  EXPECT_TRUE(o.says("loop       late by")) << o.text;
+  for (const std::string signal : {"INT", "TERM"}) {
+    const Outcome o = run_script(
+        std::string(kRun) + "--loop > out 2>&1 & live=$!\nsays out playing; sleep 0.3; kill -" +
+        signal + " $live; wait $live; code=$?; cat out; exit $code");
+    EXPECT_EQ(o.code, 0) << o.text;
+    EXPECT_TRUE(o.says("loop       late by")) << o.text;
+  }
+}
+
+TEST_F(LivePrograms, AConnectionThatIsNotThereIsAnErrorAndNoAbort) {
+  for (const char* flags : {"--listen", "--robot wallmobot3 --estimator mo1 --subscribe ARM"}) {
+    const Outcome o = run(std::string("tauext-live ") + flags + " --lcm tcpq://127.0.0.1:1");
+    EXPECT_EQ(o.code, 2) << o.text;
+    EXPECT_TRUE(o.says("tcpq://127.0.0.1:1: no connection; is a server there?")) << o.text;
+  }
 }
 
 TEST_F(LivePrograms, LogsRepeatByteByByteAndADiskThatIsFullIsAnError) {
@@ -219,6 +250,12 @@ TEST_F(LivePrograms, LogsRepeatByteByByteAndADiskThatIsFullIsAnError) {
   const std::string name = "/testbed1_collision_mo1+contact_classifier.lcm";
   EXPECT_GT(content("a" + name).size(), 1'000'000u);
   EXPECT_TRUE(content("a" + name) == content("b" + name));
+  fs::create_symlink("/dev/full", folder_ / "a" / "testbed1_collision_ndob+contact_classifier.lcm");
+  const Outcome suite =
+      run("tauext-bench --benchmark_filter='testbed1/collision/(mo1|ndob).contact_classifier' "
+          "--benchmark_min_time=0.01 --lcm-log a");
+  EXPECT_EQ(suite.code, 1) << suite.text;  // one entry failed, the others are there
+  EXPECT_TRUE(suite.says("testbed1/collision/mo1+contact_classifier")) << suite.text;
   fs::create_symlink("/dev/full", folder_ / "full.lcm");
   const Outcome o = run("tauext-record --robot testbed1 --scenario hold --out full.lcm");
   EXPECT_EQ(o.code, 2) << o.text;

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
+#include <memory>
 #include <stdexcept>
+#include <thread>
 
 #include "bench/allocations.h"
 #include "bench/lcm_trace.h"
@@ -73,18 +76,46 @@ TEST(Live, FiguresAreTheMetrics) {
   EXPECT_EQ(estimation.figures(0).step_ns.count(), static_cast<std::uint64_t>(trace.size()));
 }
 
+TEST(Live, AReferenceThatIsNoNumberIsNotCompared) {
+  const Trace trace = blow();
+  LiveEstimation estimation(robot("wallmobot3"), {"zero"}, "", {}, trace, nullptr);
+  Reading r = readings_of(trace)[0];
+  r.tau_ext = {3, 0, -4};
+  estimation.take(r);
+  r.t += 1e-3;
+  r.tau_ext[1] = std::numeric_limits<double>::quiet_NaN();
+  estimation.take(r);
+  EXPECT_EQ(estimation.figures(0).compared, 1);
+  EXPECT_EQ(estimation.figures(0).rmse(), 4);
+  EXPECT_EQ(estimation.samples(), 2);
+}
+
+TEST(Live, AGapDoesNotOutlastTheStop) {
+  std::vector<Reading> readings = readings_of(blow());
+  readings.resize(2);
+  readings[1].t = readings[0].t + 3600;
+  LiveEstimation estimation(robot("wallmobot3"), {"mo1"}, "", {}, Trace(), nullptr);
+  Histogram late;
+  std::atomic<bool> stop = false;
+  std::thread loop([&] { play(readings, {}, estimation, late, stop); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  stop = true;
+  loop.join();
+  EXPECT_EQ(estimation.samples(), 1);
+}
+
 TEST(Live, PlaysByTheClockAtItsSpeedAndBeginsAgain) {
   const Trace trace = blow();  // 0.5 s
   const std::vector<Reading> readings = readings_of(trace);
-  Transport transport("memq://");
+  const auto transport = std::make_shared<Transport>("memq://");
   std::vector<estimate_t> seen;
-  Listener listener(transport.handle(), "TAUEXT_ESTIMATE_mo1",
+  Listener listener(transport->handle(), "TAUEXT_ESTIMATE_mo1",
                     [&](std::string_view, std::int64_t, Bytes m) {
                       estimate_t e{};
                       ASSERT_EQ(decode(m, e), Reject::kNone);
                       seen.push_back(e);
                     });
-  LiveStream stream(&transport, streams_of({"mo1"}, ""), 0);
+  LiveStream stream(transport, streams_of({"mo1"}, ""), 0);
   LiveEstimation estimation(robot("wallmobot3"), {"mo1"}, "", {}, trace, &stream);
   Histogram late;
   const std::atomic<bool> stop = false;

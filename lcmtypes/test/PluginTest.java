@@ -64,17 +64,25 @@ public final class PluginTest {
     Recording recording = new Recording("ekf");
     recording.add(estimate(500, 5000000, 3));
     recording.add(mark("ekf", 5000000));
-    recording.add(estimate(0, 0, 3));
+    for (int i = 0; i < 19; ++i) {
+      recording.add(estimate(i, 5000 * i, 3));
+    }
     Snapshot s = recording.snapshot(kWidth);
+    expect(s.counters.late == 19 && s.counters.restarts == 0 && s.marks.size() == 1,
+        "some late messages are no restart");
+    recording.add(estimate(19, 95000, 3));
+    s = recording.snapshot(kWidth);
     expect(s.marks.isEmpty(), "a restart clears the marks");
     expect(points(s.estimate[0]) == 1, "a restart clears the curves");
-    expect(s.t0 == 0 && s.counters.restarts == 1, "a restart begins the time axis anew");
+    expect(s.t0 < 0.1 && s.counters.restarts == 1, "a restart begins the time axis anew");
   }
 
   private static void changedJointsClear() {
     Recording recording = new Recording("ekf");
     recording.add(estimate(0, 0, 3));
-    recording.add(estimate(1, 5000, 7));
+    for (int i = 1; i <= 20; ++i) {
+      recording.add(estimate(i, 5000 * i, 7));
+    }
     Snapshot s = recording.snapshot(kWidth);
     expect(s.n == 7 && points(s.estimate[0]) == 1, "another n begins anew");
   }
@@ -85,6 +93,10 @@ public final class PluginTest {
     recording.add(estimate(4, 20000, 3));
     recording.add(estimate(5, 25000, 3));
     expect(recording.snapshot(kWidth).counters.lost == 3, "a jump of seq by 4 is a loss of 3");
+    recording.add(estimate(1L << 52, 30000, 3));
+    recording.add(estimate(Long.MAX_VALUE, 35000, 3));
+    Counters c = recording.snapshot(kWidth).counters;
+    expect(c.lost == 3 && c.malformed == 1, "a forged seq is no loss");
   }
 
   private static void wrongJointsAreCountedAndIgnored() {

@@ -37,6 +37,17 @@ TEST(ArrivalsTest, RepeatedLateAndLostOnesAreTold) {
   EXPECT_EQ(a.counts().used, 3);
 }
 
+TEST(ArrivalsTest, ARestartOrACopyDoesNotUndoALoss) {
+  Arrivals a;
+  for (int k = 0; k < 100; ++k) a.take(at(k, k));
+  a.take(at(115, 115));  // 15 lost
+  a.take(at(50, 50));    // a late copy of one that had come
+  EXPECT_EQ(a.counts().lost, 15);
+  for (int k = 0; k < 50; ++k) a.take(at(k, k));
+  EXPECT_EQ(a.counts().restarts, 1);
+  EXPECT_EQ(a.counts().lost, 15);
+}
+
 TEST(ArrivalsTest, WithoutNumbersWholePeriodsThatAreMissingAreLost) {
   Arrivals a;
   std::int64_t t = 0;
@@ -53,9 +64,9 @@ TEST(ArrivalsTest, ARestartedSenderIsBelievedAfterItsPatience) {
   for (int k = 100000; k < 100100; ++k) a.take(at(k, k));
   std::vector<Arrival> seen;
   for (int k = 0; k < 100; ++k) seen.push_back(a.take(at(k, k)));
-  for (int k = 0; k < Arrivals::kPatience - 1; ++k) EXPECT_EQ(seen[k], Arrival::kLate);
-  EXPECT_EQ(seen[Arrivals::kPatience - 1], Arrival::kRestart);
-  for (int k = Arrivals::kPatience; k < 100; ++k) EXPECT_EQ(seen[k], Arrival::kNext);
+  for (int k = 0; k < Sequence::kPatience - 1; ++k) EXPECT_EQ(seen[k], Arrival::kLate);
+  EXPECT_EQ(seen[Sequence::kPatience - 1], Arrival::kRestart);
+  for (int k = Sequence::kPatience; k < 100; ++k) EXPECT_EQ(seen[k], Arrival::kNext);
   EXPECT_EQ(a.counts().restarts, 1);
   EXPECT_EQ(a.counts().lost, 0);
 }
@@ -69,7 +80,7 @@ TEST(ArrivalsTest, OneFalseTimeFarAheadDoesNotSilenceTheStream) {
     const Arrival arrival = a.take(at(k, k));
     used += arrival == Arrival::kNext || arrival == Arrival::kRestart;
   }
-  EXPECT_EQ(used, 998 - (Arrivals::kPatience - 1));
+  EXPECT_EQ(used, 998 - (Sequence::kPatience - 1));
 }
 
 TEST(ArrivalsTest, AnotherSendersNumbersAreNoLoss) {

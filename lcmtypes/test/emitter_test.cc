@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -85,19 +86,58 @@ TEST(EmitterTest, MarksScoresAndStatusesAreHeldToo) {
     s.step_us = k == 15 ? 9 : 1;
     emitter.add(s);
   }
-  ASSERT_EQ(sent.size(), 6u);  // samples 0, 10 and 20, two messages each
+  ASSERT_EQ(sent.size(), 8u);  // samples 0, 10, at once 13, and 20, two messages each
   const auto e = decoded<estimate_t>(sent[4]);
   const auto d = decoded<detection_t>(sent[5]);
   EXPECT_EQ(sent[5].channel, "TAUEXT_DETECTION");
   EXPECT_EQ(e.status, estimate_t::kBadMeasurement);
-  EXPECT_EQ(e.step_us, 9);
-  EXPECT_EQ(d.utime, 20000);
+  EXPECT_EQ(decoded<estimate_t>(sent[6]).step_us, 9);
+  EXPECT_EQ(d.utime, 13000);
   EXPECT_EQ(d.mark, 1);
   EXPECT_EQ(d.mark_utime, 13000);
   EXPECT_EQ(d.contact, detection_t::kCollision);
   EXPECT_EQ(d.score, 4);
-  EXPECT_EQ(d.samples, 10);
+  EXPECT_EQ(d.samples, 3);
   EXPECT_EQ(decoded<detection_t>(sent[3]).mark, 0);
+  EXPECT_EQ(decoded<detection_t>(sent[7]).mark, 0);
+  EXPECT_EQ(decoded<detection_t>(sent[7]).samples, 7);
+}
+
+TEST(EmitterTest, WhatIsNoNumberDoesNotHideAPeak) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const int bad : {101, 102, 105}) {  // first, in the middle and last of their message
+    std::vector<Sent> sent;
+    Emitter emitter({{"ekf", ""}}, 200, collect(sent));
+    for (int k = 0; k <= 105; ++k) {
+      LiveSample s = live_sample(k);
+      if (k == bad) s.reading.tau_ext[0] = kNaN;
+      if (k == 103) s.reading.tau_ext[0] = 77;
+      if (k > 100) s.reading.tau_ext[1] = kNaN;
+      emitter.add(s);
+    }
+    const auto e = decoded<estimate_t>(sent.back());
+    ASSERT_EQ(e.samples, 5);
+    EXPECT_EQ(e.tau_ext_true_max[0], 77) << bad;
+    EXPECT_EQ(e.tau_ext_true_min[0], 5) << bad;
+    EXPECT_TRUE(std::isnan(e.tau_ext_true_max[1]));
+    EXPECT_EQ(e.tau_ext_true_max[3], 0);  // behind the joints
+  }
+}
+
+TEST(EmitterTest, AnotherNumberOfJointsIsAnotherMessage) {
+  std::vector<Sent> sent;
+  Emitter emitter({{"ekf", ""}}, 200, collect(sent));
+  for (int k = 0; k <= 10; ++k) {
+    LiveSample s = live_sample(k);
+    s.reading.n = k < 8 ? 3 : 2;
+    emitter.add(s);
+  }
+  for (const Sent& m : sent) {
+    const auto e = decoded<estimate_t>(m);
+    EXPECT_EQ(e.tau_ext_hat[2], e.n == 3 ? 3 : 0);
+    EXPECT_EQ(e.tau_ext_hat_max[2], e.n == 3 ? 3 : 0);
+  }
+  EXPECT_EQ(sent.size(), 4u);
 }
 
 TEST(EmitterTest, StreamsHaveTheirOwnNumbers) {

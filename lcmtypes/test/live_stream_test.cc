@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
@@ -16,16 +17,16 @@ namespace tauext::test {
 namespace {
 
 TEST(LiveStreamTest, ASubscriberGetsEveryMessageInOrder) {
-  Transport transport("memq://");
-  ASSERT_TRUE(transport.good());
+  const auto transport = std::make_shared<Transport>("memq://");
+  ASSERT_TRUE(transport->good());
   std::map<std::string, std::vector<std::int64_t>> seqs;
-  Listener listener(transport.handle(), "TAUEXT_.*",
+  Listener listener(transport->handle(), "TAUEXT_.*",
                     [&](std::string_view channel, std::int64_t, Bytes m) {
                       estimate_t e{};
                       ASSERT_EQ(decode(m, e), Reject::kNone);
                       seqs[std::string(channel)].push_back(e.seq);
                     });
-  LiveStream stream(&transport, {{"ekf", ""}, {"mo1", ""}}, 0);
+  LiveStream stream(transport, {{"ekf", ""}, {"mo1", ""}}, 0);
   for (int k = 0; k < 1000; ++k) {
     EXPECT_TRUE(stream.push(live_sample(k, 0)));
     EXPECT_TRUE(stream.push(live_sample(k, 1)));
@@ -41,9 +42,9 @@ TEST(LiveStreamTest, ASubscriberGetsEveryMessageInOrder) {
   }
 }
 
-TEST(LiveStreamTest, AFullRingDropsCountsAndNeverWaits) {
-  Transport transport("memq://");
-  LiveStream stream(&transport, {{"ekf", ""}}, 0, 16);
+TEST(LiveStreamTest, AFullRingDropsAndCounts) {
+  const auto transport = std::make_shared<Transport>("memq://");
+  LiveStream stream(transport, {{"ekf", ""}}, 0, 16);
   int accepted = 0;
   for (int k = 0; k < 20000; ++k) accepted += stream.push(live_sample(k));
   EXPECT_TRUE(stream.finish());
@@ -71,6 +72,60 @@ TEST(LiveStreamTest, APushAllocatesNothing) {
 }
 #endif
 
+TEST(LiveStreamTest, WhatIsHeldIsSentWhenTheSenderFallsSilent) {
+  const auto transport = std::make_shared<Transport>("memq://");
+  int marks = 0;
+  Listener listener(transport->handle(), "TAUEXT_DETECTION",
+                    [&](std::string_view, std::int64_t, Bytes m) {
+                      detection_t d{};
+                      ASSERT_EQ(decode(m, d), Reject::kNone);
+                      marks += d.mark;
+                    });
+  double largest = 0;
+  Listener estimates(transport->handle(), "TAUEXT_ESTIMATE_ekf",
+                     [&](std::string_view, std::int64_t, Bytes m) {
+                       estimate_t e{};
+                       ASSERT_EQ(decode(m, e), Reject::kNone);
+                       largest = std::max(largest, e.tau_ext_hat_max[0]);
+                     });
+  LiveStream stream(transport, {{"ekf", "pan_tompkins"}}, 1);
+  for (int k = 0; k < 100; ++k) {
+    LiveSample s = live_sample(k);
+    s.mark = k == 50;
+    if (k == 70) s.tau_ext_hat[0] = 77;
+    stream.push(s);
+  }
+  for (int i = 0; i < 500 && (marks == 0 || largest < 77); ++i) listener.wait(10);
+  EXPECT_EQ(marks, 1);
+  EXPECT_EQ(largest, 77);
+}
+
+TEST(LiveStreamTest, AfterItsEndNothingIsTakenAndAllIsCounted) {
+  LiveStream stream(nullptr, {{"ekf", ""}}, 0);
+  EXPECT_TRUE(stream.push(live_sample(0)));
+  EXPECT_TRUE(stream.finish());
+  EXPECT_FALSE(stream.push(live_sample(1)));
+  EXPECT_EQ(stream.counts().dropped, 1);
+}
+
+TEST(TransportTest, AServerThatIsNotThereCannotBeListenedTo) {
+  EXPECT_THROW(Listener("tcpq://127.0.0.1:1", ".*", [](std::string_view, std::int64_t, Bytes) {}),
+               std::runtime_error);
+}
+
+TEST(TransportTest, AChannelsNameMeansItselfAlone) {
+  EXPECT_EQ(Listener::expression("ARM(1).x"), "ARM\\(1\\)\\.x");
+  const auto transport = std::make_shared<Transport>("memq://");
+  int heard = 0;
+  Listener listener(transport->handle(), Listener::expression("ARM(1)"),
+                    [&](std::string_view, std::int64_t, Bytes) { ++heard; });
+  const auto m = bytes_of(estimate());
+  for (const char* channel : {"ARM1", "ARM(1)", "XARM(1)"}) transport->publish(channel, m);
+  while (listener.wait(0)) {
+  }
+  EXPECT_EQ(heard, 1);
+}
+
 TEST(TransportTest, TroublesHaveARemedyAndNonsenseIsRefused) {
   for (const char* url :
        {"nonsense", "http://localhost", "udpm://1.2.3.4:7667", "udpm://239.1.1.1:0",
@@ -86,9 +141,9 @@ TEST(TransportTest, TheTestsOwnDefaultStaysInThisProcess) {
 }
 
 TEST(TransportTest, AServerThatIsNotThereIsToldAndNothingWaits) {
-  Transport transport("tcpq://127.0.0.1:1");
+  const auto transport = std::make_shared<Transport>("tcpq://127.0.0.1:1");
   const LiveSample s = live_sample(1);
-  LiveStream stream(&transport, {{"ekf", ""}}, 0);
+  LiveStream stream(transport, {{"ekf", ""}}, 0);
   stream.push(s);
   EXPECT_TRUE(stream.finish(20));
   EXPECT_EQ(stream.counts().published, 0);

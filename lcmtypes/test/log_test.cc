@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -130,6 +131,18 @@ TEST_F(LogTest, AForgedLengthCostsItsOwnEventAlone) {
       EXPECT_EQ(good, expected) << length << " at " << field;
     }
   }
+}
+
+TEST_F(LogTest, LengthsThatLieDoNotTakeForever) {
+  std::string header = log_of(0, 1).substr(0, 28);
+  header[24] = 3;  // claims 48 MB
+  std::string bytes = log_of(0, 1);
+  while (bytes.size() < 4'000'000) bytes += header;
+  put(bytes);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(read_back(), numbers(0, 1));
+  // 0.05 s; once it was quadratic and took 8 s
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
 }
 
 TEST_F(LogTest, WhatIsNoLogIsAnErrorThatNamesIt) {

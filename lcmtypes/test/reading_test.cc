@@ -37,6 +37,7 @@ TEST(ReadingTest, EveryTypeBringsBackWhatItWasGiven) {
 
 TEST(ReadingTest, TheSampleKeepsTimeToTheLastBitAndTheContact) {
   Reading sent = reading(3), got;
+  sent.utime = 300'000;
   sent.t = 0.1 + 0.2;
   sent.contact = true;
   ASSERT_EQ(read(write(sent, MessageType::kTauext), MessageType::kTauext, got), Reject::kNone);

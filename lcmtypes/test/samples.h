@@ -63,6 +63,7 @@ inline detection_t detection() {
 inline estimate_t estimate() {
   estimate_t m{};
   m.utime = 7000;
+  m.t = 7e-3;
   m.n = 3;
   m.samples = 5;
   m.tau_ext_hat[2] = -98.2;

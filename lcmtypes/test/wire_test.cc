@@ -120,6 +120,11 @@ TEST(Wire, AForgedTimeOrNumberIsRejected) {
     forge(bytes, at, 1 << 22);
     expect_reject<estimate_t>(Reject::kWrongTime, bytes, "2^54");
   }
+  for (const double t : {0., 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    estimate_t e = estimate();
+    e.t = t;  // and utime says 7 ms
+    expect_reject<estimate_t>(Reject::kWrongTime, bytes_of(e), "t and utime differ");
+  }
 }
 
 TEST(Wire, AForgedLengthOfATextIsRejected) {

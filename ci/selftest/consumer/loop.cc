@@ -3,10 +3,11 @@
 #include <lcmtypes/live_stream.h>
 
 #include <cstdio>
+#include <memory>
 
 int main() {
-  tauext::Transport lcm("memq://");
-  tauext::LiveStream stream(&lcm, {{"mine", ""}}, 200);
+  const auto lcm = std::make_shared<tauext::Transport>("memq://");
+  tauext::LiveStream stream(lcm, {{"mine", ""}}, 200);
   tauext::LiveSample s;
   for (int k = 0; k < 1000; ++k) {  // a second of cycles of 1 ms
     s.reading.utime = 1000 * k;

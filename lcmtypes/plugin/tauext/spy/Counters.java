@@ -6,7 +6,8 @@ final class Counters implements Cloneable {
   long messages;   // that are well-formed
   long lost;       // that never came: jumps of seq
   long malformed;  // that are no estimate or detection, or have a wrong n; they are ignored
-  long restarts;   // of the stream: utime or seq went back, or n changed
+  long late;       // older than one that was drawn; they are ignored
+  long restarts;   // of the stream: utime or seq went back for long, or n changed
   long failed;     // estimates whose status says that a sample went wrong
 
   byte status;          // of the last message

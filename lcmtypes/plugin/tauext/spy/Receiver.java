@@ -15,12 +15,14 @@ final class Receiver implements LCMSubscriber, AutoCloseable {
   static final String kDetections = "TAUEXT_DETECTION";
 
   private final LCM bus;
+  private final String channel;  // as an expression
   private final Recording recording;
 
   Receiver(LCM bus, String channel, Recording recording) {
     this.bus = bus;
+    this.channel = Pattern.quote(channel);
     this.recording = recording;
-    bus.subscribe(Pattern.quote(channel), this);
+    bus.subscribe(this.channel, this);
     bus.subscribe(kDetections, this);
   }
 
@@ -49,7 +51,8 @@ final class Receiver implements LCMSubscriber, AutoCloseable {
 
   @Override
   public void close() {
-    bus.unsubscribe(null, this);
+    bus.unsubscribe(channel, this);  // by name: on tcpq a null is an exception
+    bus.unsubscribe(kDetections, this);
   }
 
   private static void check(LCMDataInputStream in) throws IOException {

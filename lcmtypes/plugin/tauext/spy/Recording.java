@@ -15,6 +15,8 @@ final class Recording {
   private static final int kMarks = 1000;
   private static final long kNever = Long.MIN_VALUE / 2;
   private static final long kLate_us = 500000;  // a detector may be that far behind another one
+  private static final int kPatience = 20;  // messages
+  private static final long kLargestLoss = 10000;  // messages; a larger jump is another sender
 
   private final String estimator;
   private final Series[] truth = new Series[kJoints];
@@ -27,6 +29,8 @@ final class Recording {
   private long begin_us;
   private long detection_us = kNever;
   private long version;
+  private int behind;  // messages in order that are older than `last`
+  private long behind_us;
 
   /** Takes the detections of this estimator; of all estimators if it is "". */
   Recording(String estimator) {
@@ -38,16 +42,25 @@ final class Recording {
   }
 
   synchronized void add(estimate_t m) {
-    if (m.n < 1 || m.n > kJoints) {
+    if (m.n < 1 || m.n > kJoints || impossible(m.utime) || impossible(m.seq)) {
       reject();
       return;
     }
     if (last != null && (m.utime < last.utime || m.seq < last.seq || m.n != last.n)) {
+      // late, or another sender's; many in order are a sender that has started anew
+      behind = behind > 0 && m.utime > behind_us ? behind + 1 : 1;
+      behind_us = m.utime;
+      if (behind < kPatience) {
+        ++version;
+        ++counters.late;
+        return;
+      }
       restart();
     }
+    behind = 0;
     if (last == null) {
       begin_us = m.utime;
-    } else if (m.seq > last.seq + 1) {
+    } else if (m.seq > last.seq + 1 && m.seq - last.seq <= kLargestLoss) {
       counters.lost += m.seq - last.seq - 1;
     }
     for (int i = 0; i < m.n; ++i) {
@@ -61,13 +74,22 @@ final class Recording {
     last = m;
   }
 
+  /** Of a time [us] or a number: as in wire.h. */
+  private static boolean impossible(long value) {
+    return value < 0 || value > 1L << 53;
+  }
+
   synchronized void add(detection_t d) {
+    if (impossible(d.utime) || impossible(d.mark_utime)) {
+      reject();
+      return;
+    }
     if (!estimator.isEmpty() && !estimator.equals(d.estimator)) {
       return;
     }
     ++version;
     if (d.utime < detection_us - kLate_us) {
-      restart();
+      return;  // late, or of a stream that begins anew, which the estimates will tell
     }
     detection_us = d.utime;
     contact.add(d.utime, d.contact_true, d.contact_true, d.contact_true);

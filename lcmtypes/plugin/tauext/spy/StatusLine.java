@@ -34,8 +34,8 @@ final class StatusLine extends JLabel {
   private String text(Snapshot s, double silent) {
     Counters c = s.counters;
     String text = silent > kSilent_s ? format("no message for %.0f s", silent) : format("%.0f messages/s", rate);
-    text += format("  |  %d messages, %d lost, %d malformed, %d restarts", c.messages, c.lost,
-        c.malformed, c.restarts);
+    text += format("  |  %d messages, %d lost, %d late, %d malformed, %d restarts", c.messages,
+        c.lost, c.late, c.malformed, c.restarts);
     text += "  |  estimator: " + name(c.status);
     if (c.failed > 0) {
       text += format(" (%d messages not; %s at %.3f s)", c.failed, name(c.failure), c.failure_t - s.base);
