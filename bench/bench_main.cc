@@ -104,8 +104,7 @@ struct Flags {
   SuiteOptions suite;
   bool list = false, list_tests = false, paper = false, reliability = false, pareto = false;
   std::optional<double> equal_bandwidth;  // [rad/s]
-  std::optional<std::string> out, format, golden, lcm;
-  std::string lcm_log;
+  std::optional<std::string> out, format, golden, lcm, lcm_log;
   std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
 
   // what runs instead of the suite
@@ -180,7 +179,9 @@ int run(const Flags& flags) {
         "--reliability, --equal-bandwidth and --pareto run instead of the suite: no "
         "--benchmark_filter, --benchmark_out or --list");
   }
-  if ((flags.study() || flags.golden) && (flags.lcm || !flags.lcm_log.empty())) {
+  if (flags.lcm_log == "")
+    throw std::invalid_argument("--lcm-log: the name of a folder is missing");
+  if ((flags.study() || flags.golden) && (flags.lcm || flags.lcm_log)) {
     throw std::invalid_argument("--lcm and --lcm-log go with the suite alone");
   }
   if (flags.study()) return run_study(flags);
@@ -193,7 +194,7 @@ int run(const Flags& flags) {
   const auto display = make_display(flags.format);
 
   Suite suite(flags.suite);
-  EntryTap tap(flags.lcm, flags.lcm_log);
+  EntryTap tap(flags.lcm, flags.lcm_log.value_or(""));
   std::vector<Row> rows;
   for (const Entry& e : entries()) rows.push_back({e, {}});
   for (Row& row : rows) {
@@ -235,7 +236,8 @@ int run(const Flags& flags) {
     file.commit();
     fmt::print(to, "\n{}: results as JSON\n", *flags.out);
   }
-  return reporter.any_error() ? kAnswerIsNo : kGood;
+  if (!tap.heard()) fmt::print(stderr, "no summary could be published\n");
+  return reporter.any_error() || !tap.heard() ? kAnswerIsNo : kGood;
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct EntryTap::Outlet {
   explicit Outlet(const std::string& url) : transport(url) {}
   Transport transport;
   bool told = false;
+  int published = 0;
 };
 
 EntryTap::EntryTap(const std::optional<std::string>& url, std::string folder)
@@ -60,9 +61,16 @@ void EntryTap::publish(const Entry& entry, const Score& score) {
                 .count();
   std::vector<std::byte> bytes(m.getEncodedSize());
   const std::size_t size = encode(m, bytes);
-  if (outlet_->transport.publish(kSummaryChannel, {bytes.data(), size}) || outlet_->told) return;
-  outlet_->told = true;
-  fmt::print(stderr, "\r\033[Ksummaries to {} fail; the run goes on\n", outlet_->transport.url());
+  if (outlet_->transport.publish(kSummaryChannel, {bytes.data(), size})) {
+    ++outlet_->published;
+    return;
+  }
+  if (std::exchange(outlet_->told, true)) return;
+  fmt::print(stderr, "\nsummaries to {} fail; the run goes on\n", outlet_->transport.url());
+}
+
+bool EntryTap::heard() const {
+  return !outlet_ || outlet_->published > 0;
 }
 
 }  // namespace tauext

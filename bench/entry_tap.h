@@ -29,6 +29,8 @@ class EntryTap {
   /// Publishes the entry's summary_t. A network that is not there is told once, and the run goes
   /// on.
   void publish(const Entry& entry, const Score& score);
+  /// False if summaries should have gone out and none did.
+  bool heard() const;
 
  private:
   struct Outlet;

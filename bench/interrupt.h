@@ -9,7 +9,7 @@
 
 namespace tauext {
 
-/// From its construction on the first SIGINT or SIGTERM is only noted; a second one acts as ever,
+/// From its construction on the first SIGINT, SIGTERM or SIGHUP is only noted; a second one acts as ever,
 /// should the first not help. Make it when all that could hang has been set up.
 class Interrupt {
  public:
@@ -19,6 +19,7 @@ class Interrupt {
     action.sa_flags = SA_RESETHAND;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);
   }
   bool seen() const { return seen_; }
 

@@ -113,8 +113,9 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
     late.erase(late.begin(), late.end() - (Sequence::kPatience - 1));
     if (!used.empty() && used.back().utime >= late.front().utime) {
       throw std::runtime_error(fmt::format(
-          "{}: time goes back on channel {}: the sender was restarted, or there are several", path,
-          found.channel));
+          "{}: time goes back on channel {}: the sender was restarted, or there are several; "
+          "give it one run a log",
+          path, found.channel));
     }
     ++found.rejected;
     found.out_of_order -= static_cast<std::int64_t>(late.size());
@@ -233,7 +234,8 @@ Trace read_lcm(const std::string& path, const std::string& channel, LogReport* r
     if (e.channel != found.channel) return;
     MessageType type{};
     Reading r;
-    if (type_of(e.message, type) == Reject::kNone && read(e.message, type, r) == Reject::kNone) {
+    if (type_of(e.message, type) == Reject::kNone && read(e.message, type, r) == Reject::kNone &&
+        (r.reference != ReferenceKind::kTruth || plausible(r.tau_ext, r.n))) {
       recorded.push_back(r);
     } else {
       ++found.rejected;

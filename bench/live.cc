@@ -101,8 +101,10 @@ void LiveEstimation::take(const Reading& r) noexcept {
         e.stepper->step(r.t, r.q.data(), r.qd.data(), r.tau.data(), sample_.tau_ext_hat.data());
     const std::int64_t step = now_ns() - begin;
     e.figures.step_ns.add(step);
-    if (s.status != Status::kOk && s.status != Status::kStarted)
+    if (s.status != Status::kOk && (e.started || s.status != Status::kStarted)) {
       add<std::int64_t>(e.figures.unusable, 1);
+    }
+    e.started = e.started || s.status == Status::kStarted;
     if (s.detection.mark) add<std::int64_t>(e.figures.marks, 1);
     if (r.reference != ReferenceKind::kNone) compare(r, sample_.tau_ext_hat, e.figures);
     if (stream_ == nullptr) continue;
@@ -118,9 +120,7 @@ void LiveEstimation::take(const Reading& r) noexcept {
 }
 
 void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept {
-  // a driver may have none for a while
-  const auto end = r.tau_ext.begin() + r.n;
-  if (!std::all_of(r.tau_ext.begin(), end, [](double x) { return std::isfinite(x); })) return;
+  if (!plausible(r.tau_ext, r.n)) return;  // a driver may have none for a while
   double largest = f.largest_error.load(kRelaxed);
   for (int j = 0; j < r.n; ++j) {
     const double error = hat[j] - r.tau_ext[j];
@@ -132,7 +132,10 @@ void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f
 }
 
 void LiveEstimation::reset() noexcept {
-  for (const auto& e : entries_) e->stepper->reset();
+  for (const auto& e : entries_) {
+    e->stepper->reset();
+    e->started = false;
+  }
 }
 
 void play(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation& estimation,

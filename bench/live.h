@@ -18,8 +18,9 @@ namespace tauext {
 
 /// What one estimator did so far. Written by the loop; any thread may read it.
 struct LiveFigures {
-  Histogram step_ns;                       ///< [ns] wall time of an update
-  std::atomic<std::int64_t> unusable = 0;  ///< samples whose status was neither ok nor started
+  Histogram step_ns;  ///< [ns] wall time of an update
+  /// samples that made no estimate, but for the first one after a reset: bad ones, gaps, divergences
+  std::atomic<std::int64_t> unusable = 0;
   std::atomic<std::int64_t> marks = 0;
   std::atomic<std::int64_t> compared = 0;                 ///< samples with a reference
   std::array<std::atomic<double>, kMaxJoints> squares{};  ///< [N^2 m^2] of the error, summed
@@ -57,6 +58,7 @@ class LiveEstimation {
     std::string name;
     std::unique_ptr<Stepper> stepper;
     LiveFigures figures;
+    bool started = false;  // since the last reset
   };
   static void compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept;
 

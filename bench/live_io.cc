@@ -16,8 +16,8 @@ Outlet::Outlet(const LiveOptions& o, double rate) : streams_(streams_of(o.estima
 void Outlet::report_failures() {
   if (!stream_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
   reported_ = true;
-  fmt::print(stderr, "\r\033[Kmessages to {} fail ({}); the run goes on\n", transport_->url(),
-             trouble_with(transport_->url()).empty() ? "send error" : "no route");
+  notice(fmt::format("messages to {} fail ({}); the run goes on", transport_->url(),
+                     trouble_with(transport_->url()).empty() ? "send error" : "no route"));
 }
 
 StreamReport Outlet::finish(std::vector<summary_t> summaries) {
@@ -56,7 +56,7 @@ bool Inlet::wait() {
   try {
     listener_.wait(50);
   } catch (const std::runtime_error& e) {
-    fmt::print(stderr, "\r\033[K{}\n", e.what());
+    notice(e.what());
     report_.failed = true;
   }
   report_.arrivals = arrivals_.counts();
@@ -79,7 +79,7 @@ void Inlet::explain(Reject reject, int joints) const {
   const std::string why = reject == Reject::kNone ? fmt::format("of {} joints, and {} has {}",
                                                                 joints, robot_.name, robot_.dof)
                                                   : describe(reject);
-  fmt::print(stderr, "\r\033[K{}: a message {}; the first that was rejected\n", channel_, why);
+  notice(fmt::format("{}: a message {}; the first that was rejected", channel_, why));
 }
 
 }  // namespace tauext

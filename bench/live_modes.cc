@@ -2,7 +2,9 @@
 #include "bench/live_modes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -47,7 +49,15 @@ Robot robot_or_file(const LiveOptions& o) {
     throw std::invalid_argument(fmt::format(
         "--robot {}: a robot from a file has no scenarios; --from or --subscribe", o.robot));
   }
-  return file_robot(o.robot);
+  Robot r = file_robot(o.robot);
+  for (const std::string& e : o.estimators) {
+    if (std::find(r.estimators.begin(), r.estimators.end(), e) != r.estimators.end()) continue;
+    throw std::invalid_argument(
+        fmt::format("a robot from a file has no estimator '{}', only those that need no tuning of "
+                    "their own: {}",
+                    e, fmt::join(r.estimators, ", ")));
+  }
+  return r;
 }
 
 std::string title_of(const LiveOptions& o) {
@@ -109,13 +119,16 @@ void check(const LiveOptions& o, bool listen) {
   };
   require(std::isfinite(o.pace.duration) && o.pace.duration >= 0,
           fmt::format("--duration {}: 0 s or more", o.pace.duration));
+  const bool receives = listen || !o.subscribe.empty();
+  require(!receives || !lcm_url(o.url).starts_with("memq://"),
+          "memq:// does not leave a process: nothing can arrive");
   if (listen) {
     require(o.robot.empty() && o.estimators.empty(),
             "--listen shows streams and estimates nothing");
     return;
   }
   const int sources = !o.scenario.empty() + !o.from.empty() + !o.subscribe.empty();
-  require(sources == 1, "one of --scenario, --from, --subscribe and --listen is required");
+  require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
   require(!o.robot.empty() && !o.estimators.empty(), "--robot and --estimator are required");
   require(o.pace.speed >= 1e-3 && o.pace.speed <= 1e3,
           fmt::format("--speed {}: 0.001 to 1000", o.pace.speed));
@@ -171,6 +184,9 @@ int run_subscribed(const LiveOptions& o) {
   }
   status.clear();
   report.seconds = seconds_since(begin);
+  if (report.arrivals.used == 0 && report.rejected == 0) {
+    notice(fmt::format("nothing came on {} at {}", o.subscribe, inlet.url()));
+  }
   return finish(o, outlet, estimation, report);
 }
 

@@ -35,11 +35,20 @@ std::string format_arrivals(const LiveReport& r) {
       a.used, a.lost, a.late, a.repeated, r.rejected, a.restarts);
 }
 
-std::string number_or_dash(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3f}", value) : "-";
+std::string number_or_dash(double value, int decimals = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
+// [us] that a share of the updates took at most
+std::string step_us(const Histogram& h, double share) {
+  return h.count() == 0 ? "-" : number_or_dash(h.quantile(share) * kUs, 2);
 }
 
 }  // namespace
+
+void notice(const std::string& line) {
+  fmt::print(stderr, "{}{}\n", ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", line);
+}
 
 std::string format(const LiveReport& r, const LiveEstimation& e) {
   std::string out = fmt::format("{}: {} samples in {:.1f} s\n", r.title, e.samples(), r.seconds);
@@ -52,10 +61,10 @@ std::string format(const LiveReport& r, const LiveEstimation& e) {
   for (int i = 0; i < e.size(); ++i) {
     const LiveFigures& f = e.figures(i);
     const bool compared = f.compared > 0;
-    out += fmt::format("{:<18} {:>9} {:>9} {:>8.2f} {:>8.2f} {:>8.2f} {:>9} {:>6}\n", e.name(i),
+    out += fmt::format("{:<18} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>6}\n", e.name(i),
                        number_or_dash(f.rmse()), compared ? number_or_dash(f.largest_error) : "-",
-                       f.step_ns.quantile(0.5) * kUs, f.step_ns.quantile(0.99) * kUs,
-                       f.step_ns.largest() * kUs, f.unusable.load(), f.marks.load());
+                       step_us(f.step_ns, 0.5), step_us(f.step_ns, 0.99), step_us(f.step_ns, 1),
+                       f.unusable.load(), f.marks.load());
   }
   return out;
 }
@@ -101,7 +110,7 @@ void StatusLine::show(const LiveEstimation& e, const Histogram* late, const Live
   std::string line = fmt::format("{:.0f} s  {} samples",
                                  std::chrono::duration<double>(now - begin_).count(), e.samples());
   if (late != nullptr) {
-    line += fmt::format("  late {:.0f} us (99 %), {:.0f} us", late->quantile(0.99) * kUs,
+    line += fmt::format("  late {:.0f} us (99 %), {:.0f} us (all)", late->quantile(0.99) * kUs,
                         late->largest() * kUs);
   }
   for (int i = 0; i < e.size(); ++i) {

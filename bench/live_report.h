@@ -33,6 +33,9 @@ struct LiveReport {
   StreamReport stream;
 };
 
+/// Says a line on standard error, beside the line that a StatusLine has there.
+void notice(const std::string& line);
+
 /// The report as a text of some lines.
 std::string format(const LiveReport& report, const LiveEstimation& estimation);
 

@@ -183,6 +183,7 @@ struct StagesOf final : Robot::Stages {
 
   std::unique_ptr<Stepper> stepper(std::string_view estimator_name, std::string_view detector_name,
                                    const Trace& trace, const DetectorSettings& s) const override {
+    if (trace.size() > 0) check(trace);
     return std::make_unique<StepperOf<N>>(estimator(estimator_name, trace),
                                           detector(detector_name, s));
   }

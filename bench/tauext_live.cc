@@ -3,8 +3,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <stdexcept>
+#include <vector>
+
 #include "bench/cli.h"
 #include "bench/live_modes.h"
+
+namespace {
+
+// a flag that would be ignored is one that was misunderstood
+void require_mode(const CLI::App& app, bool fits, const char* mode,
+                  const std::vector<const char*>& flags) {
+  for (const char* flag : flags) {
+    if (fits || app.count(flag) == 0) continue;
+    throw std::invalid_argument(fmt::format("{} goes with {}; see tauext-live --help", flag, mode));
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace tauext;
@@ -45,10 +61,10 @@ int main(int argc, char** argv) {
   app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")
       ->capture_default_str();
   add_recording_flags(app, o.sensors, o.model_error, o.recording);
-  for (const char* of_scenarios : {"--degrade", "--sensors", "--loadcell", "--model_error",
-                                   "--velocity_noise", "--seed", "--kp", "--kd"}) {
-    app.get_option(of_scenarios)->group("");
-  }
+  const std::vector<const char*> of_scenarios = {
+      "--degrade",      "--sensors",        "--loadcell", "--model_error", "--velocity_noise",
+      "--encoder_step", "--loadcell_noise", "--seed",     "--kp",          "--kd"};
+  for (const char* flag : of_scenarios) app.get_option(flag)->group("");
   app.add_flag("--list", list, "list robots, scenarios, estimators and detectors, and stop");
   app.footer(
       "With --scenario: tauext-record's --sensors, --model_error, --degrade, --seed, --kp, --kd.");
@@ -58,6 +74,12 @@ int main(int argc, char** argv) {
       return kGood;
     }
     o.stream = lcm->count() > 0;
+    require_mode(app, !o.scenario.empty(), "--scenario", of_scenarios);
+    require_mode(app, !o.from.empty(), "--from", {"--channel"});
+    require_mode(app, !o.subscribe.empty(), "--subscribe", {"--type"});
+    require_mode(app, o.subscribe.empty() && !listen, "--scenario and --from",
+                 {"--speed", "--loop"});
+    require_mode(app, o.stream && !listen, "--lcm", {"--rate"});
     check(o, listen);
     if (listen) return run_listen(o);
     return o.subscribe.empty() ? run_recorded(o) : run_subscribed(o);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "bench/cli.h"
+#include "bench/lcm_trace.h"
 #include "bench/suite.h"
 #include "mjcf/atomic_file.h"
 
@@ -129,6 +130,9 @@ int main(int argc, char** argv) {
           "a log, --robot, --estimator and --out are required; see tauext-replay --help");
     }
     refuse_same_file(log, out);
+    if (is_lcm_log(out)) {
+      throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", out));
+    }
     const Robot& r = robot(robot_name);
     const Trace trace = read_log_or_csv(log, channel);
     std::vector<Column> columns;

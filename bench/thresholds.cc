@@ -131,6 +131,9 @@ Thresholds read_thresholds(const std::string& path) {
     t.margin = j.at("margin").get<double>();
     for (const Json& set : j.at("sets")) t.sets.push_back(set_of(set));
     return t;
+  } catch (const Json::exception& e) {
+    throw std::runtime_error(fmt::format(
+        "{}: no file of thresholds, as tauext-detect --calibrate writes it: {}", path, e.what()));
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace tauext {
@@ -122,6 +123,12 @@ panda_status_t panda_of(const Reading& r) {
 }
 
 }  // namespace
+
+bool plausible(const Joints& torques, int n) noexcept {
+  constexpr double kLimit = 1e6;  // [N m]
+  return std::all_of(torques.begin(), torques.begin() + n,
+                     [](double x) { return std::abs(x) < kLimit; });
+}
 
 MessageType message_type(std::string_view name) {
   if (name == "tauext") return MessageType::kTauext;

@@ -36,6 +36,9 @@ struct Reading {
   bool contact = false;  ///< a collision acts, as a simulation knows
 };
 
+/// Whether the n values are finite and below 10^6, which no torque [N m] is.
+bool plausible(const Joints& torques, int n) noexcept;
+
 /// Which messages a channel carries.
 enum class MessageType : std::uint8_t {
   kTauext,  ///< sample_t, or estimate_t, which holds a measurement, too

@@ -3,6 +3,7 @@
 /// Messages into LCM's network. Nothing here is made unless somebody asked for a URL.
 #pragma once
 
+#include <lcm/eventlog.h>
 #include <lcm/lcm.h>
 
 #include <cstdint>
@@ -28,15 +29,17 @@ using LcmHandle = std::unique_ptr<lcm_t, decltype(&lcm_destroy)>;
 /// @throws std::invalid_argument for a URL that LCM does not know
 LcmHandle open_lcm(const std::string& url, std::string& why);
 
-/// Publishes messages that are already encoded. Safe from one thread.
+/// Publishes messages that are already encoded. Safe from one thread. A log, file://PATH?mode=w, is
+/// written here and not by LCM, which would not notice a full disk.
 class Transport {
  public:
   /// Never throws for a network that is not there: see good().
-  /// @throws std::invalid_argument for a URL that LCM does not know
+  /// @throws std::invalid_argument for a URL that LCM does not know; std::runtime_error for a log
+  /// that cannot be made
   explicit Transport(const std::string& url);
 
   const std::string& url() const { return url_; }
-  bool good() const { return lcm_ != nullptr; }
+  bool good() const { return lcm_ != nullptr || log_ != nullptr; }
   /// Why it is not good, in one line, and what to do.
   const std::string& trouble() const { return trouble_; }
 
@@ -48,6 +51,7 @@ class Transport {
  private:
   std::string url_, trouble_;
   LcmHandle lcm_;
+  std::unique_ptr<lcm_eventlog_t, decltype(&lcm_eventlog_destroy)> log_;
 };
 
 }  // namespace tauext

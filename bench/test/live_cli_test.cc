@@ -341,14 +341,14 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
     EXPECT_EQ(o.code, 2) << flags << "\n" << o.text;
     EXPECT_TRUE(o.says(why)) << flags << "\n" << o.text;
   };
-  refuses("", "one of --scenario, --from, --subscribe and --listen is required");
+  refuses("", "exactly one of --scenario, --from, --subscribe and --listen is required");
   refuses("--robot wallmobot3 --scenario step --from x.csv --estimator ekf", "one of");
   refuses("--robot wallmobot3 --scenario step", "--robot and --estimator are required");
   refuses("--robot wallmobot9 --scenario step --estimator ekf", "unknown robot 'wallmobot9'");
   refuses("--robot wallmobot3 --scenario stepp --estimator ekf", "unknown scenario 'stepp'");
   refuses("--robot wallmobot3 --scenario step --estimator ekff", "unknown estimator 'ekff'");
   refuses("--robot wallmobot3 --scenario step --estimator ekf --speed 0", "--speed 0");
-  refuses("--robot wallmobot3 --scenario step --estimator ekf --rate -1", "--rate -1");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm --rate -1", "--rate -1");
   refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm http://x",
           "an LCM URL begins with");
   refuses("--robot wallmobot3 --subscribe A --type ur5 --estimator ekf",
@@ -361,6 +361,21 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
           "has no scenarios");
   refuses("--listen --robot wallmobot3", "--listen shows streams");
   refuses("--listen --duration -1", "--duration -1");
+  refuses("--listen --lcm memq://", "memq:// does not leave a process");
+  refuses("--robot wallmobot3 --from x.csv --estimator ekf --sensors dropped=0.1",
+          "--sensors goes with --scenario");
+  refuses("--robot wallmobot3 --subscribe A --estimator ekf --loop",
+          "--loop goes with --scenario and --from");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --type iiwa",
+          "--type goes with --subscribe");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --rate 5", "--rate goes with --lcm");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm 'udpm://239.1.1.1?ttl=x'",
+          "'ttl=x' is no option");
+  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --from x.csv --estimator ekf",
+          "has no estimator 'ekf'");
+  write("one.csv", "t,q1,qd1,tau1\n0,0,0,0\n");
+  refuses("--robot wallmobot3 --from one.csv --estimator mo1",
+          "wallmobot3 has 3 joints, the samples have 1");
   write("junk.lcm", "t,q1\n1,2\n");
   refuses("--robot wallmobot3 --from junk.lcm --estimator ekf", "junk.lcm: no LCM log");
 }

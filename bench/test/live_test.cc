@@ -90,6 +90,18 @@ TEST(Live, AReferenceThatIsNoNumberIsNotCompared) {
   EXPECT_EQ(estimation.samples(), 2);
 }
 
+TEST(Live, SamplesThatMadeNoEstimateAreCounted) {
+  std::vector<Reading> readings = readings_of(blow());
+  LiveEstimation estimation(robot("wallmobot3"), {"mo1"}, "", {}, Trace(), nullptr);
+  for (int k = 0; k < 10; ++k) estimation.take(readings[k]);
+  estimation.take(readings[5]);    // late
+  estimation.take(readings[200]);  // a gap of 0.19 s
+  EXPECT_EQ(estimation.figures(0).unusable, 2);
+  estimation.reset();
+  estimation.take(readings[0]);
+  EXPECT_EQ(estimation.figures(0).unusable, 2);
+}
+
 TEST(Live, AGapDoesNotOutlastTheStop) {
   std::vector<Reading> readings = readings_of(blow());
   readings.resize(2);
@@ -143,6 +155,8 @@ TEST(Live, WhatCannotBeRunIsRefused) {
   EXPECT_THROW(LiveEstimation(r, {"mo7"}, "", {}, Trace(), nullptr), std::invalid_argument);
   EXPECT_THROW(LiveEstimation(r, {"mo1"}, "none", {}, Trace(), nullptr), std::invalid_argument);
   EXPECT_THROW(LiveEstimation(r, {"truth"}, "", {}, Trace(), nullptr), std::invalid_argument);
+  const Trace one_joint = record(load_robot("testbed1"), quiet());
+  EXPECT_THROW(LiveEstimation(r, {"mo1"}, "", {}, one_joint, nullptr), std::invalid_argument);
 }
 
 }  // namespace

@@ -129,11 +129,20 @@ TEST(TransportTest, AChannelsNameMeansItselfAlone) {
 TEST(TransportTest, TroublesHaveARemedyAndNonsenseIsRefused) {
   for (const char* url :
        {"nonsense", "http://localhost", "udpm://1.2.3.4:7667", "udpm://239.1.1.1:0",
-        "udpm://239.1.1.1:99999", "udpm://239.1.1.1:x", "udpm://239.1.1:7667"}) {
+        "udpm://239.1.1.1:99999", "udpm://239.1.1.1:x", "udpm://239.1.1:7667",
+        "udpm://239.1.1.1?ttl=foo", "udpm://239.1.1.1?tll=1", "udpm://239.1.1.1?ttl=256",
+        "udpm://239.1.1.1?ttl=1x", "file:///tmp/x.lcm"}) {
     EXPECT_THROW(Transport{url}, std::invalid_argument) << url;
   }
   EXPECT_EQ(lcm_url("memq://"), "memq://");
   EXPECT_EQ(trouble_with("memq://"), "");
+}
+
+TEST(TransportTest, AFullDiskIsAFailureOfEachMessage) {
+  Transport transport("file:///dev/full?mode=w");
+  ASSERT_TRUE(transport.good());
+  EXPECT_FALSE(transport.publish("A", bytes_of(estimate())));
+  EXPECT_THROW(Transport("file:///nowhere/x.lcm?mode=w"), std::runtime_error);
 }
 
 TEST(TransportTest, TheTestsOwnDefaultStaysInThisProcess) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 package tauext.spy;
 
+import java.awt.AWTError;
 import java.io.IOException;
 import java.lang.reflect.Field;
 import lcm.lcm.LCM;
@@ -34,7 +35,7 @@ public final class Main {
   public static void main(String[] args) {
     try {
       share(new Spy(args.length > 0 ? args[0] : null));
-    } catch (IOException | ReflectiveOperationException e) {
+    } catch (IOException | ReflectiveOperationException | RuntimeException | AWTError e) {
       System.err.println("tauext-spy: " + e);
       System.exit(1);  // lcm-spy's window is open already and would stay
     }
