@@ -53,10 +53,12 @@ class Emitter {
   /// 63 characters
   Emitter(const std::vector<Stream>& streams, double rate, Sink sink);
 
+  /// Holds a sample, and sends its stream's messages if they are due.
   void add(const LiveSample& sample);
   /// Sends what is held back.
   void flush();
 
+  /// Of all streams.
   Counts counts() const { return counts_; }
   /// Of one stream, its detections included.
   const Counts& counts(int stream) const { return channels_[stream].counts; }
