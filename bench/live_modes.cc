@@ -184,6 +184,10 @@ int run_subscribed(const LiveOptions& o) {
   }
   status.clear();
   report.seconds = seconds_since(begin);
+  if (report.arrivals.late > report.arrivals.used / 10) {
+    notice(fmt::format("{} messages on {} were late: are there two senders?", report.arrivals.late,
+                       o.subscribe));
+  }
   if (report.arrivals.used == 0 && report.rejected == 0) {
     notice(fmt::format("nothing came on {} at {}", o.subscribe, inlet.url()));
   }

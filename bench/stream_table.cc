@@ -80,12 +80,21 @@ void StreamTable::count(Channel& c, std::int64_t seq, std::int64_t arrived) {
   while (c.arrivals.front() <= arrived - kSecond) c.arrivals.pop_front();
 }
 
-std::int64_t StreamTable::lost() const {
+template <class Count>
+std::int64_t StreamTable::sum(Count&& count) const {
   std::int64_t sum = 0;
   for (const auto* all : {&channels_, &pairs_}) {
-    for (const auto& [name, c] : *all) sum += c.sequence.lost();
+    for (const auto& [name, c] : *all) sum += count(c.sequence);
   }
   return sum;
+}
+
+std::int64_t StreamTable::lost() const {
+  return sum([](const Sequence& s) { return s.lost(); });
+}
+
+std::int64_t StreamTable::strays() const {
+  return sum([](const Sequence& s) { return s.strays(); });
 }
 
 void StreamTable::take_detection(const detection_t& d, std::int64_t arrived) {
@@ -148,6 +157,8 @@ std::string StreamTable::totals() const {
   std::string out = fmt::format("{} messages, {} lost, {} rejected", good_, lost(), rejected());
   for (const auto& [reason, count] : rejects_)
     out += fmt::format("; {} {}", count, describe(reason));
+  if (strays() > 0)
+    out += fmt::format("; {} out of turn: copies, or two senders on one channel", strays());
   return out + "\n";
 }
 

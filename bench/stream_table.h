@@ -32,6 +32,7 @@ class StreamTable {
 
   std::int64_t good() const { return good_; }
   std::int64_t lost() const;
+  std::int64_t strays() const;  ///< copies, or another sender's on the same channel
   std::int64_t rejected() const;
 
  private:
@@ -42,6 +43,8 @@ class StreamTable {
     bool estimate = false;              // else samples alone
   };
 
+  template <class Count>
+  std::int64_t sum(Count&& count) const;
   template <class Message>
   bool decoded(Bytes message, Message& m);
   Channel& of(std::map<std::string, Channel, std::less<>>& all, const std::string& name);

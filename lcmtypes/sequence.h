@@ -27,6 +27,7 @@ class Sequence {
       *it = kNone;
       --lost_;
     } else {
+      ++strays_;
       behind_ = behind_ > 0 && seq > last_behind_ ? behind_ + 1 : 1;
       last_behind_ = seq;
       if (behind_ >= kPatience) restart(seq);
@@ -40,6 +41,8 @@ class Sequence {
   }
 
   std::int64_t lost() const noexcept { return lost_; }
+  /// Numbers that were neither next nor missing: copies, or another sender's.
+  std::int64_t strays() const noexcept { return strays_; }
 
  private:
   static constexpr std::int64_t kNone = -1;
@@ -61,7 +64,7 @@ class Sequence {
   }
 
   bool any_ = false;
-  std::int64_t next_ = 0, lost_ = 0, last_behind_ = 0;
+  std::int64_t next_ = 0, lost_ = 0, strays_ = 0, last_behind_ = 0;
   int behind_ = 0;
   std::array<std::int64_t, 64> missing_ = [] {
     std::array<std::int64_t, 64> none{};

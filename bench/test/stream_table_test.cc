@@ -64,6 +64,8 @@ TEST(StreamTableTest, TwoSendersOnAChannelAreNoLoss) {
     }
   }
   EXPECT_EQ(table.lost(), 0);
+  EXPECT_EQ(table.strays(), 499);  // all of one of them but its first
+  EXPECT_TRUE(has(table.totals(), "499 out of turn: copies, or two senders")) << table.totals();
 }
 
 TEST(StreamTableTest, MoreChannelsThanATableHoldsAreStillCounted) {
