@@ -14,38 +14,43 @@
 #include <string>
 #include <utility>
 
-#include "bench/robot_of.h"
-#include "mjcf/model.h"
+#include "bench/roster/robot_of.h"
+#include "bench/roster/robots.h"
+#include "mjcf/plant/model.h"
 #include "mjcf/scenario.h"
 
 namespace tauext {
 
-namespace detail {
-void require_unused();
-void add_robot(std::function<Robot()> make);
-}  // namespace detail
-
-/// An estimator for every robot of model M; make(model) builds one. With
-/// E::Parameters::for_bandwidth(model, w) and a constructor E(model, parameters) it takes part in
-/// --equal-bandwidth and --pareto.
+/// An estimator for every robot of model M; make(model) builds one. With a constructor E(model, parameters)
+/// and E::Parameters::fields() (estimators/parameters.h) it is set by specifications, `name:key=value`; with
+/// E::Parameters::for_bandwidth(model, w), too, it takes part in --equal-bandwidth and --pareto. A name that
+/// is taken is refused when the robots are first asked for (std::invalid_argument).
 template <RobotModel M, class Make>
 void register_estimator(Make make) {
   detail::require_unused();
   detail::registered_estimators<M>().push_back(
-      [make](const M& model, detail::StagesOf<M::kDof>& stages) {
-        stages.add_estimator(model, [make, model](const Trace&) { return make(model); });
+      [make](const M& model, detail::RobotOf<M::kDof>& robot) {
+        robot.add_estimator(model, [make, model](const Trace&) { return make(model); });
       });
 }
 
-/// A detector for every robot of D::kDof joints, with its default parameters.
+/// A detector for every robot of D::kDof joints, with its default parameters unless a specification sets them
+/// (D::Parameters::fields()). A name that is taken is refused likewise.
 template <CollisionDetector D>
 void register_detector() {
   detail::require_unused();
   detail::registered_detectors<D::kDof>().push_back(
-      [](detail::StagesOf<D::kDof>& stages) { stages.template add_detector<D>(); });
+      [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
 }
 
-/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/layout.h says. It has the
+/// A specification as an estimator of that robot: a row `mo2:bandwidth=50` beside `mo2`. One that means
+/// nothing there or is listed already is refused likewise, and so is an unknown robot.
+inline void register_specification(const std::string& robot, const std::string& specification) {
+  detail::require_unused();
+  detail::registered_specifications().emplace_back(robot, specification);
+}
+
+/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/plant/layout.h says. It has the
 /// estimators that every arm has (for_each_common_estimator), and the scenarios that you register.
 /// @throws std::runtime_error naming the file if MuJoCo cannot read it
 template <RobotModel M>

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
+
+#include "bench/score/metric_list.h"
 
 namespace tauext {
 
-Reporter::Reporter(benchmark::BenchmarkReporter* display, bool progress, int total)
-    : display_(display), progress_(progress), total_(total) {
+Reporter::Reporter(benchmark::BenchmarkReporter* display, int total)
+    : display_(display), total_(total) {
   json_.SetOutputStream(&json_text_);
   json_.SetErrorStream(&json_text_);
 }
@@ -23,7 +24,7 @@ void Reporter::ReportRuns(const std::vector<Run>& runs) {
   for (Run& run : finite) {
     std::erase_if(run.counters, [](const auto& c) { return !std::isfinite(c.second.value); });
     any_error_ = any_error_ || run.error_occurred;
-    const auto time = run.counters.find("cpu_ns");
+    const auto time = run.counters.find(key_of(Metric::kCpu));
     if (time == run.counters.end()) continue;
     const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
     if (median || run.run_type == Run::RT_Iteration)
@@ -32,22 +33,16 @@ void Reporter::ReportRuns(const std::vector<Run>& runs) {
   json_.ReportRuns(finite);
   if (display_ != nullptr) display_->ReportRuns(finite);
   if (on_done && !runs.empty()) on_done(runs[0].run_name.function_name);
-  if (progress_ && !runs.empty()) {
-    ++done_;
-    const std::string of = total_ > 0 ? fmt::format("/{}", total_) : "";
-    fmt::print(stderr, "\r\033[K[{}{}] {}", done_, of, runs[0].run_name.function_name);
-    std::fflush(stderr);
-  }
+  if (runs.empty()) return;
+  ++done_;
+  const std::string of = total_ > 0 ? fmt::format("/{}", total_) : "";
+  progress_.show(fmt::format("[{}{}] {}", done_, of, runs[0].run_name.function_name));
 }
 
 void Reporter::Finalize() {
   json_.Finalize();
   if (display_ != nullptr) display_->Finalize();
-  clear_progress();
-}
-
-void Reporter::clear_progress() const {
-  if (progress_) fmt::print(stderr, "\r\033[K");
+  progress_.clear();
 }
 
 }  // namespace tauext

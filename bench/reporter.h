@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "bench/program.h"
+
 namespace tauext {
 
 /// A display reporter that also builds the JSON of --benchmark_out. Google Benchmark writes a bare
@@ -17,9 +19,8 @@ namespace tauext {
 class Reporter : public benchmark::BenchmarkReporter {
  public:
   /// @param display prints to standard output; nullptr for none
-  /// @param progress whether to show what is done, on standard error
   /// @param total number of benchmarks, 0 if it is not known
-  Reporter(benchmark::BenchmarkReporter* display, bool progress, int total);
+  Reporter(benchmark::BenchmarkReporter* display, int total);
 
   bool ReportContext(const Context& context) override;
   void ReportRuns(const std::vector<Run>& runs) override;
@@ -36,15 +37,13 @@ class Reporter : public benchmark::BenchmarkReporter {
   /// Called with the name of each benchmark that is through, its repetitions included.
   std::function<void(const std::string&)> on_done;
 
-  /// Erases the progress line.
-  void clear_progress() const;
-
  private:
   benchmark::BenchmarkReporter* display_;
   benchmark::JSONReporter json_;
   std::ostringstream json_text_;
   std::map<std::string, double> cpu_ns_;
-  bool progress_, any_error_ = false;
+  Progress progress_{""};
+  bool any_error_ = false;
   int done_ = 0, total_;
 };
 

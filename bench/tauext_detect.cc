@@ -1,59 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 // tauext-detect: calibrates the detectors, and studies every one behind every estimator.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cstdio>
 #include <string>
 #include <vector>
 
-#include "bench/cli.h"
-#include "bench/detection_report.h"
-#include "bench/detection_study.h"
-#include "mjcf/atomic_file.h"
+#include "bench/program.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/study/calibration.h"
+#include "bench/study/detection_report.h"
+#include "bench/study/detection_study.h"
+#include "bench/study/study_runs.h"
+#include "mjcf/trace/atomic_file.h"
 
 namespace {
 
 using namespace tauext;
 
 struct Flags {
-  StudyOptions study;
-  CalibrationOptions calibration;
-  std::string calibrate_to, thresholds, out;
+  study::StudyOptions study;
+  study::CalibrationOptions calibration;
+  std::string calibrate_to, thresholds, out, format = "text";
   bool list = false;
 };
 
-// a bar on a terminal, with the time that is left
-class Progress {
- public:
-  explicit Progress(const char* what) : what_(what), show_(::isatty(STDERR_FILENO) == 1) {}
-  ~Progress() {
-    if (show_) fmt::print(stderr, "\r\033[K");
+void list_conditions(const std::string& robot) {
+  const study::StudyRuns& runs = study::touched_runs(robot);
+  for (const study::Condition& c : runs.conditions) {
+    const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
+    fmt::print("{:<18} {}{}\n", c.name, c.description, trained ? " (trained on)" : "");
   }
-  std::function<void(double)> operator()() {
-    if (!show_) return nullptr;
-    return [this](double share) {
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-      fmt::print(stderr, "\r\033[K{} [{:<40}] {:.0f} %, {:.0f} s left", what_,
-                 std::string(static_cast<std::size_t>(40 * share), '='), 100 * share,
-                 spent.count() * (1 - share) / share);
-    };
-  }
-
- private:
-  const char* what_;
-  bool show_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+}
 
 Thresholds calibrated(const Flags& f) {
   Progress progress("calibrating");
-  CalibrationOptions o = f.calibration;
+  study::CalibrationOptions o = f.calibration;
+  o.robot = f.study.robot;
   o.estimators = f.study.estimators;
+  o.detectors = f.study.detectors;
   o.threads = f.study.threads;
-  o.progress = progress();
-  return calibrate(o);
+  o.progress = progress.callback();
+  return study::calibrate(o);
+}
+
+std::vector<study::Cell> studied(study::StudyOptions o, const Thresholds& thresholds) {
+  Progress progress("studying");
+  o.progress = progress.callback();
+  return study::detection_study(o, thresholds);
 }
 
 // an unwritable path should not cost a run
@@ -61,59 +56,70 @@ void require_writable(const std::string& path) {
   const AtomicFile probe(path);
 }
 
-int run(Flags& f) {
-  if (f.list) {
-    const std::vector<std::string>& trained = training_conditions();
-    for (const Condition& c : conditions()) {
-      const bool is_trained = std::count(trained.begin(), trained.end(), c.name) > 0;
-      fmt::print("{:<18} {}{}\n", c.name, c.description, is_trained ? " (trained on)" : "");
-    }
-    return kGood;
+// thresholds of another tuning would be wrong in silence
+void tell_untrained(const Flags& f, const Thresholds& t) {
+  for (const std::string& e : f.study.estimators) {
+    const bool trained = std::any_of(t.sets.begin(), t.sets.end(), [&](const ThresholdSet& s) {
+      return s.by_estimator.contains(e);
+    });
+    if (trained) continue;
+    fmt::print(stderr, "{}: nothing was trained behind {}; its detectors keep their defaults\n",
+               f.thresholds, e);
   }
-  if (!f.calibrate_to.empty()) {
-    require_writable(f.calibrate_to);
-    write_thresholds(calibrated(f), f.calibrate_to);
-    if (f.calibrate_to != "-") fmt::print(stderr, "{}: thresholds\n", f.calibrate_to);
-    return kGood;
-  }
+}
+
+int run_calibration(const Flags& f) {
+  require_writable(f.calibrate_to);
+  write_thresholds(calibrated(f), f.calibrate_to);
+  if (f.calibrate_to != "-") fmt::print(stderr, "{}: thresholds\n", f.calibrate_to);
+  return kGood;
+}
+
+int run_study(const Flags& f) {
+  const TableFormat format = table_format(f.format);
   if (!f.out.empty()) require_writable(f.out);
-  check_study(f.study);  // before calibration takes its time
+  study::check_study(f.study);  // before calibration takes its time
   const Thresholds thresholds =
       f.thresholds.empty() ? calibrated(f) : read_thresholds(f.thresholds);
-  std::vector<Cell> cells;
-  {
-    Progress progress("studying");
-    f.study.progress = progress();
-    cells = detection_study(f.study, thresholds);
-  }
-  fmt::print("thresholds: {}, margin {:g}; test seeds from {} on\n\n{}", thresholds.trained_on,
-             thresholds.margin, f.study.first_seed, format_study(cells));
-  if (!f.out.empty()) {
-    AtomicFile file(f.out);
-    file.write(study_json(cells, thresholds));
-    file.commit();
-    fmt::print("\n{}: all of it as JSON, with points of the ROC\n", f.out);
+  tell_untrained(f, thresholds);
+  const std::vector<study::Cell> cells = studied(f.study, thresholds);
+  // a table for a program stands alone; so does a study on standard output
+  std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
+  fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n", thresholds.trained_on,
+             thresholds.margin, f.study.first_seed);
+  fmt::print(f.out == "-" ? stderr : stdout, "{}",
+             study::format_study(f.study.robot, cells, format));
+  if (f.out.empty()) return kGood;
+  AtomicFile file(f.out);
+  file.write(study::study_json(f.study.robot, cells, thresholds));
+  file.commit();
+  if (f.out != "-") {
+    fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
   }
   return kGood;
 }
 
-}  // namespace
+int run(const Flags& f) {
+  if (f.list) {
+    list_conditions(f.study.robot);
+    return kGood;
+  }
+  return f.calibrate_to.empty() ? run_study(f) : run_calibration(f);
+}
 
-int main(int argc, char** argv) {
-  CLI::App app(
-      "Every detector behind every estimator of wallmobot3: recall, delay, false alarms, pushes "
-      "and\n"
-      "clampings, under conditions from a known panel to an unknown one. Without a file of "
-      "thresholds\n"
-      "it calibrates first.\n\n"
-      "  tauext-detect --calibrate thresholds.json\n"
-      "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
-      "tauext-detect");
-  app.get_formatter()->column_width(34);
-  Flags f;
-  const auto names = [&](const char* flag, std::vector<std::string>& to, const char* help) {
-    app.add_option(flag, to, help)->delimiter(',')->allow_extra_args(false)->type_name("NAME,..");
-  };
+template <class T>
+void add_count(CLI::App& app, const char* flag, T& to, T least, T most, const char* help) {
+  app.add_option(flag, to, help)
+      ->check(CLI::Range(least, most).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_names(CLI::App& app, const char* flag, std::vector<std::string>& to, const char* help) {
+  app.add_option(flag, to, help)->delimiter(',')->allow_extra_args(false)->type_name("NAME,..");
+}
+
+void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
       ->type_name("FILE");
@@ -122,36 +128,37 @@ int main(int argc, char** argv) {
   app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE");
   app.add_option("--out", f.out, "write all of it as JSON, with points of the ROC")
       ->type_name("FILE");
-  names("--train", f.calibration.conditions, "conditions to train on (see --list)");
-  app.add_option("--runs", f.calibration.runs, "of 30 s, for each of them")
-      ->check(CLI::Range(1, 10000).description(""))
-      ->capture_default_str()
-      ->type_name("N");
-  names("--conditions", f.study.conditions, "only these (see --list)");
-  names("--estimators", f.study.estimators, "only these (see tauext-record --list)");
-  names("--detectors", f.study.detectors, "only these");
-  app.add_option("--collisions", f.study.blows, "blows, at least, for each condition")
-      ->check(CLI::Range(0, 100000).description(""))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--pushes", f.study.brisk_pushes, "brisk pushes, likewise")
-      ->check(CLI::Range(0, 100000).description(""))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--clampings", f.study.clampings, "soft clampings, likewise")
-      ->check(CLI::Range(0, 100000).description(""))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--hours", f.study.hours, "of free motion and slow pushes, likewise")
+  app.add_option("--format", f.format, "of the printed table: text, csv, json, md or latex")
+      ->type_name("NAME");
+  app.add_option("--robot", f.study.robot, "else the first that has runs for it")
+      ->type_name("NAME");
+  add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
+  add_count(app, "--runs", f.calibration.runs, 1, 10000, "of 30 s, for each of them");
+  add_names(app, "--conditions", f.study.conditions, "only these (see --list)");
+  add_names(app, "--estimators", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
+  add_names(app, "--detectors", f.study.detectors, "only these, like high_pass:w=60");
+  add_count(app, "--collisions", f.study.blows, 0, 100000, "blows, at least, for each condition");
+  add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "brisk pushes, at least");
+  add_count(app, "--clampings", f.study.clampings, 0, 100000, "soft clampings, at least");
+  app.add_option("--hours", f.study.hours, "of free motion and slow pushes, at least")
       ->capture_default_str();
-  app.add_option("--seed", f.study.first_seed, "of the first run; the next ones follow")
-      ->check(CLI::Range(std::uint64_t{0}, kTrainingSeed - 1).description(""))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--jobs", f.study.threads, "threads; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->capture_default_str()
-      ->type_name("N");
+  add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
+            "of the first run; the next ones follow");
+  add_count(app, "--jobs", f.study.threads, 0, 1024, "threads; 0: one a core");
   app.add_flag("--list", f.list, "list the conditions, and stop");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Every detector behind every estimator of a robot: recall, delay, false alarms, pushes and\n"
+      "clampings, under many conditions. Without a file of thresholds it calibrates first.\n\n"
+      "  tauext-detect --calibrate thresholds.json\n"
+      "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
+      "tauext-detect");
+  app.get_formatter()->column_width(34);
+  Flags f;
+  add_flags(app, f);
   return run_program(app, argc, argv, [&] { return run(f); });
 }

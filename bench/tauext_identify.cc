@@ -2,31 +2,36 @@
 // tauext-identify: the parameters of a one-joint model from a recorded motion.
 #include <fmt/format.h>
 
-#include "bench/cli.h"
-#include "bench/identify.h"
-#include "mjcf/atomic_file.h"
+#include "bench/logs/identify.h"
+#include "bench/logs/read_log.h"
+#include "bench/program.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/table_writer.h"
 
 namespace {
 
 using namespace tauext;
 
 std::string list_terms() {
-  std::string out = fmt::format("{:<14} {:<15} {}\n", "term", "unit", "what it multiplies");
-  for (const Term& t : terms())
-    out += fmt::format("{:<14} {:<15} {}\n", t.name, t.unit, t.description);
-  return out;
+  TableWriter table({{"term", "", true}, {"unit", "", true}, {"what it multiplies", "", true}});
+  for (const Term& t : terms()) table.add({t.name, t.unit, t.description});
+  return table.format();
 }
 
 std::string as_table(const std::vector<Term>& terms, const Identification& id) {
-  std::string out = fmt::format(
-      "{:<14} {:<15} {:>12} {:>12} {:>12} {:>8}\n{:<14} {:<15} {:>12} {:>12} {:>12} {:>8}\n",
-      "term", "unit", "estimate", "std error", "excitation", "own", "", "", "", "(1 sigma)",
-      "(rms)", "share");
+  TableWriter table({{"term", "", true},
+                     {"unit", "", true},
+                     {"estimate"},
+                     {"std error", "1 sigma"},
+                     {"excitation", "rms"},
+                     {"own share"}});
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Parameter& p = id.parameters[i];
-    out += fmt::format("{:<14} {:<15} {:>12.5g} {:>12.2g} {:>12.4g} {:>8.3f}\n", terms[i].name,
-                       terms[i].unit, p.theta, p.sigma, p.excitation, p.own);
+    table.add({terms[i].name, terms[i].unit, fmt::format("{:.5g}", p.theta),
+               fmt::format("{:.2g}", p.sigma), fmt::format("{:.4g}", p.excitation),
+               fmt::format("{:.3f}", p.own)});
   }
+  std::string out = table.format();
   out += fmt::format(
       "\nresidual {:.3g} N m, condition number {:.3g}, {} windows used, {} left out (slow, or a "
       "gap)\n",
@@ -55,11 +60,12 @@ int main(int argc, char** argv) {
       "tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd).\n\n"
       "  tauext-identify log.csv\n",
       "tauext-identify");
-  std::string log, out;
+  std::string log, channel, out;
   std::vector<std::string> names = {"inertia", "gravity_cos", "gravity_sin", "coulomb"};
   Windows windows;
   bool list = false;
-  app.add_option("log", log, "CSV to read");
+  app.add_option("log", log, "log to read: CSV or LCM");
+  app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
   app.add_option("--terms", names, "terms of the model, separated by commas (see --list)")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -78,9 +84,7 @@ int main(int argc, char** argv) {
     if (log.empty()) throw std::invalid_argument("a log is required; see tauext-identify --help");
     refuse_same_file(log, out);
     const std::vector<Term> model = find_terms(names);
-    SkippedRows skipped;
-    const Trace trace = read_csv(log, &skipped);
-    report_skipped(skipped, log);
+    const Trace trace = read_log_or_csv(log, channel);
     const Identification id = identify(trace, model, windows);
     if (!out.empty()) {
       AtomicFile file(out);

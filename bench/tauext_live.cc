@@ -6,10 +6,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bench/cli.h"
-#include "bench/live_modes.h"
+#include "bench/live/live_listen.h"
+#include "bench/live/live_modes.h"
+#include "bench/program.h"
+#include "bench/recording_flags.h"
+#include "bench/roster/robots.h"
 
 namespace {
+
+using namespace tauext;
 
 // a flag that would be ignored is one that was misunderstood
 void require_mode(const CLI::App& app, bool fits, const char* mode,
@@ -20,10 +25,42 @@ void require_mode(const CLI::App& app, bool fits, const char* mode,
   }
 }
 
+// where samples come from
+void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
+  app.add_option("--robot", o.robot, "robot (see --list), or its MJCF file")
+      ->type_name("NAME|FILE.xml");
+  app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
+  app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
+  app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
+      ->type_name("CHANNEL");
+  app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
+  app.add_option("--channel", o.channel, "with --from x.lcm: which of its channels");
+  app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
+}
+
+// what is made of them, and where that goes
+void add_run_flags(CLI::App& app, live::Options& o) {
+  app.add_option("--estimator", o.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--detector", o.detector, "NAME[:KEY=VALUE].. behind each estimator");
+  app.add_option("--thresholds", o.thresholds,
+                 "the detectors' thresholds, from tauext-detect --calibrate")
+      ->type_name("FILE");
+  app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
+      ->type_name("[URL]")
+      ->expected(0, 1);
+  app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
+      ->capture_default_str();
+  app.add_option("--speed", o.pace.speed, "simulated seconds in a second")->capture_default_str();
+  app.add_flag("--loop", o.pace.again, "begin again at the end");
+  app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace tauext;
   CLI::App app(
       "Runs a scenario, a recorded log (--from) or a robot on LCM (--subscribe) through "
       "estimators\n"
@@ -32,34 +69,10 @@ int main(int argc, char** argv) {
       "--lcm, --subscribe or --listen. Ctrl-C ends it with a summary.\n\n"
       "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
       "tauext-live");
-  LiveOptions o;
+  live::Options o;
   bool list = false, listen = false;
-  app.add_option("--robot", o.robot, "robot (see --list), or an MJCF file of up to 7 joints")
-      ->type_name("R|FILE.xml");
-  app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
-  app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
-  app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
-      ->type_name("CHANNEL");
-  app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
-  app.add_option("--channel", o.channel, "with --from x.lcm: which of its channels");
-  app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
-  app.add_option("--estimator", o.estimators, "one or more, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--detector", o.detector, "detector behind each estimator");
-  app.add_option("--thresholds", o.thresholds,
-                 "the detectors' thresholds, from tauext-detect --calibrate")
-      ->type_name("FILE");
-  CLI::Option* const lcm =
-      app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
-          ->type_name("[URL]")
-          ->expected(0, 1);
-  app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
-      ->capture_default_str();
-  app.add_option("--speed", o.pace.speed, "simulated seconds in a second")->capture_default_str();
-  app.add_flag("--loop", o.pace.again, "begin again at the end");
-  app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")
-      ->capture_default_str();
+  add_source_flags(app, o, listen);
+  add_run_flags(app, o);
   add_recording_flags(app, o.sensors, o.model_error, o.recording);
   const std::vector<const char*> of_scenarios = {
       "--degrade",      "--sensors",        "--loadcell", "--model_error", "--velocity_noise",
@@ -73,15 +86,15 @@ int main(int argc, char** argv) {
       fmt::print("{}", list_known());
       return kGood;
     }
-    o.stream = lcm->count() > 0;
+    o.stream = app.count("--lcm") > 0;
     require_mode(app, !o.scenario.empty(), "--scenario", of_scenarios);
     require_mode(app, !o.from.empty(), "--from", {"--channel"});
     require_mode(app, !o.subscribe.empty(), "--subscribe", {"--type"});
     require_mode(app, o.subscribe.empty() && !listen, "--scenario and --from",
                  {"--speed", "--loop"});
     require_mode(app, o.stream && !listen, "--lcm", {"--rate"});
-    check(o, listen);
-    if (listen) return run_listen(o);
-    return o.subscribe.empty() ? run_recorded(o) : run_subscribed(o);
+    live::check(o, listen);
+    if (listen) return live::run_listen(o);
+    return o.subscribe.empty() ? live::run_recorded(o) : live::run_subscribed(o);
   });
 }

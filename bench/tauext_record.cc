@@ -2,10 +2,34 @@
 // tauext-record: writes a ground-truth trace.
 #include <fmt/format.h>
 
-#include "bench/cli.h"
-#include "bench/lcm_trace.h"
-#include "bench/robot.h"
-#include "mjcf/atomic_file.h"
+#include <cctype>
+
+#include "bench/logs/lcm_trace.h"
+#include "bench/program.h"
+#include "bench/recording_flags.h"
+#include "bench/roster/robots.h"
+#include "mjcf/trace/atomic_file.h"
+
+namespace {
+
+// What --stop names on this robot: nothing if it is empty.
+tauext::Supervisor supervisor_of(const tauext::Robot& robot, const std::string& stop) {
+  if (stop.empty()) {
+    return nullptr;
+  }
+  // the last one that a name follows: numbers of a specification may have a sign
+  auto plus = stop.rfind('+');
+  while (plus != std::string::npos && plus > 0 && std::isalpha(stop[plus + 1]) == 0) {
+    plus = stop.rfind('+', plus - 1);
+  }
+  if (plus == std::string::npos) {
+    throw std::invalid_argument(
+        fmt::format("--stop {}: ESTIMATOR+DETECTOR, like ekf+pan_tompkins", stop));
+  }
+  return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace tauext;
@@ -20,7 +44,7 @@ int main(int argc, char** argv) {
   ModelError model_error;
   Recording recording;
   bool list = false;
-  app.add_option("--robot", robot_name, "robot (see --list)");
+  app.add_option("--robot", robot_name, "robot (see --list)")->type_name("NAME|FILE.xml");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_option("--type", type, "of an LCM log's messages: tauext, iiwa or panda")
@@ -42,16 +66,10 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", type, out));
     }
     const Robot& r = robot(robot_name);
-    const Scenario& s = scenario(r.name, scenario_name);
-    const auto plus = stop.find('+');
-    if (!stop.empty() && plus == std::string::npos) {
-      throw std::invalid_argument(
-          fmt::format("--stop {}: ESTIMATOR+DETECTOR, like ekf+pan_tompkins", stop));
-    }
-    const Supervisor supervisor =
-        stop.empty() ? nullptr : r.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
+    const Scenario& s = scenario_of(r, scenario_name);
+    const Supervisor supervisor = supervisor_of(r, stop);
     const Trace trace = measure(
-        simulate(load_for(r.name, s, model_error), s, recording, sensors, supervisor), sensors);
+        simulate(load_for(r.name(), s, model_error), s, recording, sensors, supervisor), sensors);
     if (lcm) {
       LogBuffer log;
       append_samples(readings_of(trace), message_type(type), log);

@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
-#include "bench/cli.h"
-#include "bench/lcm_trace.h"
-#include "bench/suite.h"
-#include "mjcf/atomic_file.h"
+#include "bench/logs/lcm_trace.h"
+#include "bench/logs/read_log.h"
+#include "bench/program.h"
+#include "bench/roster/robots.h"
+#include "bench/score/detection_metrics.h"
+#include "bench/score/metrics.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/table_writer.h"
 
 namespace {
 
@@ -75,26 +81,38 @@ bool report_status(const Trace& trace, const Column& c) {
   return false;
 }
 
+// what a detector was worth; nothing where the log does not say what happened
+std::string verdict(const Score& s) {
+  const auto alarms = s.get(Metric::kFalseAlarms);
+  if (!alarms) return "";
+  const auto delay = s.get(Metric::kDelay);
+  return fmt::format("{} false alarms, {}", *alarms,
+                     !delay               ? "no collision in the log"
+                     : std::isnan(*delay) ? "no collision detected"
+                                          : fmt::format("recall {}, largest delay {:.3f} s",
+                                                        *s.get(Metric::kRecall), *delay));
+}
+
 void print_metrics(const Trace& trace, const std::vector<Column>& columns, std::FILE* to) {
-  fmt::print(to, "{:<28} {:>6} {:>12} {:>12} {:>12}\n{:<28} {:>6} {:>12} {:>12} {:>12}\n",
-             "estimator", "joint", "rmse", "|bias|", "max", "", "", "N m", "N m", "N m");
+  constexpr Metric kShown[] = {Metric::kRmse, Metric::kBias, Metric::kMax};
+  std::vector<TableWriter::Column> titles = {{.title = "estimator", .left = true},
+                                             {.title = "joint"}};
+  for (const Metric m : kShown) {
+    titles.push_back({std::string(row_of(m).title), std::string(row_of(m).unit)});
+  }
+  TableWriter table(std::move(titles));
   for (const Column& c : columns) {
     Score s;
     add_error_metrics(trace, c.output, trace.t.front(), s);
     add_detection_metrics(trace, c.output, s);
-    for (int j = 1; j <= trace.dof(); ++j) {
-      const auto value = [&](const char* q) { return s.metrics.at(fmt::format("{}{}_Nm", q, j)); };
-      fmt::print(to, "{:<28} {:>6} {:>12.6g} {:>12.6g} {:>12.6g}\n", j == 1 ? c.estimator : "", j,
-                 value("rmse"), value("bias"), value("max"));
+    for (int j = 0; j < trace.dof(); ++j) {
+      std::vector<std::string> cells = {j == 0 ? c.estimator : "", std::to_string(j + 1)};
+      for (const Metric m : kShown) cells.push_back(fmt::format("{:.6g}", s.joint(m, j)));
+      table.add(std::move(cells));
     }
-    if (c.detector.empty() || trace.contact.empty()) continue;
-    const auto delay = s.get("delay_s");
-    fmt::print(to, "  {}: {} false alarms, {}\n", c.detector, s.metrics.at("false_alarms"),
-               !delay               ? "no collision in the log"
-               : std::isnan(*delay) ? "no collision detected"
-                                    : fmt::format("recall {}, largest delay {:.3f} s",
-                                                  s.metrics.at("recall"), *delay));
+    if (const std::string v = verdict(s); !v.empty()) table.add_note("  " + c.detector + ": " + v);
   }
+  fmt::print(to, "{}", table.format());
 }
 
 }  // namespace
@@ -113,11 +131,12 @@ int main(int argc, char** argv) {
   bool list = false;
   app.add_option("log", log, "log to read: CSV or LCM");
   app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
-  app.add_option("--robot", robot_name, "robot (see --list)");
-  app.add_option("--estimator", estimators, "one or more, separated by commas")
+  app.add_option("--robot", robot_name, "robot (see --list), or its MJCF file")
+      ->type_name("NAME|FILE.xml");
+  app.add_option("--estimator", estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--detector", detector, "detector behind each estimator");
+  app.add_option("--detector", detector, "NAME[:KEY=VALUE].. behind each estimator");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_flag("--list", list, "list robots, estimators and detectors, and stop");
   return run_program(app, argc, argv, [&] {
@@ -134,6 +153,7 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", out));
     }
     const Robot& r = robot(robot_name);
+    for (const std::string& e : estimators) r.check(e, detector);
     const Trace trace = read_log_or_csv(log, channel);
     std::vector<Column> columns;
     for (const std::string& e : estimators) {

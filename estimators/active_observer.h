@@ -21,8 +21,10 @@
 ///     delta = B(q_k)^-1 B(q_k-1) delta                                                      (iv)
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
-#include "estimators/ldlt.h"
+#include "estimators/math/ldlt.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
@@ -44,6 +46,17 @@ class ActiveObserver {
     double R_qd = 1e-9;  ///< [(rad/s)^2 s] density of the noise of qd, positive; 1e-3 rad/s at 1 ms
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple(
+          Field{"Q_delta", &P::Q_delta, "(rad/s^2)^2/s", 1e-30, 1e20, "larger is faster, noisier"},
+          Field{"Q_qdd", &P::Q_qdd, "(rad/s^2)^2 s", 0, 1e20,
+                "the model's error; larger is slower"},
+          Field{"R_q", &P::R_q, "rad^2 s", 1e-30, 1e6, "the noise of q; larger is slower"},
+          Field{"R_qd", &P::R_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
+          max_gap_field<P>());
+    }
+
     /// Bandwidth w [rad/s] on every joint, in every pose: at w the load's share of the velocity's
     /// spectrum, Q_delta / w^2, is as large as the rest; -3 dB at w for each noise alone.
     static Parameters for_bandwidth(const M&, double w) {
@@ -55,10 +68,7 @@ class ActiveObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit ActiveObserver(const M& model, const Parameters& p = {})
-      : model_(model), p_(p), sampling_(p.max_gap) {
-    require(p.Q_delta > 0 && p.Q_qdd >= 0, "Q_delta of the eao must be positive, Q_qdd at least 0");
-    require(p.R_q > 0 && p.R_qd > 0, "R_q and R_qd of the eao must be positive");
-  }
+      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {}
 
   void reset() noexcept {
     sampling_.reset();

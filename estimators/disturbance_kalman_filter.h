@@ -18,7 +18,9 @@
 /// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w.
 #pragma once
 
-#include "estimators/ldlt.h"
+#include <tuple>
+
+#include "estimators/math/ldlt.h"
 #include "estimators/momentum.h"
 #include "estimators/sampling.h"
 
@@ -47,6 +49,16 @@ class DisturbanceKalmanFilter {
     Mat<kDof> P0_d = Mat<kDof>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
     double max_gap = 0.05;               ///< [s] a longer gap restarts the filter
 
+    /// The matrices Q_d and P0_d come from for_bandwidth, and cannot be set by name.
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple(
+          Field{"Q_p", &P::Q_p, "(N m)^2 s", 0, 1e20, "the model's error; larger is slower"},
+          Field{"Q_qd", &P::Q_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
+          Field{"P0_qd", &P::P0_qd, "(rad/s)^2", 0, 1e12, "variance of the first qd"},
+          max_gap_field<P>());
+    }
+
     /// Q_d = w^4 B(0) Q_qd B(0)^T: at q = 0 every joint is Butterworth's of -3 dB at w [rad/s], however
     /// B couples them, and in other poses about so. P0 is what the filter settles to.
     static Parameters for_bandwidth(const M& model, double w) {
@@ -62,12 +74,9 @@ class DisturbanceKalmanFilter {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit DisturbanceKalmanFilter(const M& model, const Parameters& p)
-      : p_(p), sampling_(p.max_gap), momentum_(model) {
-    require(Ldlt<kDof>(p.Q_d).ok(), "Q_d of the dkf must be positive definite");
-    require(p.Q_p.minCoeff() >= 0, "Q_p of the dkf must not be negative");
-    require(p.Q_qd.minCoeff() > 0, "Q_qd of the dkf must be positive");
-    require(p.P0_qd.minCoeff() >= 0 && p.P0_d.diagonal().minCoeff() >= 0,
-            "P0 of the dkf must not be negative");
+      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {
+    require(Ldlt<kDof>(p.Q_d).ok(), "Q_d of dkf must be positive definite");
+    require(p.P0_d.diagonal().minCoeff() >= 0, "P0_d of dkf must not be negative");
     mirror(p_.Q_d);
     mirror(p_.P0_d);
   }

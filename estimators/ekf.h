@@ -26,16 +26,11 @@
 #pragma once
 
 #include "estimators/concepts.h"
-#include "estimators/lanes.h"
+#include "estimators/ekf_parameters.h"
+#include "estimators/math/lanes.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
-
-/// Which torque drives the step from k-1 to k.
-enum class Alignment : std::uint8_t {
-  kHeld,   ///< tau_k-1, which acted over that step: (10)
-  kPaper,  ///< tau_k, as (13) prints it: an error of h dtau/dt
-};
 
 /// The paper's EKF over a robot model M.
 template <DifferentiableModel M>
@@ -43,76 +38,14 @@ class Ekf {
  public:
   static constexpr const char* kName = "ekf";
   static constexpr int kDof = M::kDof;
-  using Vec2 = Vec<2 * kDof>;
-  using Vec3 = Vec<3 * kDof>;
+  using Vec3 = Vec<3 * kDof>;  ///< [q; qd; tau_ext]
 
-  /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. A larger Q_d or a smaller R is
-  /// faster and noisier. P0, Q and R have no default that fits every arm.
-  struct Parameters {
-    Vec3 P0 = Vec3::Zero();  ///< of the state at the start, at least 0
-    Vec3 Q = Vec3::Zero();   ///< of the process, per step, at least 0
-    Vec2 R = Vec2::Zero();   ///< of the measured q and qd, positive
-    /// [s] 0: Q is added once per step and R belongs to every sample, whatever the step, as printed.
-    /// Otherwise both are meant for steps of Ts, and a step of h takes Q h / Ts and R Ts / h, white
-    /// noise of constant density, so that the answer does not depend on the sampling time.
-    double Ts = 0;
-    Integration integration = Integration::kSecondOrder;  ///< (iii), or (10) alone
-    Alignment alignment = Alignment::kHeld;
-    Start start = Start::kFirstMeasurement;
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
-
-    /// (32) for the three joints of wallmobot3, (38) for the one of testbed1.
-    static Parameters paper() requires(kDof == 3 || kDof == 1) {
-      Parameters p;
-      if constexpr (kDof == 1) {
-        p.P0 << 1e-20, 1e-20, 1e-2;
-        p.Q << 1e-14, 1e-14, 1e-2;
-        p.R << 1e-20, 1e-17;
-        return p;
-      } else {
-        p.P0 << 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-2, 1e-2;
-        p.Q << 1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, 4, 2.5, 4;
-        p.R << 8e-10, 1e-12, 1e-12, 3e-11, 1e-12, 1e-12;
-        return p;
-      }
-    }
-
-    /// Noise that sensors have (velocity 1e-3 rad/s, angle 1e-5 rad) and next to none in the model,
-    /// per 1 ms; with (32) R is negligible, and what is left is an NDOB. Q_d is for wallmobot3.
-    static Parameters honest() requires(kDof == 3) { return honest(Vec<kDof>::Constant(0.02)); }
-
-    /// honest() with bandwidth w [rad/s] of every joint that moves alone at q = 0: there the load's
-    /// share of the velocity's spectrum, Q_d / (B w)^2, is as large as the rest, so for each kind of
-    /// noise alone the filter is Butterworth's with -3 dB at w: w^4 = Q_d / (B^2 R_v) for R_v.
-    static Parameters for_bandwidth(const M& model, double w) {
-      const Parameters p = honest(Vec<kDof>::Zero());
-      const double r_q = p.R[0] * p.Ts, r_v = p.R[kDof] * p.Ts;  // [rad^2 s], [(rad/s)^2 s]
-      const double q_q = p.Q[0] / p.Ts, q_v = p.Q[kDof] / p.Ts;  // [rad^2/s], [(rad/s)^2/s]
-      const double measured = 1 / (1 / r_v + 1 / (w * w * r_q + q_q));
-      const double q_d = w * w * (w * w * measured + q_v);  // [(rad/s^2)^2/s]
-      const Mat<kDof> B = model.inertia(Vec<kDof>::Zero());
-      return honest(q_d * p.Ts * B.diagonal().cwiseAbs2());
-    }
-
-   private:
-    static Parameters honest(const Vec<kDof>& Q_d) {
-      constexpr double kR_q = 1e-10, kR_v = 1e-6, kQ_q = 1e-14, kQ_v = 1e-10;
-      const Vec<kDof> ones = Vec<kDof>::Ones();
-      Parameters p;
-      p.P0 << kR_q * ones, kR_v * ones, 10 * Q_d;
-      p.Q << kQ_q * ones, kQ_v * ones, Q_d;
-      p.R << kR_q * ones, kR_v * ones;
-      p.Ts = 1e-3;
-      return p;
-    }
-  };
+  /// What can be set.
+  using Parameters = EkfParameters<kDof>;
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Ekf(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
-    require(p.P0.minCoeff() >= 0, "P0 of the EKF must not be negative");
-    require(p.Q.minCoeff() >= 0, "Q of the EKF must not be negative");
-    require(p.R.minCoeff() > 0, "R of the EKF must be positive");
-    require(p.Ts >= 0, "Ts [s] of the EKF must not be negative");
+  explicit Ekf(const M& model, const Parameters& p)
+      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {
     for (int b = 0; b < 3; ++b) Q_[b] = diagonal(p.Q, b);
     start({});
   }

@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "estimators/momentum.h"
 #include "estimators/sampling.h"
@@ -36,15 +37,17 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
     double bandwidth = 30;  ///< [rad/s] -3 dB, positive: larger is faster and noisier
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+    }
+
     /// Bandwidth w [rad/s] on every joint, in every pose.
     static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit HigherOrderMomentumObserver(const M& model, const Parameters& p = {})
-      : p_(p), sampling_(p.max_gap), momentum_(model) {
-    require(p.bandwidth > 0, "the bandwidth [rad/s] of mo2 and mo3 must be positive");
-  }
+      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -101,8 +104,10 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
   Eigen::Matrix<double, kDof, Order> x_ = x_.Zero();  // [N m] d, d'/w, d''/w^2; row: joint
 };
 
+/// mo2
 template <RobotModel M>
 using MomentumObserver2 = HigherOrderMomentumObserver<M, 2>;
+/// mo3
 template <RobotModel M>
 using MomentumObserver3 = HigherOrderMomentumObserver<M, 3>;
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "estimators/concepts.h"
 #include "estimators/sampling.h"
@@ -28,15 +29,17 @@ class InverseDynamics {
         30;  ///< [rad/s] of the filter: larger is faster and noisier (ours; (4) has none)
     double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
 
+    static constexpr auto fields() {
+      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+    }
+
     /// Bandwidth w [rad/s] on every joint, in every pose.
     static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit InverseDynamics(const M& model, const Parameters& p = {})
-      : model_(model), p_(p), sampling_(p.max_gap) {
-    require(p.bandwidth > 0, "the bandwidth [rad/s] of inverse_dynamics must be positive");
-  }
+      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {}
 
   void reset() noexcept {
     sampling_.reset();

@@ -24,7 +24,7 @@ class Momentum {
  public:
   static constexpr int kDof = M::kDof;
 
-  explicit Momentum(const M& model) : model_(model) {}
+  explicit Momentum(const M& model) : model_(model) {}  ///< of this robot
 
   /// Goes on to sample y; of what is returned at the first sample only B and p mean anything.
   [[gnu::always_inline]] MomentumStep<kDof> advance(const Measurement<kDof>& y) noexcept {

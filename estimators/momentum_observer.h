@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "estimators/momentum.h"
 #include "estimators/sampling.h"
@@ -34,15 +35,19 @@ class MomentumObserver {
     Vec<kDof> K = Vec<kDof>::Constant(30);
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      return std::tuple(Field{"K", &Parameters::K, "rad/s", kLeastBandwidth, kMostBandwidth,
+                              "larger is faster and noisier"},
+                        max_gap_field<Parameters>());
+    }
+
     /// Bandwidth w [rad/s] on every joint, in every pose.
     static Parameters for_bandwidth(const M&, double w) { return {.K = Vec<kDof>::Constant(w)}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit MomentumObserver(const M& model, const Parameters& p = {})
-      : p_(p), sampling_(p.max_gap), momentum_(model) {
-    require(p.K.minCoeff() > 0, "the bandwidth K [rad/s] of mo1 must be positive");
-  }
+      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();

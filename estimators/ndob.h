@@ -16,9 +16,11 @@
 /// h < 2 / lambda_max(X B^-1), and off by h/2 B qddd in motion, 0.2 N m rms on wallmobot3 at 1 ms.
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
-#include "estimators/lanes.h"
-#include "estimators/ldlt.h"
+#include "estimators/math/lanes.h"
+#include "estimators/math/ldlt.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
@@ -38,6 +40,12 @@ class Ndob {
     Start start = Start::kFirstMeasurement;               ///< z_0 = X qd_0, or 0
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple(Field{"X", &P::X, "N m s/rad", 1e-12, 1e12, "larger is faster and noisier"},
+                        integration_field<P>(), start_field<P>(), max_gap_field<P>());
+    }
+
     /// Section 5.2: X = 2000 diag(0.3, 0.5, 0.3), for wallmobot3.
     static Parameters paper() requires(kDof == 3) { return {.X = {600, 1000, 600}}; }
 
@@ -49,10 +57,11 @@ class Ndob {
   };
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Ndob(const M& model, const Parameters& p) : model_(model), p_(p), sampling_(p.max_gap) {
-    require(p.X.minCoeff() > 0, "X of the NDOB must be positive");
-    X_ = detail::pad_vector<kDof>(p.X);
-  }
+  explicit Ndob(const M& model, const Parameters& p)
+      : model_(model),
+        p_(check_parameters(p, kName)),
+        sampling_(p.max_gap),
+        X_(detail::pad_vector<kDof>(p.X)) {}
 
   void reset() noexcept {
     sampling_.reset();

@@ -12,6 +12,8 @@
 ///     (1 + h w / 2) (z_k - z_k-1) = h w (n - d_k-1 + w (p_k - p_k-1) / 2)                  (i)
 #pragma once
 
+#include <tuple>
+
 #include "estimators/momentum.h"
 #include "estimators/sampling.h"
 
@@ -28,15 +30,17 @@ class NdobInertia {
     double bandwidth = 30;  ///< [rad/s] w, positive: larger is faster and noisier
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+    }
+
     /// Bandwidth w [rad/s] on every joint, in every pose.
     static Parameters for_bandwidth(const M&, double w) { return {.bandwidth = w}; }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit NdobInertia(const M& model, const Parameters& p = {})
-      : p_(p), sampling_(p.max_gap), momentum_(model) {
-    require(p.bandwidth > 0, "the bandwidth [rad/s] of ndob_wb must be positive");
-  }
+      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();

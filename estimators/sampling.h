@@ -3,9 +3,12 @@
 /// What an estimator does with a sample before any arithmetic: every estimator asks here first.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
+#include "estimators/parameters.h"
 #include "estimators/types.h"
 
 namespace tauext {
@@ -26,6 +29,19 @@ bool within(const Eigen::MatrixBase<Derived>& x, double limit) noexcept {
 /// @throws std::invalid_argument(what) unless ok
 inline void require(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(what);
+}
+
+/// The longest step [s] of an estimator, as its Parameters list it.
+template <class P>
+constexpr auto max_gap_field() {
+  return Field{"max_gap", &P::max_gap, "s", 1e-4, 1e3, "a longer gap restarts the estimator"};
+}
+
+/// The one bandwidth [rad/s] of an estimator, as its Parameters list it.
+template <class P>
+constexpr auto bandwidth_field() {
+  return Field{"bandwidth",     &P::bandwidth,  "rad/s",
+               kLeastBandwidth, kMostBandwidth, "larger is faster and noisier"};
 }
 
 /// Time and status of the samples an estimator has used.
@@ -69,6 +85,7 @@ class Sampling {
 /// their last bits, so steps alike to 1e-9 count as one.
 class StepChange {
  public:
+  /// Whether h [s] differs from the last one, which it becomes.
   bool operator()(double h) noexcept {
     if (std::abs(h - h_) <= 1e-9 * h_) return false;
     h_ = h;
@@ -85,10 +102,32 @@ enum class Integration : std::uint8_t {
   kEuler,  ///< from the values at k-1 alone, as the paper prints: in motion an error of h/2 B qddd
 };
 
+constexpr auto choices(Integration) {
+  return std::array{Choice<Integration>{"second_order", Integration::kSecondOrder},
+                    Choice<Integration>{"euler", Integration::kEuler}};
+}
+
 /// What an observer assumes before its first sample.
 enum class Start : std::uint8_t {
   kFirstMeasurement,  ///< the arm moves as first measured and nothing touches it
   kZero,              ///< the state is zero, as the paper prints (its arm starts at rest at q = 0)
 };
+
+constexpr auto choices(Start) {
+  return std::array{Choice<Start>{"first_measurement", Start::kFirstMeasurement},
+                    Choice<Start>{"zero", Start::kZero}};
+}
+
+/// How the model is stepped, as Parameters list it.
+template <class P>
+constexpr auto integration_field() {
+  return Field{"integration", &P::integration, "", 0, 0, "euler, as printed, errs in motion"};
+}
+
+/// What is assumed at first, as Parameters list it.
+template <class P>
+constexpr auto start_field() {
+  return Field{"start", &P::start, "", 0, 0, "zero, as printed, errs for an arm in motion"};
+}
 
 }  // namespace tauext

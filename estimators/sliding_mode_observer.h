@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "estimators/momentum.h"
 #include "estimators/sampling.h"
@@ -39,6 +40,16 @@ class SlidingModeObserver {
     Vec<kDof> T2 = Vec<kDof>::Zero();  ///< [1/s] at least 0: damps S2
     double max_gap = 0.05;             ///< [s] a longer gap restarts the observer
 
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple(
+          Field{"S1", &P::S1, "N m/s", 0, 1e15, "rate of tau_ext that is followed exactly"},
+          Field{"S2", &P::S2, "1/s^2", 1e-12, 1e15,
+                "of the linear part; larger is faster, noisier"},
+          Field{"T1", &P::T1, "sqrt(N m/s)", 0, 1e12, "damps S1"},
+          Field{"T2", &P::T2, "1/s", 0, 1e12, "damps S2"}, max_gap_field<P>());
+    }
+
     /// The linear part is mo2 of bandwidth w [rad/s]: T2 = sqrt2 w, S2 = w^2. The sliding terms are as
     /// large as the linear ones where the velocity is wrong by 1e-4 rad/s, a tenth of a usual sensor's
     /// noise, e_0 = 1e-4 diag(B(0)): smaller errors than that are the sliding mode's.
@@ -55,11 +66,7 @@ class SlidingModeObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit SlidingModeObserver(const M& model, const Parameters& p)
-      : p_(p), sampling_(p.max_gap), momentum_(model) {
-    require(p.S1.minCoeff() >= 0 && p.T1.minCoeff() >= 0 && p.T2.minCoeff() >= 0,
-            "S1, T1 and T2 of the smo must not be negative");
-    require(p.S2.minCoeff() > 0, "S2 [1/s^2] of the smo must be positive");
-  }
+      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();

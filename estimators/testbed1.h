@@ -12,8 +12,8 @@
 
 #include "estimators/concepts.h"
 #include "estimators/friction.h"
+#include "estimators/math/sin_cos.h"
 #include "estimators/sampling.h"
-#include "estimators/sin_cos.h"
 
 namespace tauext {
 
@@ -55,7 +55,7 @@ class Testbed1 {
 
   Testbed1() : Testbed1(Parameters()) {}
 
-  const Parameters& parameters() const noexcept { return p_; }
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   /// B = theta_1 [kg m^2].
   Mat<1> inertia(const Vec<1>&) const noexcept { return Mat<1>(p_.theta1); }

@@ -15,8 +15,10 @@
 
 namespace tauext {
 
+/// A value for each of N joints.
 template <int N, class Scalar = double>
 using Vec = Eigen::Matrix<Scalar, N, 1>;
+/// A matrix over N joints.
 template <int N, class Scalar = double>
 using Mat = Eigen::Matrix<Scalar, N, N>;
 
@@ -45,7 +47,7 @@ enum class Status : std::uint8_t {
 template <int N>
 struct Estimate {
   Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
-  Status status = Status::kOk;
+  Status status = Status::kOk;      ///< whether tau_ext may be used
 };
 
 /// What a detector takes a contact for.

@@ -16,8 +16,8 @@
 #pragma once
 
 #include "estimators/concepts.h"
-#include "estimators/ldlt.h"
-#include "estimators/sin_cos.h"
+#include "estimators/math/ldlt.h"
+#include "estimators/math/sin_cos.h"
 
 namespace tauext {
 
@@ -26,8 +26,8 @@ template <class Scalar = double>
 class BasicWallMoBot3 {
  public:
   static constexpr int kDof = 3;
-  using Vec3 = Vec<3, Scalar>;
-  using Mat3 = Mat<3, Scalar>;
+  using Vec3 = Vec<3, Scalar>;  ///< of q2, q3, q4
+  using Mat3 = Mat<3, Scalar>;  ///< of q2, q3, q4
 
   /// Tables I and II. I_zz is about the origin of its frame, the joint (about the centre of mass
   /// the printed values would exceed what a rod of that mass and length can have).
@@ -53,6 +53,7 @@ class BasicWallMoBot3 {
     }
   };
 
+  /// The arm with these masses and lengths.
   explicit BasicWallMoBot3(const Parameters& p = {}) : p_(p) {
     const double h4x = p.m4 * p.com4_x + p.m5 * p.a4;  // first moment carried by link 4
     const double h4y = p.m4 * p.com4_y;
@@ -68,7 +69,7 @@ class BasicWallMoBot3 {
     gy_ << p.m2 * p.com2_y, h4y, h5y;
   }
 
-  const Parameters& parameters() const noexcept { return p_; }
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   // inertia and momentum_bias are inlined so that a momentum observer takes the sines once for both
 
@@ -227,6 +228,7 @@ class BasicWallMoBot3 {
   Vec3 gx_, gy_;                              // [kg m] first moments along x_a, y_a
 };
 
+/// The closed form in double, as everybody but the derivatives uses it.
 using WallMoBot3 = BasicWallMoBot3<double>;
 static_assert(DifferentiableModel<WallMoBot3>);
 

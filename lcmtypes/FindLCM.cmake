@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian 12's LCM 1.3.1 brings no CMake package, and its pkg-config file asks for GLib's. Sets LCM_FOUND,
-# gives LCM::LCM, LCM_GEN_EXECUTABLE, and LCM_JAR (empty without liblcm-java).
+# gives LCM::LCM, LCM::headers, LCM_GEN_EXECUTABLE, and LCM_JAR (empty without liblcm-java).
 include(FindPackageHandleStandardArgs)
 find_path(LCM_INCLUDE_DIR lcm/lcm.h)
 find_library(LCM_LIBRARY lcm)
@@ -15,4 +15,7 @@ if(LCM_FOUND AND NOT TARGET LCM::LCM)
   add_library(LCM::LCM UNKNOWN IMPORTED)
   set_target_properties(LCM::LCM PROPERTIES
     IMPORTED_LOCATION ${LCM_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LCM_INCLUDE_DIR})
+  # what lcm-gen's types need
+  add_library(LCM::headers INTERFACE IMPORTED)
+  set_target_properties(LCM::headers PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${LCM_INCLUDE_DIR})
 endif()

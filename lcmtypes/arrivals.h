@@ -25,9 +25,10 @@ enum class Arrival : std::uint8_t {
 /// believed after Sequence::kPatience late readings that are in order among themselves.
 class Arrivals {
  public:
+  /// Readings.
   struct Counts {
-    std::int64_t used = 0;  ///< given to the estimator
-    std::int64_t repeated = 0, late = 0, restarts = 0;
+    std::int64_t used = 0;                              ///< given to the estimator
+    std::int64_t repeated = 0, late = 0, restarts = 0;  ///< as Arrival says
     /// Never came: by seq where the type has one (sequence.h); else whole periods that are missing,
     /// the period being the median of the last ones.
     std::int64_t lost = 0;
@@ -35,7 +36,7 @@ class Arrivals {
 
   /// Says what to do with the next one that has come, and counts it.
   Arrival take(const Reading& reading) noexcept;
-  const Counts& counts() const { return counts_; }
+  const Counts& counts() const { return counts_; }  ///< since the begin
 
  private:
   Arrival accept(const Reading& r, Arrival as) noexcept;

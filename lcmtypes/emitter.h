@@ -3,6 +3,7 @@
 /// From samples to messages: fewer messages than samples, with every peak held.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -14,27 +15,27 @@ namespace tauext {
 
 /// What an estimator, and the detector behind it, said of one sample. Plain: it crosses threads.
 struct LiveSample {
-  Reading reading;
+  Reading reading;          ///< what was measured
   Joints tau_ext_hat{};     ///< [N m] sign of (3)
   double step_us = 0;       ///< [us] what the update took
   double score = 0;         ///< [1] of the detector
   int stream = 0;           ///< which of the emitter's streams
   std::int8_t status = 0;   ///< of estimate_t
   std::int8_t contact = 0;  ///< of detection_t
-  bool mark = false;
+  bool mark = false;        ///< whether the detector marks this sample
 };
 
 /// An estimator's messages: estimate_t on TAUEXT_ESTIMATE_<estimator>, and detection_t on
 /// TAUEXT_DETECTION if there is a detector.
 struct Stream {
-  std::string estimator;
-  std::string detector;  ///< "" for none
+  std::string estimator;  ///< its name, or specification
+  std::string detector;   ///< "" for none
 };
 
-inline constexpr const char* kDetectionChannel = "TAUEXT_DETECTION";
-inline constexpr const char* kSummaryChannel = "TAUEXT_SUMMARY";
-inline constexpr const char* kSampleChannel = "TAUEXT_SAMPLE";
-inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";  ///< and the estimator's name
+inline constexpr const char* kDetectionChannel = "TAUEXT_DETECTION";  ///< of detection_t
+inline constexpr const char* kSummaryChannel = "TAUEXT_SUMMARY";      ///< of summary_t
+inline constexpr const char* kSampleChannel = "TAUEXT_SAMPLE";        ///< of sample_t
+inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";   ///< and the estimator's name
 
 /// Takes a message's channel, time [us] and bytes; false if it could not be sent.
 using Sink = std::function<bool(const char* channel, std::int64_t utime, Bytes message)>;
@@ -44,6 +45,7 @@ using Sink = std::function<bool(const char* channel, std::int64_t utime, Bytes m
 /// before. Allocates nothing after construction.
 class Emitter {
  public:
+  /// What became of the messages.
   struct Counts {
     std::int64_t sent = 0, failed = 0;  ///< messages
   };

@@ -33,7 +33,7 @@ class Listener {
   /// @throws std::runtime_error if the connection is gone
   bool wait(int milliseconds);
 
-  const std::string& url() const { return url_; }
+  const std::string& url() const { return url_; }  ///< in full
 
   /// The regular expression that means this channel alone.
   static std::string expression(const std::string& channel);

@@ -3,6 +3,7 @@
 /// The way out of a control loop: the loop pushes into a ring, a thread of ours does the rest.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@ namespace tauext {
 /// dropped and counted.
 class LiveStream {
  public:
+  /// What became of what was pushed.
   struct Counts {
     std::int64_t published = 0, failed = 0;  ///< messages
     std::int64_t dropped = 0;                ///< samples that did not fit into the ring

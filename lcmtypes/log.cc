@@ -29,6 +29,11 @@ std::uint64_t big_endian(const unsigned char* p) {
   return value;
 }
 
+template <int Bytes>
+void put_big_endian(std::uint64_t value, std::string& to) {
+  for (int i = Bytes - 1; i >= 0; --i) to += static_cast<char>(value >> 8 * i & 0xFF);
+}
+
 // LCM's own reader stops at junk and believes lengths
 class Reader {
  public:
@@ -141,29 +146,14 @@ class Reader {
 
 }  // namespace
 
-LogBuffer::LogBuffer() {
-  log_.f = ::open_memstream(&text_, &size_);
-  if (log_.f == nullptr) throw std::runtime_error("no memory for a log");
-}
-
-LogBuffer::~LogBuffer() {
-  std::fclose(log_.f);
-  std::free(text_);
-}
-
-void LogBuffer::append(const char* channel, std::int64_t utime, Bytes message) {
-  lcm_eventlog_event_t event{};
-  event.timestamp = utime;
-  event.channellen = static_cast<std::int32_t>(std::strlen(channel));
-  event.datalen = static_cast<std::int32_t>(message.size());
-  event.channel = const_cast<char*>(channel);
-  event.data = const_cast<std::byte*>(message.data());
-  if (lcm_eventlog_write_event(&log_, &event) != 0) throw std::runtime_error("no memory for a log");
-}
-
-std::string_view LogBuffer::bytes() {
-  if (std::fflush(log_.f) != 0) throw std::runtime_error("no memory for a log");
-  return {text_, size_};
+void LogBuffer::append(std::string_view channel, std::int64_t utime, Bytes message) {
+  put_big_endian<4>(kSync, bytes_);
+  put_big_endian<8>(events_++, bytes_);
+  put_big_endian<8>(static_cast<std::uint64_t>(utime), bytes_);
+  put_big_endian<4>(channel.size(), bytes_);
+  put_big_endian<4>(message.size(), bytes_);
+  bytes_ += channel;
+  for (const std::byte b : message) bytes_ += static_cast<char>(b);
 }
 
 LogFaults read_log(const std::string& path, const std::function<void(const LogEvent&)>& handler) {

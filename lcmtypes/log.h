@@ -3,10 +3,7 @@
 /// LCM's logs, as lcm-logger writes them and lcm-logplayer and lcm-spy play them.
 #pragma once
 
-#include <lcm/eventlog.h>
-
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -19,36 +16,29 @@ namespace tauext {
 /// With simulated times it is the same from run to run, byte by byte.
 class LogBuffer {
  public:
-  LogBuffer();
-  ~LogBuffer();
-  LogBuffer(const LogBuffer&) = delete;
-  LogBuffer& operator=(const LogBuffer&) = delete;
-
   /// @param utime [us] time of the event
-  /// @throws std::runtime_error if memory is out
-  void append(const char* channel, std::int64_t utime, Bytes message);
+  void append(std::string_view channel, std::int64_t utime, Bytes message);
 
   /// The log so far; valid until the next append.
-  std::string_view bytes();
+  std::string_view bytes() const { return bytes_; }
 
  private:
-  char* text_ = nullptr;
-  std::size_t size_ = 0;
-  lcm_eventlog_t log_{};
+  std::string bytes_;
+  std::uint64_t events_ = 0;
 };
 
 /// One message of a log; views are valid during the call.
 struct LogEvent {
-  std::int64_t utime = 0;  ///< [us]
-  std::string_view channel;
-  Bytes message;
+  std::int64_t utime = 0;    ///< [us]
+  std::string_view channel;  ///< its name
+  Bytes message;             ///< not yet decoded
 };
 
 /// What a log had beside good events.
 struct LogFaults {
-  std::int64_t junk_bytes = 0;  ///< between events, skipped
-  std::int64_t junk_stretches = 0;
-  bool truncated = false;  ///< the last event is cut off
+  std::int64_t junk_bytes = 0;      ///< between events, skipped
+  std::int64_t junk_stretches = 0;  ///< places where such bytes lie
+  bool truncated = false;           ///< the last event is cut off
 };
 
 /// Hands every good event of a log on, in its order; skips what is none.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -32,8 +33,8 @@ struct Reading {
   Joints qd{};             ///< [rad/s]
   Joints tau{};            ///< [N m] link side
   Joints tau_ext{};        ///< [N m] sign of (3), if there is a reference
-  ReferenceKind reference = ReferenceKind::kNone;
-  bool contact = false;  ///< a collision acts, as a simulation knows
+  ReferenceKind reference = ReferenceKind::kNone;  ///< what tau_ext is
+  bool contact = false;                            ///< a collision acts, as a simulation knows
 };
 
 /// Whether the n values are finite and below 10^6, which no torque [N m] is.

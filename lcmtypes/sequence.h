@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tauext {
@@ -14,10 +15,11 @@ namespace tauext {
 /// in order, with nothing of the old stream between them, are a sender that has started anew.
 class Sequence {
  public:
-  static constexpr int kPatience = 20;
+  static constexpr int kPatience = 20;  ///< messages
   /// Messages: a larger jump is another sender, or one that was away for long, and no loss.
   static constexpr std::int64_t kLargestLoss = 10'000;
 
+  /// The number of the next message that has come.
   void take(std::int64_t seq) noexcept {
     if (!any_ || seq >= next_) {
       if (any_) miss(next_, seq);
@@ -40,7 +42,7 @@ class Sequence {
     advance(seq);
   }
 
-  std::int64_t lost() const noexcept { return lost_; }
+  std::int64_t lost() const noexcept { return lost_; }  ///< messages
   /// Numbers that were neither next nor missing: copies, or another sender's.
   std::int64_t strays() const noexcept { return strays_; }
 

@@ -23,6 +23,7 @@ std::string lcm_url(const std::string& url);
 /// @throws std::invalid_argument for a URL that LCM does not know
 std::string trouble_with(const std::string& url);
 
+/// LCM, with who destroys it.
 using LcmHandle = std::unique_ptr<lcm_t, decltype(&lcm_destroy)>;
 
 /// LCM on that URL; null, and why, if that cannot be.
@@ -38,15 +39,17 @@ class Transport {
   /// that cannot be made
   explicit Transport(const std::string& url);
 
-  const std::string& url() const { return url_; }
-  bool good() const { return lcm_ != nullptr || log_ != nullptr; }
+  const std::string& url() const { return url_; }  ///< in full
+  bool good() const {
+    return lcm_ != nullptr || log_ != nullptr;
+  }  ///< whether anything can be sent
   /// Why it is not good, in one line, and what to do.
   const std::string& trouble() const { return trouble_; }
 
   /// False if it could not be sent. A slow subscriber never makes it wait, except on tcpq://.
   bool publish(const char* channel, Bytes message) noexcept;
 
-  lcm_t* handle() const { return lcm_.get(); }
+  lcm_t* handle() const { return lcm_.get(); }  ///< null for a log
 
  private:
   std::string url_, trouble_;

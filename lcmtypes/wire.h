@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// @file Bytes to messages and back. What comes from outside is checked before anything is decoded:
+/// @file
+/// Bytes to messages and back. What comes from outside is checked before anything is decoded:
 /// LCM's own decoders believe the lengths that a message claims.
 ///
 /// The types themselves, with units and signs, are lcmtypes/*.lcm; lcm-gen makes structs of them,
@@ -21,8 +22,10 @@ namespace tauext {
 
 /// The most joints that a message holds.
 inline constexpr int kMaxJoints = 8;
-/// The most metrics that a summary may hold, and the longest of its texts [bytes].
-inline constexpr int kMaxMetrics = 1000, kMaxText = 4096;
+/// The most metrics that a summary may hold.
+inline constexpr int kMaxMetrics = 1000;
+/// The longest of its texts [bytes].
+inline constexpr int kMaxText = 4096;
 
 /// Why a message was not decoded.
 enum class Reject : std::uint8_t {
@@ -38,6 +41,7 @@ enum class Reject : std::uint8_t {
 /// In words.
 const char* describe(Reject reject) noexcept;
 
+/// An encoded message.
 using Bytes = std::span<const std::byte>;
 
 /// The hash at the head of a message; 0 if it is shorter than that.

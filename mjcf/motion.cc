@@ -11,7 +11,7 @@ Reference sine_motion(double amplitude, double w, double t) {
           -amplitude * w * w * std::sin(w * t)};
 }
 
-Reference at(const MinimumJerk& m, double t) {
+Reference reference_at(const MinimumJerk& m, double t) {
   const double T = m.duration, s = std::clamp((t - m.begin) / T, 0., 1.), d = m.to - m.from;
   if (s == 0 || s == 1) return {s == 0 ? m.from : m.to, 0, 0};
   return {m.from + d * s * s * s * (10 - 15 * s + 6 * s * s),
@@ -25,7 +25,7 @@ double Trapezium::duration() const {
   return way / speed + speed / acceleration;
 }
 
-Reference at(const Trapezium& m, double t) {
+Reference reference_at(const Trapezium& m, double t) {
   const double T = m.duration(), s = t - m.begin, sense = m.to < m.from ? -1 : 1;
   if (s <= 0) return {m.from, 0, 0};
   if (s >= T) return {m.to, 0, 0};

@@ -3,6 +3,8 @@
 /// Reference motions, in closed form.
 #pragma once
 
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace tauext {
@@ -20,7 +22,7 @@ Reference sine_motion(double amplitude, double w, double t);
 /// From rest to rest with the least jerk, as a human arm moves (Flash and Hogan 1985).
 struct MinimumJerk {
   double begin = 0, duration = 1;  ///< [s]
-  double from = 0, to = 0;
+  double from = 0, to = 0;         ///< [rad] or [m]
 };
 
 /// From rest to rest with a trapezium of velocity, as a motor is told to.
@@ -33,8 +35,10 @@ struct Trapezium {
   double duration() const;  ///< [s]
 };
 
-Reference at(const MinimumJerk& m, double t);
-Reference at(const Trapezium& m, double t);
+/// Where a move is at time t [s]; it is at rest before and after.
+Reference reference_at(const MinimumJerk& m, double t);
+/// Where a move is at time t [s]; it is at rest before and after.
+Reference reference_at(const Trapezium& m, double t);
 
 /// One move after the other, at rest before, between and after them.
 template <class Move>
@@ -43,11 +47,12 @@ class Moves {
   /// @param moves in the order of time, each from where the last one ended; not empty
   explicit Moves(std::vector<Move> moves) : moves_(std::move(moves)) {}
 
+  /// At time t [s].
   Reference operator()(double t) const {
     // the last one that has begun
     std::size_t i = moves_.size() - 1;
     while (i > 0 && moves_[i].begin > t) --i;
-    return at(moves_[i], t);
+    return reference_at(moves_[i], t);
   }
 
  private:

@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/motion.h"
+#include "mjcf/plant/plant.h"
+
 namespace tauext {
 namespace {
 

@@ -3,12 +3,13 @@
 /// Ground truth: a scenario, run on a robot, sampled.
 #pragma once
 
+#include <functional>
 #include <optional>
 
-#include "mjcf/plant.h"
-#include "mjcf/scenario.h"
-#include "mjcf/sensors.h"
-#include "mjcf/trace.h"
+#include "mjcf/plant/model.h"
+#include "mjcf/scenario.h"  // IWYU pragma: export
+#include "mjcf/trace/sensors.h"
+#include "mjcf/trace/trace.h"
 
 namespace tauext {
 

@@ -2,25 +2,16 @@
 #include "mjcf/scenario.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 #include <stdexcept>
 
-#include "mjcf/scenario_lists.h"
+#include "mjcf/scenario_testbed1.h"
+#include "mjcf/scenario_wallmobot3.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext {
-
-Scenario quiet() {
-  Scenario s;
-  s.reference = [](double) { return Reference{}; };
-  s.tau_ext = [](double) { return 0; };
-  s.force = [](double, const Point&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); };
-  s.contact = [](double) { return false; };
-  return s;
-}
-
 namespace {
 
 using Lists = std::map<std::string, std::vector<Scenario>, std::less<>>;
@@ -57,13 +48,8 @@ const std::vector<Scenario>& scenarios(std::string_view robot) {
 }
 
 const Scenario& scenario(std::string_view robot, std::string_view name) {
-  std::vector<std::string_view> known;
-  for (const Scenario& s : scenarios(robot)) {
-    if (s.name == name) return s;
-    known.push_back(s.name);
-  }
-  throw std::invalid_argument(
-      fmt::format("unknown scenario '{}' of {}; known: {}", name, robot, fmt::join(known, ", ")));
+  const auto name_of = [](const Scenario& s) -> const std::string& { return s.name; };
+  return find_known(scenarios(robot), "scenario", name, name_of, robot);
 }
 
 Model load_for(std::string_view robot, const Scenario& s, const ModelError& error) {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Section 6 of the paper: the experiments of Figs. 10 to 15. What the paper leaves open (speeds,
 // limits, the human's hand, the obstacle) is ours.
+#include "mjcf/scenario_testbed1.h"
+
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "mjcf/random.h"
-#include "mjcf/scenario_lists.h"
+#include "mjcf/motion.h"
+#include "mjcf/plant/plant.h"
+#include "mjcf/trace/random.h"
 
 namespace tauext {
 namespace {

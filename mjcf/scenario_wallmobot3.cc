@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Section 5.2 of the paper, and what it leaves out.
+#include "mjcf/scenario_wallmobot3.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/scenario_lists.h"
+#include "mjcf/motion.h"
+#include "mjcf/plant/plant.h"
 #include "mjcf/touch.h"
 
 namespace tauext {
@@ -33,39 +35,48 @@ double swept_sine(double t) {
   return kAmplitude * 0.5 * (1 - std::cos(std::numbers::pi * edge)) * std::sin(phase);
 }
 
-}  // namespace
-
-std::vector<Scenario> scenarios_of_wallmobot3() {
-  Scenario base = quiet();
-  base.reference = [](double t) { return sine_motion(0.1, 1, t); };
-
-  std::vector<Scenario> all;
-  const auto add = [&](const char* name, const char* description) -> Scenario& {
-    all.push_back(base);
+// scenarios on the motion that the paper's have
+class List {
+ public:
+  List() {
+    base_ = quiet();
+    base_.reference = [](double t) { return sine_motion(0.1, 1, t); };
+  }
+  /// Good until the next one is added.
+  Scenario& add(const char* name, const char* description) {
+    all.push_back(base_);
     all.back().name = name;
     all.back().description = description;
     return all.back();
-  };
+  }
 
-  add("free", "no contact; q_ref = 0.1 sin t rad, from rest");
+  std::vector<Scenario> all;
 
-  Scenario& step = add("step", "98.2 N m on every joint from t = 1 s (Fig. 4)");
+ private:
+  Scenario base_;
+};
+
+// section 5.2
+void add_those_of_the_paper(List& list) {
+  list.add("free", "no contact; q_ref = 0.1 sin t rad, from rest");
+
+  Scenario& step = list.add("step", "98.2 N m on every joint from t = 1 s (Fig. 4)");
   step.response = Response::kStep;
   step.tau_ext = [](double t) { return t < 1 ? 0 : 98.2; };
 
-  Scenario& ramp = add("ramp", "from t = 1 s, 5 N m/s on every joint (Fig. 5)");
+  Scenario& ramp = list.add("ramp", "from t = 1 s, 5 N m/s on every joint (Fig. 5)");
   ramp.response = Response::kLag;
   ramp.tau_ext = [](double t) { return t < 1 ? 0 : 5 * (t - 1); };
 
-  Scenario& sine =
-      add("sine", "10 sin t + 5 cos(2t + pi/2) - 5 N m on every joint (Fig. 6); scored from 3 s");
+  Scenario& sine = list.add(
+      "sine", "10 sin t + 5 cos(2t + pi/2) - 5 N m on every joint (Fig. 6); scored from 3 s");
   sine.response = Response::kLag;
   sine.score_from = 3;
   sine.tau_ext = paper_sine;
 
   Scenario& collision =
-      add("collision",
-          "5 sin(t/2) N m, and at t = 5 s a half sine of 200 N, 20 ms on the panel (Fig. 7)");
+      list.add("collision",
+               "5 sin(t/2) N m, and at t = 5 s a half sine of 200 N, 20 ms on the panel (Fig. 7)");
   collision.response = Response::kDetection;
   collision.tau_ext = [](double t) { return 5 * std::sin(t / 2); };
   collision.contact = hit;
@@ -73,17 +84,14 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
     const double f = hit(t) ? -kHitForce * std::sin(std::numbers::pi * (t - kHitAt) / kHitFor) : 0;
     return {f, 0, 0};
   };
+}
 
-  Scenario& in_motion =
-      add("in_motion", "no contact; starts at 0.6 rad/s on q_ref = 0.3 sin 2t rad");
-  in_motion.start_on_reference = true;
-  in_motion.reference = [](double t) { return sine_motion(0.3, 2, t); };
-
+void add_touches(List& list) {
   // slanted, so that every joint feels them
   const Eigen::Vector3d slanted = Eigen::Vector3d(-0.8, 0, 0.6);
 
   Scenario& push =
-      add("push", "slow pushes of 80 N at 5, 12 and 20 s, up in 1 s, held 1 s, and back");
+      list.add("push", "slow pushes of 80 N at 5, 12 and 20 s, up in 1 s, held 1 s, and back");
   push.response = Response::kDetection;
   std::vector<Touch> pushes;
   for (const double begin : {5., 12., 20.}) {
@@ -91,7 +99,7 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
   }
   push = with_touches(push, pushes);
 
-  Scenario& brisk = add(
+  Scenario& brisk = list.add(
       "brisk_push", "pushes of 100 N at 5, 12 and 20 s, up in 0.1 s, held 0.3 s, back in 0.3 s");
   brisk.response = Response::kDetection;
   for (Touch& p : pushes) {
@@ -99,29 +107,44 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
   }
   brisk = with_touches(brisk, pushes);
 
-  Scenario& clamp =
-      add("clamp",
-          "something is caught at 10 s: 200 N, straight up in 0.75 s, held 3 s, back in 0.5 s");
+  Scenario& clamp = list.add(
+      "clamp",
+      "something is caught at 10 s: 200 N, straight up in 0.75 s, held 3 s, back in 0.5 s");
   clamp.response = Response::kDetection;
   clamp = with_touches(clamp, {{TouchKind::kClamp, 10, 0.75, 3, 0.5, 200 * slanted}});
+}
 
-  Scenario& payload = add("payload", "15 kg hung on the panel by a tether at 8 s, dropped at 20 s");
+}  // namespace
+
+std::vector<Scenario> scenarios_of_wallmobot3() {
+  List list;
+  add_those_of_the_paper(list);
+
+  Scenario& in_motion =
+      list.add("in_motion", "no contact; starts at 0.6 rad/s on q_ref = 0.3 sin 2t rad");
+  in_motion.start_on_reference = true;
+  in_motion.reference = [](double t) { return sine_motion(0.3, 2, t); };
+
+  add_touches(list);
+
+  Scenario& payload =
+      list.add("payload", "15 kg hung on the panel by a tether at 8 s, dropped at 20 s");
   payload.scene = "load";
   payload.load = Load{.mass = 15, .hang_at = 8, .drop_at = 20};
 
-  Scenario& contact =
-      add("contact", "the panel runs into a ball on a spring near 3.6 s; a mark stops the motors");
+  Scenario& contact = list.add(
+      "contact", "the panel runs into a ball on a spring near 3.6 s; a mark stops the motors");
   contact.duration = 8;
   contact.response = Response::kDetection;
   contact.scene = "panel_obstacle";
   contact.reacts = true;
 
   Scenario& chirp =
-      add("chirp", "10 N m on every joint, swept from 0.5 to 300 rad/s between 2 and 38 s");
+      list.add("chirp", "10 N m on every joint, swept from 0.5 to 300 rad/s between 2 and 38 s");
   chirp.duration = 40;
   chirp.response = Response::kBandwidth;
   chirp.tau_ext = swept_sine;
-  return all;
+  return list.all;
 }
 
 }  // namespace tauext

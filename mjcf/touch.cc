@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/random.h"
-#include "mjcf/scenario_lists.h"
+#include "mjcf/motion.h"
+#include "mjcf/plant/plant.h"
+#include "mjcf/trace/random.h"
 
 namespace tauext {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kFirstTouch =
 
 // 0 to 1 as x goes from 0 to 1
 double minimum_jerk(double x) {
-  return at(MinimumJerk{.begin = 0, .duration = 1, .from = 0, .to = 1}, x).q;
+  return reference_at(MinimumJerk{.begin = 0, .duration = 1, .from = 0, .to = 1}, x).q;
 }
 
 Touch draw(TouchKind kind, double begin, Random& random) {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mjcf/scenario.h"
+#include "mjcf/scenario_type.h"
 
 namespace tauext {
 
@@ -22,15 +22,15 @@ enum class TouchKind : std::uint8_t {
 
 /// One touch.
 struct Touch {
-  TouchKind kind = TouchKind::kBlow;
+  TouchKind kind = TouchKind::kBlow;                ///< what it is
   double begin = 0;                                 ///< [s]
   double rise = 0.02;                               ///< [s] of a blow: all of it
   double hold = 0;                                  ///< [s]
   double fall = 0;                                  ///< [s]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] at its largest, on the arm, world frame
 
-  double end() const { return begin + rise + hold + fall; }
-  bool on(double t) const { return t >= begin && t < end(); }
+  double end() const { return begin + rise + hold + fall; }    ///< [s]
+  bool on(double t) const { return t >= begin && t < end(); }  ///< whether it acts at t [s]
   /// [N] at time t.
   Eigen::Vector3d operator()(double t) const;
 };

@@ -2,20 +2,22 @@
 // Judges a build of estimators beside another one and beside what was committed.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <ctime>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
 
-#include "mjcf/atomic_file.h"
-#include "regression/calibrate.h"
-#include "regression/child.h"
-#include "regression/explain.h"
-#include "regression/layers.h"
-#include "regression/report.h"
+#include "bench/program.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/known.h"
+#include "regression/counts/instructions.h"
+#include "regression/host/child.h"
+#include "regression/report/explain.h"
+#include "regression/report/layers.h"
+#include "regression/report/report.h"
+#include "regression/time/calibrate.h"
+#include "regression/time/time_worker.h"
 #include "regression/update.h"
 
 namespace tauext::gate {
@@ -43,16 +45,12 @@ void require_writable(const Flags& f) {
   }
 }
 
-void show_progress(GateOptions& o) {
-  if (::isatty(STDERR_FILENO) == 1) {
-    o.progress = [](const std::string& what) { fmt::print(stderr, "\r\033[K{}", what); };
-    return;
-  }
-  // a log gets a line for each layer
-  o.progress = [last = std::string()](const std::string& what) mutable {
+// a terminal shows what is going on, a log gets a line for each layer
+std::function<void(const std::string&)> shown_by(Progress& progress) {
+  if (progress.shown()) return [&progress](const std::string& what) { progress.show(what); };
+  return [last = std::string()](const std::string& what) mutable {
     const std::string begin = what.substr(0, what.find(' '));
-    if (!what.empty() && begin != last)
-      fmt::print(stderr, "gate: {}\n", what.substr(0, what.find(':')));
+    if (begin != last) fmt::print(stderr, "gate: {}\n", what.substr(0, what.find(':')));
     last = begin;
   };
 }
@@ -60,9 +58,10 @@ void show_progress(GateOptions& o) {
 int check(Flags& f) {
   if (!(f.gate.period > 0)) throw std::invalid_argument("--period: more than 0 s");
   require_writable(f);
-  show_progress(f.gate);
+  Progress progress("gate");
+  f.gate.progress = shown_by(progress);
   const GateResult r = run_layers(f.gate);
-  if (f.gate.progress) f.gate.progress("");
+  progress.clear();
   fmt::print("{}", format_terminal(r, f.all));
   write(f.junit, format_junit(r));
   write(f.markdown, format_markdown(r));
@@ -76,20 +75,17 @@ int update(Flags& f) {
   f.update.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   const UpdateResult r = update_baselines(f.update);
   fmt::print("{}", r.text);
-  return r.refused ? kLessAccurate : kPassed;
+  return r.refused ? kLessAccurate : kGood;
 }
 
 int calibrate(Flags& f) {
   if (f.calibrate.trials < 1) throw std::invalid_argument("--trials: at least 1");
-  if (::isatty(STDERR_FILENO) == 1) {
-    f.calibrate.progress = [&](int i) {
-      fmt::print(stderr, "\r\033[Ktrial {} of {}", i + 1, f.calibrate.trials);
-    };
-  }
+  Progress progress("trying");
+  f.calibrate.progress = progress.callback();
   const std::vector<Power> power = gate::calibrate(f.calibrate);
-  if (f.calibrate.progress) fmt::print(stderr, "\r\033[K");
+  progress.clear();
   fmt::print("{}", format_power(power, f.calibrate));
-  return kPassed;
+  return kGood;
 }
 
 // beside this program, where it is built and installed
@@ -98,18 +94,29 @@ std::string sibling(const std::string& name) {
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
+CLI::Option* add_regex(CLI::App* sub, const char* name, std::string& to, const char* help) {
+  return sub->add_option(name, to, help)->type_name("REGEX")->check([](const std::string& text) {
+    try {
+      std::regex{text};
+      return std::string();
+    } catch (const std::regex_error& e) {
+      return fmt::format("no regular expression: {}", e.what());
+    }
+  });
+}
+
 void add_plugins(CLI::App* sub, Flags& f) {
   sub->add_option("--base", f.gate.base, "plug-in to compare with")->type_name("SO");
   sub->add_option("--head", f.gate.head, "plug-in to be judged; else the one beside this program")
       ->type_name("SO");
-  sub->add_option("--kernels", f.gate.kernels, "those that match alone")->type_name("REGEX");
+  add_regex(sub, "--kernels", f.gate.kernels, "those that match alone");
 }
 
 void add_bench(CLI::App* sub, Flags& f) {
   sub->add_option("--bench", f.gate.bench,
                   "program with --golden; else the tauext-bench beside this one")
       ->type_name("PROGRAM");
-  sub->add_option("--entries", f.gate.entries, "those that match alone")->type_name("REGEX");
+  add_regex(sub, "--entries", f.gate.entries, "those that match alone");
 }
 
 void add_baselines(CLI::App* sub, std::string& to) {
@@ -124,7 +131,7 @@ void add_reports(CLI::App* sub, Flags& f) {
   sub->add_option("--markdown", f.markdown, "for a CI job's summary")->type_name("FILE");
   sub->add_option("--base-json", f.base_json, "times of base, for Google Benchmark's compare.py")
       ->type_name("FILE");
-  sub->add_option("--head-json", f.head_json, "times of head, likewise")->type_name("FILE");
+  sub->add_option("--head-json", f.head_json, "times of head, for the same")->type_name("FILE");
 }
 
 void add_time(CLI::App* sub, Flags& f) {
@@ -162,9 +169,8 @@ void add_update(CLI::App& app, UpdateOptions& o) {
   sub->add_option("--head", o.head, "plug-in; \"\": no counts")->type_name("SO");
   sub->add_option("--bench", o.bench, "program with --golden; \"\": no accuracy")
       ->type_name("PROGRAM");
-  sub->add_option("--kernels", o.kernels, "those that match alone; others stay")
-      ->type_name("REGEX");
-  sub->add_option("--entries", o.entries, "likewise")->type_name("REGEX");
+  add_regex(sub, "--kernels", o.kernels, "those that match alone; others stay");
+  add_regex(sub, "--entries", o.entries, "those that match alone; others stay");
   sub->add_option("--changelog", o.changelog)->type_name("FILE")->capture_default_str();
   add_baselines(sub, o.baselines);
 }
@@ -175,7 +181,7 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
   sub->add_option("--base", o.base, "plug-in")->type_name("SO");
   sub->add_option("--head", o.head, "one that is slower, instead of injected steps")
       ->type_name("SO");
-  sub->add_option("--kernels", o.kernels, "those that match alone")->type_name("REGEX");
+  add_regex(sub, "--kernels", o.kernels, "those that match alone");
   sub->add_option("--slowdowns", o.slowdowns, "to inject [1]; 0: a copy, for false alarms")
       ->delimiter(',')
       ->check(CLI::Range(0., 1.))
@@ -202,74 +208,47 @@ int run(const CLI::App& app, Flags& f) {
   const std::string name = app.get_subcommands().front()->get_name();
   if (name == "update") return update(f);
   if (name == "calibrate") return calibrate(f);
-  if (name == "explain") {
-    fmt::print("{}", explain(f.gate, f.subject));
-    return kPassed;
-  }
-  return check(f);
+  if (name != "explain") return check(f);
+  fmt::print("{}", explain(f.gate, f.subject));
+  return kGood;
 }
 
-// what goes wrong becomes a line and an exit code
-int run_and_say(const CLI::App& app, Flags& f) {
-  const auto fail = [](int code, const std::string& what) {
-    fmt::print(stderr, "tauext-gate: {}\n", what);
-    return code;
-  };
-  try {
-    const int code = run(app, f);
-    if (std::fflush(stdout) != 0) return fail(kHarnessError, "cannot write to standard output");
-    return code;
-  } catch (const std::invalid_argument& e) {
-    return fail(kUsage, e.what());
-  } catch (const std::regex_error& e) {
-    return fail(kUsage, fmt::format("no regular expression: {}", e.what()));
-  } catch (const std::exception& e) {
-    return fail(kHarnessError, e.what());
-  }
+// CLI11 would say that it was not expected
+void refuse_unknown_subcommand(const CLI::App& app, const std::string& name) {
+  if (name.empty() || name.starts_with('-')) return;
+  const auto all = app.get_subcommands([](const CLI::App*) { return true; });
+  find_known(all, "subcommand", name, [](const CLI::App* sub) { return sub->get_name(); });
 }
 
 int main(int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  // children of this program itself
+  if (first == "worker" && argc == 3) return worker_main(argv[2]);
+  if (first == "count-worker" && argc == 4) return count_main(argv[2], argv[3]);
   CLI::App app(
       "Judges estimators beside another build and beside committed numbers.\n\n"
       "  tauext-gate check --base build/base/tauext_plugin.so\n"
       "  tauext-gate accuracy --entries wallmobot3/step/\n\n"
       "ci/gate builds both sides and calls it.",
       "tauext-gate");
-  app.set_version_flag("--version", "tauext-gate " TAUEXT_VERSION);
   app.footer(
-      "Exit codes: 0 passed, 1 slower, 2 less accurate, 3 no baseline or update needed, 4 "
+      "Exit codes: 0 passed, 1 slower, 5 less accurate, 3 no baseline or update needed, 4 "
       "inconclusive,\n"
-      "64 usage, 70 harness error. Each subcommand has a --help.");
+      "2 could not run: wrong flags, or a harness error. Each subcommand has a --help.");
   Flags f;
   add_flags(app, f);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    const auto known =
-        app.get_subcommands([&](CLI::App* sub) { return argc > 1 && sub->check_name(argv[1]); });
-    const bool unknown = argc > 1 && argv[1][0] != '-' && known.empty();
-    fmt::print(stderr, "tauext-gate: {}\ntauext-gate: see tauext-gate --help\n",
-               unknown ? fmt::format("unknown subcommand '{}'", argv[1]) : e.what());
-    return kUsage;
-  }
-  return run_and_say(app, f);
+  app.preparse_callback([&](std::size_t) { refuse_unknown_subcommand(app, first); });
+  return run_program(app, argc, argv, [&] { return run(app, f); });
 }
 
 }  // namespace
 }  // namespace tauext::gate
 
 int main(int argc, char** argv) {
-  using namespace tauext::gate;
-  const std::string first = argc > 1 ? argv[1] : "";
   try {
-    // children of this program itself
-    if (first == "worker" && argc == 3) return worker_main(argv[2]);
-    if (first == "count-worker" && argc == 4) return count_main(argv[2], argv[3]);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "tauext-gate {}: {}\n", first, e.what());
-    return kHarnessError;
+    return tauext::gate::main(argc, argv);
+  } catch (const std::exception& e) {  // of a child of this program, which has no flags
+    fmt::print(stderr, "tauext-gate {}: {}\n", argc > 1 ? argv[1] : "", e.what());
+    return tauext::kCouldNotRun;
   }
-  return tauext::gate::main(argc, argv);
 }

@@ -14,10 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "mjcf/atomic_file.h"
-#include "regression/child.h"
-#include "regression/files.h"
-#include "regression/plugin_host.h"
+#include "bench/score/metric_list.h"
+#include "mjcf/trace/atomic_file.h"
+#include "regression/accuracy/accuracy_layer.h"
+#include "regression/counts/instructions.h"
+#include "regression/host/files.h"
 
 namespace tauext::gate {
 namespace {
@@ -98,12 +99,9 @@ std::string merged(const std::string& before, const std::string& now, const std:
 }
 
 void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
-  const TemporaryFolder folder;
-  const std::string out = folder.path() + "/golden.tsv", path = golden_path(o.baselines);
-  run_child(
-      {o.bench, "--golden", out, "--benchmark_filter=" + (o.entries.empty() ? "." : o.entries)});
-  std::string text = read_file(out);
-  const Golden head = parse_golden(text, out);
+  const std::string path = golden_path(o.baselines);
+  std::string text = run_bench(o.bench, o.entries);
+  const Golden head = parse_golden(text, "what " + o.bench + " wrote");
   if (fs::exists(path)) {
     const AccuracyReport r = compare_accuracy(read_golden(path), head, o.entries);
     if (!r.no_baseline.empty() && !o.entries.empty()) {
@@ -114,7 +112,8 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
     for (const MetricChange& c : r.changes) {
       const std::string line =
           fmt::format("  {} {}: {:.6g} -> {:.6g}\n", c.entry, c.metric, c.before, c.after);
-      const bool failed = c.change == Change::kNew && c.metric == "failed" && c.after > 0;
+      const bool failed =
+          c.change == Change::kNew && c.metric == row_of(Metric::kFailed).key && c.after > 0;
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
       (bad ? worse : changed) += line;
     }
@@ -122,7 +121,8 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
   }
   if (!fs::exists(path)) {
     for (const auto& [key, line] : head.lines) {
-      if (key.second == "failed" && line.values != std::vector<double>(line.values.size(), 0)) {
+      if (key.second == row_of(Metric::kFailed).key &&
+          line.values != std::vector<double>(line.values.size(), 0)) {
         worse += "  " + key.first + ": fails\n";
       }
     }

@@ -5,16 +5,13 @@
 
 #include <string>
 
-#include "regression/layers.h"
-
 namespace tauext::gate {
 
 /// What to write, and why.
 struct UpdateOptions {
-  std::string
-      baselines;  ///< folder of accuracy.tsv and instructions-*.tsv; made if it is not there
-  std::string changelog;         ///< file that gains a line for each update
-  std::string reason;            ///< one line, not empty
+  std::string baselines;  ///< folder of accuracy.tsv and instructions-*.tsv, made if it is missing
+  std::string changelog;  ///< file that gains a line for each update
+  std::string reason;     ///< one line, not empty
   std::string accept_worse;      ///< why what is worse is right; empty: nothing may be worse
   std::string head, bench;       ///< plug-in and program; an empty one: its baseline stays
   std::string kernels, entries;  ///< regular expressions: the lines of others stay; empty: all

@@ -2,6 +2,7 @@
 // A scenario of your own: somebody knocks on the panel, twice a second. Run
 //   own_scenario --benchmark_filter=wallmobot3/knock/
 #include "bench/bench_main.h"
+#include "mjcf/scenario.h"
 #include "mjcf/touch.h"
 
 int main(int argc, char** argv) {

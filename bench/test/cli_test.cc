@@ -93,7 +93,7 @@ TEST_F(Programs, BenchPrintsATableAndWritesValidJson) {
   for (const auto& b : json["benchmarks"]) {
     if (b["name"] != "wallmobot3/step/ekf") continue;
     found = true;
-    for (const char* key : {"rmse_Nm", "rmse1_Nm", "settling_s", "rise_s", "cpu_ns"}) {
+    for (const char* key : {"rmse_Nm", "rmse_Nm_joint1", "settling_s", "rise_s", "cpu_ns"}) {
       EXPECT_TRUE(b.contains(key)) << key;
     }
   }
@@ -138,7 +138,25 @@ TEST_F(Programs, DetectRefusesWhatItCannotDoBeforeItWorks) {
   EXPECT_TRUE(run("tauext-detect --list").says("unknown_150"));
   EXPECT_EQ(run("tauext-bench --equal-bandwidth 1000").code, 2);
   EXPECT_EQ(run("tauext-bench --pareto --list").code, 2);
+  EXPECT_TRUE(
+      run("tauext-detect --detectors high_pass:v=1").says("there is no key 'v'; known: threshold"));
+  EXPECT_TRUE(run("tauext-detect --format xml").says("unknown format 'xml'; known: text, csv"));
   EXPECT_EQ(run("tauext-bench --degrade /nowhere.json").code, 2);
+}
+
+TEST_F(Programs, StudiesRefuseFlagsOfTheSuiteAndSayWhatARobotLacks) {
+  const Outcome json = run("tauext-bench --pareto --benchmark_format=json");
+  EXPECT_EQ(json.code, 2);
+  EXPECT_TRUE(json.says("they have --format and --out")) << json.text;
+  for (const std::string flags :
+       {"--format xml", "--out x.txt", "--pareto --format xml",
+        "--pareto --reliability --format json", "--pareto --out /nowhere/p.txt",
+        "--pareto --model_error mass=1.1"}) {
+    EXPECT_EQ(run("tauext-bench " + flags).code, 2) << flags;
+  }
+  EXPECT_TRUE(run("tauext-bench --equal-bandwidth 30 --robot testbed1")
+                  .says("testbed1 lacks chirp, step, sine, free"));
+  EXPECT_TRUE(run("tauext-detect --robot testbed1").says("runs for wallmobot3 alone"));
 }
 
 }  // namespace

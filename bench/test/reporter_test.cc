@@ -21,7 +21,7 @@ Result run_of(const char* name, double cpu_ns) {
 }
 
 TEST(Reporter, ItsJsonIsValidWhateverTheCountersHold) {
-  Reporter reporter(nullptr, false, 2);
+  Reporter reporter(nullptr, 2);
   benchmark::BenchmarkReporter::Context context;
   ASSERT_TRUE(reporter.ReportContext(context));
   Result odd = run_of("a/b/odd", 3);
@@ -42,7 +42,7 @@ TEST(Reporter, ItsJsonIsValidWhateverTheCountersHold) {
 }
 
 TEST(Reporter, TakesTheMedianOfRepetitions) {
-  Reporter reporter(nullptr, false, 1);
+  Reporter reporter(nullptr, 1);
   reporter.ReportContext({});
   Result median = run_of("a/b/c", 20);
   median.run_type = Result::RT_Aggregate;

@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "bench/histogram.h"
-#include "bench/live.h"
-#include "bench/robot.h"
-#include "bench/stages.h"
+#include "bench/live/histogram.h"
+#include "bench/live/live.h"
+#include "bench/roster/robots.h"
+#include "bench/roster/stages.h"
 #include "estimators/test/textbook_ekf.h"
 #include "mjcf/record.h"
 
@@ -92,8 +92,8 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
 }
 
 // pushes as a cycle with three estimators makes them, five times as often, while the other thread takes them out
-void push_for_a_second(Histogram& push_ns) {
-  LiveStream stream(nullptr, streams_of({"a", "b", "c"}, "d"), 200);
+void push_for_a_second(live::Histogram& push_ns) {
+  LiveStream stream(nullptr, live::streams_of({"a", "b", "c"}, "d"), 200);
   LiveSample s;
   s.reading.n = 3;
   for (int cycle = 0; cycle < 5000; ++cycle) {
@@ -111,7 +111,7 @@ TEST(Push, CostsTheLoopNextToNothing) {
   // the best of up to five: a neighbour can spoil a second, a push that waits spoils them all
   double median = 1e9, rare = 1e9;
   for (int attempt = 0; attempt < 5 && (median >= 150 || rare >= 10'000); ++attempt) {
-    Histogram push_ns;
+    live::Histogram push_ns;
     push_for_a_second(push_ns);
     median = std::min(median, push_ns.quantile(0.5));
     rare = std::min(rare, push_ns.quantile(0.999));

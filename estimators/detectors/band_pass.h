@@ -5,6 +5,8 @@
 ///     mark where max_i(|z_i| / threshold_i) rises through 1
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
@@ -26,15 +28,25 @@ class BandPass {
     double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(
+          std::tuple(threshold_field<P>("N m"),
+                     Field{"w_low", &P::w_low, "rad/s", kLeastBandwidth, kMostBandwidth,
+                           "larger lets less pass, of a blow too"},
+                     Field{"w_high", &P::w_high, "rad/s", kLeastBandwidth, kMostBandwidth,
+                           "larger lets more noise pass, marks sooner"}),
+          marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit BandPass(const Parameters& p = {})
-      : p_(p),
-        slow_(p.w_low, "w_low [rad/s] of band_pass must be positive"),
-        quick_(p.w_high, "w_high [rad/s] of band_pass must be positive"),
+      : p_(check_parameters(p, kName)),
+        slow_(p.w_low),
+        quick_(p.w_high),
         marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(), "threshold [N m] of band_pass must be positive");
     require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
   }
 

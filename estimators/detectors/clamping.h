@@ -18,11 +18,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
-#include "estimators/ldlt.h"
+#include "estimators/math/ldlt.h"
 
 namespace tauext {
 
@@ -46,17 +47,29 @@ class Clamping {
     double duration = 0.1;    ///< [s] larger lets longer blows pass, and marks later
     double refractory = 0.5;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    /// The metric comes from training, and cannot be set by name.
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(
+          std::tuple(threshold_field<P>("N m"),
+                     Field{"w_baseline", &P::w_baseline, "rad/s", kLeastBandwidth, kMostBandwidth,
+                           "larger forgets payloads sooner, clampings too"},
+                     Field{"w_smooth", &P::w_smooth, "rad/s", kLeastBandwidth, kMostBandwidth,
+                           "larger lets more noise pass, marks sooner"},
+                     Field{"duration", &P::duration, "s", 1e-6, 1e3,
+                           "larger ignores longer blows, marks later"}),
+          marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Clamping(const Parameters& p = {})
-      : p_(p),
-        baseline_(p.w_baseline, "w_baseline [rad/s] of clamping must be positive"),
-        smooth_(p.w_smooth, "w_smooth [rad/s] of clamping must be positive"),
+      : p_(check_parameters(p, kName)),
+        baseline_(p.w_baseline),
+        smooth_(p.w_smooth),
         marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(), "threshold [N m] of clamping must be positive");
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
-    require(p.duration > 0, "duration [s] of clamping must be positive");
     require(p.metric.isApprox(p.metric.transpose()) && Ldlt<N>(p.metric).ok(),
             "metric of clamping must be symmetric and positive definite");
     reset();

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 
 #include "estimators/detectors/clamping.h"
 #include "estimators/detectors/pan_tompkins.h"
@@ -27,21 +28,25 @@ class ContactClassifier {
   static constexpr int kDof = N;
 
   struct Parameters {
-    typename PanTompkins<N>::Parameters collision{};
-    typename Clamping<N>::Parameters clamping{};
+    typename PanTompkins<N>::Parameters collision{};  ///< of what finds a blow
+    typename Clamping<N>::Parameters clamping{};      ///< of what finds a clamping
     /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
     /// default 15 N at 1 m
     Vec<N> intentional = Vec<N>::Constant(15);
     double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple(
+          Nested{"collision", &P::collision}, Nested{"clamping", &P::clamping},
+          Field{"intentional", &P::intentional, "N m", 1e-12, 1e15, "larger overlooks light hands"},
+          Field{"hold", &P::hold, "s", 0, 1e3, "how long a collision is one"});
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit ContactClassifier(const Parameters& p = {})
-      : p_(p), collision_(p.collision), clamping_(p.clamping) {
-    require((p.intentional.array() > 0).all(),
-            "intentional [N m] of contact_classifier must be positive");
-    require(p.hold >= 0, "hold [s] of contact_classifier must not be negative");
-  }
+      : p_(check_parameters(p, kName)), collision_(p.collision), clamping_(p.clamping) {}
 
   void reset() noexcept {
     collision_.reset();

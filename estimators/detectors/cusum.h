@@ -10,6 +10,8 @@
 /// threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
@@ -34,16 +36,21 @@ class Cusum {
     double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(
+          std::tuple(threshold_field<P>("N m s"),
+                     Field{"drift", &P::drift, "N m", 0, 1e12, "larger forgets sooner"},
+                     Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
+                           "of the slow mean; larger lets less of a push pass"}),
+          marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Cusum(const Parameters& p = {})
-      : p_(p),
-        mean_(p.w, "w [rad/s] of cusum must be positive"),
-        marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(), "threshold [N m s] of cusum must be positive");
-    require(p.drift >= 0, "drift [N m] of cusum must not be negative");
-  }
+      : p_(check_parameters(p, kName)), mean_(p.w), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
     marking_.reset();

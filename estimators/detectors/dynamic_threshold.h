@@ -6,6 +6,8 @@
 ///     mark where max_i(|tau_ext_i| / (threshold_i (1 + |qd_i| / speed))) rises through 1
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 
@@ -25,14 +27,19 @@ class DynamicThreshold {
     double speed = 0.5;  ///< [rad/s] at which the limit has doubled: smaller trusts motion less
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(
+          std::tuple(threshold_field<P>("N m"),
+                     Field{"speed", &P::speed, "rad/s", 1e-6, 1e6, "where the limit has doubled"}),
+          marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit DynamicThreshold(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(),
-            "threshold [N m] of dynamic_threshold must be positive");
-    require(p.speed > 0, "speed [rad/s] of dynamic_threshold must be positive");
-  }
+  explicit DynamicThreshold(const Parameters& p = {})
+      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
     marking_.reset();

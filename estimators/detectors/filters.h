@@ -18,8 +18,8 @@ template <int N>
 class LowPass {
  public:
   /// @param w [rad/s] cut-off
-  /// @throws std::invalid_argument(what) unless it is positive
-  LowPass(double w, const char* what) : w_(w) { require(w > 0, what); }
+  /// @throws std::invalid_argument unless it is positive
+  explicit LowPass(double w) : w_(w) { require(w > 0, "w [rad/s] of a filter must be positive"); }
 
   /// As if x had been there for ever.
   void start(double t, const Vec<N>& x) noexcept {

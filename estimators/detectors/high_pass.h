@@ -7,6 +7,8 @@
 ///     mark where max_i(|z_i| / threshold_i) rises through 1
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
@@ -28,15 +30,19 @@ class HighPass {
     double w = 10;            ///< [rad/s] cut-off: larger lets less of a push pass, and of a blow
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(std::tuple(threshold_field<P>("N m"),
+                                       Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
+                                             "cut-off; larger lets less pass, of a blow too"}),
+                            marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit HighPass(const Parameters& p = {})
-      : p_(p),
-        low_(p.w, "w [rad/s] of high_pass must be positive"),
-        marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(), "threshold [N m] of high_pass must be positive");
-  }
+      : p_(check_parameters(p, kName)), low_(p.w), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
     marking_.reset();

@@ -7,10 +7,25 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "estimators/sampling.h"
 
 namespace tauext {
+
+/// The parameters of the marks of a detector, as its Parameters list them.
+template <class P>
+constexpr auto marking_fields() {
+  return std::tuple(
+      Field{"refractory", &P::refractory, "s", 0, 1e4, "how long no second mark follows a mark"},
+      Field{"start_up", &P::start_up, "s", 0, 1e4, "how long there is no mark at first"});
+}
+
+/// A threshold for each joint, as Parameters list it.
+template <class P>
+constexpr auto threshold_field(const char* unit) {
+  return Field{"threshold", &P::threshold, unit, 1e-12, 1e15, "larger misses more, alarms less"};
+}
 
 /// Marks of one detector.
 class Marking {

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
@@ -26,8 +27,8 @@ class PanTompkins {
  public:
   static constexpr const char* kName = "pan_tompkins";
   static constexpr int kDof = N;
-  static constexpr int kDegree = 2;  ///< the energy is a square
-  static constexpr int kMaxStride = 16;
+  static constexpr int kDegree = 2;      ///< the energy is a square
+  static constexpr int kMaxStride = 16;  ///< samples between the two that a difference takes
 
   struct Parameters {
     /// samples from point to point of (i), 1 to kMaxStride: larger is later but less noisy
@@ -38,15 +39,21 @@ class PanTompkins {
     double hold = 0.02;       ///< [s] how long an energy is kept
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      using P = Parameters;
+      return std::tuple_cat(
+          std::tuple(Field{"stride", &P::stride, "samples", 1, kMaxStride,
+                           "between the points; larger is later, less noisy"},
+                     threshold_field<P>("(N m/s)^2"),
+                     Field{"hold", &P::hold, "s", 0, 1e3, "how long an energy is kept"}),
+          marking_fields<P>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit PanTompkins(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
-    require(p.stride >= 1 && p.stride <= kMaxStride, "stride of pan_tompkins must be 1 to 16");
-    require((p.threshold.array() > 0).all(),
-            "threshold [(N m/s)^2] of pan_tompkins must be positive");
-    require(p.hold >= 0, "hold [s] of pan_tompkins must not be negative");
-  }
+  explicit PanTompkins(const Parameters& p = {})
+      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
     count_ = 0;

@@ -6,6 +6,8 @@
 /// Knows no difference between a blow, a hand that leans on the arm and a payload that the model lacks.
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 
@@ -24,12 +26,16 @@ class Threshold {
     Vec<N> threshold = Vec<N>::Constant(120);
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
+
+    static constexpr auto fields() {
+      return std::tuple_cat(std::tuple(threshold_field<Parameters>("N m")),
+                            marking_fields<Parameters>());
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Threshold(const Parameters& p = {}) : p_(p), marking_(p.refractory, p.start_up) {
-    require((p.threshold.array() > 0).all(), "threshold [N m] of threshold must be positive");
-  }
+  explicit Threshold(const Parameters& p = {})
+      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
     marking_.reset();

@@ -2,7 +2,7 @@
 // The simulated arm under the names that the tests use.
 #pragma once
 
-#include "estimators/simulated_arm.h"
+#include "bench/kit/simulated_arm.h"
 
 namespace tauext::test {
 using namespace simulated;

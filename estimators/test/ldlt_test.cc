@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/ldlt.h"
+#include "estimators/math/ldlt.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/sin_cos.h"
+#include "estimators/math/sin_cos.h"
 
 #include <gtest/gtest.h>
 

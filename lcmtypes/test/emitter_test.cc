@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bench/allocations.h"
+#include "bench/kit/allocations.h"
 #include "lcmtypes/test/samples.h"
 
 namespace tauext::test {

@@ -15,7 +15,7 @@
 #include <string>
 #include <thread>
 
-#include "bench/allocations.h"
+#include "bench/kit/allocations.h"
 #include "lcmtypes/listener.h"
 #include "lcmtypes/test/samples.h"
 

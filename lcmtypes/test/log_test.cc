@@ -2,12 +2,14 @@
 #include "lcmtypes/log.h"
 
 #include <gtest/gtest.h>
+#include <lcm/eventlog.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "lcmtypes/test/samples.h"
@@ -76,6 +78,29 @@ TEST_F(LogTest, LcmsOwnReaderReadsTheSame) {
   }
   lcm_eventlog_destroy(log);
   EXPECT_EQ(k, 100);
+}
+
+TEST_F(LogTest, LcmsOwnWriterWritesTheSameBytes) {
+  const std::string ours = log_of(0, 3);
+  {
+    lcm_eventlog_t* const log = lcm_eventlog_create(path_.c_str(), "w");
+    ASSERT_NE(log, nullptr);
+    for (int k = 0; k < 3; ++k) {
+      auto message = write(reading(k), MessageType::kTauext);
+      std::string channel = "TAUEXT_SAMPLE";
+      lcm_eventlog_event_t e{};
+      e.timestamp = 1000 * k;
+      e.channellen = static_cast<std::int32_t>(channel.size());
+      e.datalen = static_cast<std::int32_t>(message.size());
+      e.channel = channel.data();
+      e.data = const_cast<std::byte*>(message.data());
+      ASSERT_EQ(lcm_eventlog_write_event(log, &e), 0);
+    }
+    lcm_eventlog_destroy(log);
+  }
+  std::ostringstream theirs;
+  theirs << std::ifstream(path_, std::ios::binary).rdbuf();
+  EXPECT_EQ(theirs.str(), ours);
 }
 
 TEST_F(LogTest, TheSameEventsAreTheSameBytes) {

@@ -4,12 +4,13 @@
 #include "estimators/testbed1.h"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/random.h"
 #include "mjcf/record.h"
+#include "mjcf/trace/random.h"
 
 namespace tauext::test {
 namespace {

@@ -4,13 +4,14 @@
 #include "estimators/wallmobot3.h"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "estimators/test/random_states.h"
-#include "mjcf/plant.h"
+#include "mjcf/plant/plant.h"
 
 namespace tauext::test {
 namespace {
@@ -61,12 +62,11 @@ TEST_F(WallMoBot3Mjcf, TheParallelogramIsExactToRoundOff) {
 }
 
 TEST_F(WallMoBot3Mjcf, FrictionOfATendonIsFrictionOfItsJointCoordinate) {
-  const Model plain = load_robot("wallmobot3");
-  mjModel* const m = mj_copyModel(nullptr, plain.get());
-  m->dof_damping[0] = 3;     // on q2
-  m->tendon_damping[0] = 5;  // on q3 = q2 + (q3 - q2)
-  m->dof_damping[2] = 7;     // on q4
-  const Model damped(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
+  const Model damped = changed(load_robot("wallmobot3"), [](mjModel& m) {
+    m.dof_damping[0] = 3;     // on q2
+    m.tendon_damping[0] = 5;  // on q3 = q2 + (q3 - q2)
+    m.dof_damping[2] = 7;     // on q4
+  });
   WallMoBot3::Parameters p;
   p.viscous << 3, 5, 7;
   const WallMoBot3 arm(p);
@@ -90,8 +90,7 @@ TEST_F(WallMoBot3Mjcf, TheEndEffectorStandsWhereTableISays) {
   constexpr double kPi = std::numbers::pi, kGamma = 0.3458, kBaseHeight = 0.9;
   Plant plant(load_robot("wallmobot3"));
   const int site = mj_name2id(&plant.model(), mjOBJ_SITE, "end_effector");
-  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(&plant.model()),
-                                                            mj_deleteData);
+  const State d = initial_state(plant.model());
   for (int i = 0; i < 100; ++i) {
     const Vec<3> q = vector(2);
     Pose p;

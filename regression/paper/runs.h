@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs for the paper's claims: a scenario recorded, an estimator run over it.
+/// @file
+/// Runs for the paper's claims: a scenario recorded, an estimator run over it.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "bench/robot.h"
-#include "bench/roster.h"
+#include "bench/roster/robots.h"
+#include "bench/roster/roster.h"
 #include "mjcf/record.h"
 
 namespace tauext::test {

@@ -4,12 +4,14 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bench/metrics.h"
+#include "bench/score/metrics.h"
 #include "estimators/test/random_states.h"
 #include "regression/paper/runs.h"
 
 namespace tauext::test {
 namespace {
+
+using namespace metrics;  // NOLINT(google-build-using-namespace)
 
 class Simulation : public testing::TestWithParam<const char*> {
  protected:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Section 5.2, Table III: what can be said of it. Nothing is gated on its figures.
-#include "bench/table3.h"
+#include "bench/study/table3.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,9 @@ double difference(const std::array<double, 3>& a, const std::array<double, 3>& b
 }
 
 struct Table3 : testing::Test {
-  const std::vector<Table3Row> printed = table3_printed();
-  const std::vector<Table3Row> panel = table3_measured(150), bare = table3_measured(0);
+  const std::vector<study::Table3Row> printed = study::table3_printed();
+  const std::vector<study::Table3Row> panel = study::table3_measured(150),
+                                      bare = study::table3_measured(0);
   // rows of the printed and of the measured tables
   static constexpr int kPrintedRise = 0, kPrintedSettling = 1, kRise = 0, kRise090 = 1,
                        kSettling = 2;

@@ -7,12 +7,16 @@
 
 #include <set>
 
-#include "bench/metrics.h"
-#include "bench/reliability.h"
+#include "bench/roster/robots.h"
+#include "bench/score/detection_metrics.h"
+#include "bench/score/metrics.h"
+#include "bench/study/reliability.h"
 #include "regression/paper/runs.h"
 
 namespace tauext::test {
 namespace {
+
+using namespace metrics;  // NOLINT(google-build-using-namespace)
 
 constexpr double kTheta4 = 2.163;  // [N m] (37), the stiction bound
 
@@ -173,14 +177,14 @@ TEST_P(Testbed, ManualIsLeftInPeace) {
 // the same over many blows, and an hour of a human's hand (less without optimisation)
 TEST(TestbedDetection, MissesNoBlowIsLateForNoneAndLeavesAnHourOfManualInPeace) {
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
-  const Trials trials{.sensors = {.velocity_noise = 1e-4}};
+  const study::Trials trials{.sensors = {.velocity_noise = 1e-4}};
 #else
-  const Trials trials{.blows = 20, .manual_runs = 2, .sensors = {.velocity_noise = 1e-4}};
+  const study::Trials trials{.blows = 20, .manual_runs = 2, .sensors = {.velocity_noise = 1e-4}};
 #endif
   const std::set<std::string> papers = {"inverse_dynamics", "ekf",  "ekf_zero_start",
                                         "ekf_raw_sign",     "ndob", "ndob_raw_sign"};
   int seen = 0;
-  for (const Reliability& r : reliability(trials)) {
+  for (const study::Reliability& r : study::reliability(trials)) {
     if (r.detector != "pan_tompkins" || papers.count(r.estimator) == 0) continue;
     ++seen;
     EXPECT_EQ(r.blows, trials.blows);

@@ -7,7 +7,7 @@
 //   SUBJECT_INSTRUCTIONS=n  instructions for which nobody waits
 #include <array>
 
-#include "bench/kernels.h"
+#include "bench/kit/kernels.h"
 #include "estimators/testbed1.h"
 
 #define TEXT_(x) #x

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "outside.h"
 
-#include <bench/conformance.h>
+#include <bench/kit/conformance.h>
 #include <estimators/detectors/threshold.h>
 
 TEST(Outside, Conforms) {

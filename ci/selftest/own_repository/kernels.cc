@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bench/kernels.h>
+#include <bench/kit/kernels.h>
 
 #include "mine.h"
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "bench/roster/degradation.h"
+
+namespace tauext {
+namespace {
+
+// the flags of bench/recording_flags.h that set these
+std::string recording_flags(const SuiteOptions& o) {
+  std::map<std::string, std::string> lists;  // of KEY=VALUE, by flag
+  std::istringstream items(describe({o.sensors, o.model_error}));
+  for (std::string item; items >> item;) {  // velocity_noise=0.001, or loadcell.noise=1
+    const auto dot = item.substr(0, item.find('=')).find('.');
+    const bool own = dot != std::string::npos;
+    std::string& list = lists[own ? item.substr(0, dot) : "sensors"];
+    list += (list.empty() ? "" : ",") + item.substr(own ? dot + 1 : 0);
+  }
+  std::string flags;
+  for (const auto& [flag, list] : lists) flags += fmt::format(" --{} {}", flag, list);
+  if (o.recording.Kp) flags += fmt::format(" --kp {}", *o.recording.Kp);
+  if (o.recording.Kd) flags += fmt::format(" --kd {}", *o.recording.Kd);
+  return flags + fmt::format(" --seed {}", o.sensors.seed);
+}
+
+}  // namespace
+
+std::string record_and_replay(const std::string& name, const SuiteOptions& o) {
+  const std::vector<Entry> all = entries();
+  const auto e =
+      std::find_if(all.begin(), all.end(), [&](const Entry& x) { return x.name() == name; });
+  if (e == all.end()) {
+    throw std::invalid_argument(fmt::format("unknown entry '{}'; see tauext-bench --list", name));
+  }
+  if (!o.thresholds.sets.empty()) {
+    throw std::invalid_argument("--commands: tauext-record and tauext-replay take no --thresholds");
+  }
+  return fmt::format(
+      "  tauext-record --robot {0} --scenario {1}{2}{3} --out log.csv\n"
+      "  tauext-replay log.csv --robot {0} --estimator {4}{5} --out est.csv\n",
+      e->robot().name(), e->scenario().name, recording_flags(o),
+      e->closed_loop() ? fmt::format(" --stop {}+{}", e->estimator(), e->detector()) : "",
+      e->estimator(), e->detector().empty() ? "" : " --detector " + e->detector());
+}
+
+}  // namespace tauext

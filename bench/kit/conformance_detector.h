@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The claims on detectors of bench/kit/conformance.h.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "bench/kit/allocations.h"
+#include "estimators/concepts.h"
+
+namespace tauext::conformance {
+
+/// The claims on a detector, one by one; check_detector makes them all.
+template <class Make>
+class DetectorClaims {
+ public:
+  using D = std::decay_t<std::invoke_result_t<Make>>;  ///< the detector
+  static_assert(CollisionDetector<D>, "a detector has kName, kDof, reset() and update(), noexcept");
+  static constexpr int N = D::kDof;  ///< joints
+
+  /// On what make() builds.
+  explicit DetectorClaims(Make make) : make_(make) {}
+
+  /// A steady load of 1 N m is no reason for a mark.
+  void leaves_rest_in_peace() const {
+    SCOPED_TRACE("leaves rest in peace");
+    D d = make_();
+    for (int k = 0; k < 5000; ++k) ASSERT_FALSE(step(d, k, 1).mark);
+  }
+
+  /// A blow of 400 N m or a clamping of 400 N m in 0.75 s, which stays, is marked.
+  void marks_a_blow_or_a_clamping() const {
+    SCOPED_TRACE("marks a blow or a clamping");
+    int marks = 0;
+    for (const bool clamping : {false, true}) {
+      for (const Detection& x : run([&](double t) { return touch(t, clamping); })) marks += x.mark;
+    }
+    EXPECT_GE(marks, 1);
+  }
+
+  /// A mark comes with a score of 1 or more, and a score is a number of at least 0.
+  void marks_where_its_score_reaches_one() const {
+    SCOPED_TRACE("marks where its score reaches 1");
+    for (const bool clamping : {false, true}) {
+      for (const Detection& x : run([&](double t) { return touch(t, clamping); })) {
+        ASSERT_TRUE(std::isfinite(x.score) && x.score >= 0);
+        if (!x.mark) continue;
+        EXPECT_GE(x.score, 1);
+        EXPECT_NE(x.contact, Contact::kNone) << "a mark says what it is for";
+      }
+    }
+  }
+
+  /// What it says of tau_ext it says of -tau_ext, of a later clock, after reset() and in company.
+  void says_the_same_of_the_same() const {
+    SCOPED_TRACE("says the same of the same");
+    const auto load = [](double t) { return touch(t, t > 2.5); };
+    const auto first = run(load);
+    EXPECT_EQ(marks_of(run([&](double t) { return -load(t); })), marks_of(first)) << "-tau_ext";
+    EXPECT_EQ(marks_of(run(load, 1024)), marks_of(first)) << "1024 s later";
+    D d = make_(), other = make_();
+    for (int k = 0; k < 100; ++k) step(d, k, 500. * k);
+    d.reset();
+    for (int k = 0; k < kSamples; ++k) {
+      step(other, k, 300. * (k % 2));
+      const Detection x = step(d, k, load(k * kTs));
+      ASSERT_EQ(x.mark, first[k].mark) << k;
+      ASSERT_EQ(x.score, first[k].score) << k;
+    }
+  }
+
+  /// A time stamp that is no number or does not increase is ignored.
+  void ignores_bad_time_stamps() const {
+    SCOPED_TRACE("ignores bad time stamps");
+    const auto load = [](double t) { return touch(t, t > 2.5); };
+    const auto first = run(load);
+    D d = make_();
+    for (int k = 0; k < kSamples; ++k) {
+      const Detection x = step(d, k, load(k * kTs));
+      ASSERT_EQ(x.mark, first[k].mark) << k;
+      for (const double t : {std::numeric_limits<double>::quiet_NaN(), (k - 1) * kTs, -1e300}) {
+        Measurement<N> y;
+        y.t = t;
+        ASSERT_FALSE(detect(d, y, Vec<N>(Vec<N>::Constant(1000))).mark) << "t = " << t;
+      }
+    }
+  }
+
+  /// A speed that is no number is nobody's collision, and does not hide the one that follows.
+  void bears_a_speed_that_is_no_number() const {
+    SCOPED_TRACE("bears a speed that is no number");
+    for (int j = 0; j < N; ++j) {
+      D d = make_();
+      int marks = 0;
+      for (int k = 0; k < kSamples; ++k) {
+        const double t = k * kTs;
+        Measurement<N> y;
+        y.t = t;
+        if (k == 1005 || k == 3100) y.qd[j] = std::numeric_limits<double>::quiet_NaN();
+        const double load = touch(t, t > 2.5);
+        const Detection x = detect(d, y, Vec<N>(Vec<N>::Constant(load)));
+        ASSERT_TRUE(std::isfinite(x.score)) << k;
+        marks += x.mark;
+      }
+      EXPECT_GE(marks, 1);
+    }
+  }
+
+  /// Twice the tau_ext gives at least 2^kDegree times the statistic.
+  void has_the_degree_that_it_says() const requires CalibratableDetector<D> {
+    SCOPED_TRACE("has the degree that it says");
+    D one = make_(), two = make_();
+    // small, so that nothing saturates
+    for (int k = 0; k < kSamples; ++k) {
+      const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
+      step(one, k, x);
+      step(two, k, 2 * x);
+      const Vec<N> least = std::pow(2, D::kDegree) * Vec<N>(one.statistic());
+      for (int j = 0; j < N; ++j) {
+        ASSERT_GE(Vec<N>(two.statistic())[j], least[j] * (1 - 1e-9)) << "sample " << k;
+      }
+    }
+  }
+
+  /// The statistic is the same for -tau_ext, and 0 after reset().
+  void has_a_statistic_without_sign_or_memory() const requires CalibratableDetector<D> {
+    SCOPED_TRACE("has a statistic without sign or memory");
+    D d = make_(), mirrored = make_();
+    for (int k = 0; k < kSamples; ++k) {
+      const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
+      step(d, k, x);
+      step(mirrored, k, -x);
+      ASSERT_EQ(Vec<N>(mirrored.statistic()), Vec<N>(d.statistic())) << "sample " << k;
+    }
+    d.reset();
+    EXPECT_EQ(Vec<N>(d.statistic()), Vec<N>(Vec<N>::Zero()));
+  }
+
+  /// No heap allocation in reset() and update(); not seen under sanitizers.
+  void allocates_nothing() const {
+    SCOPED_TRACE("allocates nothing");
+    D d = make_();
+    EXPECT_EQ(allocations_of([&] {
+                d.reset();
+                for (int k = 0; k < 1000; ++k) step(d, k, k % 10);
+              }),
+              0u);
+  }
+
+  /// All of them.
+  void check() const {
+    SCOPED_TRACE(D::kName);
+    leaves_rest_in_peace();
+    marks_a_blow_or_a_clamping();
+    marks_where_its_score_reaches_one();
+    says_the_same_of_the_same();
+    ignores_bad_time_stamps();
+    bears_a_speed_that_is_no_number();
+    if constexpr (CalibratableDetector<D>) {
+      has_the_degree_that_it_says();
+      has_a_statistic_without_sign_or_memory();
+    }
+    allocates_nothing();
+  }
+
+ private:
+  static constexpr double kTs = 1e-3;  // [s]
+  static constexpr int kSamples = 6000;
+
+  // a half sine of 30 ms at 1 s, or a straight line at 3 s that stays; through 50 rad/s it would be
+  // what an estimator makes of it, and detectors must bear it without
+  static double touch(double t, bool clamping) {
+    if (clamping) return t < 3 ? 0 : 400 * std::min(1., (t - 3) / 0.75);
+    return t < 1 || t >= 1.03 ? 0 : 400 * std::sin(3.141592653589793 * (t - 1) / 0.03);
+  }
+
+  static Detection step(D& d, int k, double load, double shift = 0) {
+    Measurement<N> y;
+    y.t = k * kTs + shift;
+    y.qd = Vec<N>::Constant(0.1);
+    return detect(d, y, Vec<N>(Vec<N>::Constant(load)));
+  }
+
+  template <class Load>
+  std::vector<Detection> run(Load&& load, double shift = 0) const {
+    D d = make_();
+    std::vector<Detection> out;
+    for (int k = 0; k < kSamples; ++k) out.push_back(step(d, k, load(k * kTs), shift));
+    return out;
+  }
+
+  static std::vector<int> marks_of(const std::vector<Detection>& all) {
+    std::vector<int> at;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].mark) at.push_back(static_cast<int>(k));
+    }
+    return at;
+  }
+
+  Make make_;
+};
+
+/// Makes every claim on the detectors that make() builds.
+template <class Make>
+void check_detector(Make make) {
+  DetectorClaims<Make>(make).check();
+}
+
+}  // namespace tauext::conformance

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// That the checks of bench/kit/conformance.h can fail.
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "bench/kit/conformance.h"
+#include "estimators/momentum_observer.h"
+#include "estimators/wallmobot3.h"
+
+namespace tauext::test {
+namespace {
+
+// ---- estimators and a detector that are wrong, each in its own way
+
+using Mo1 = MomentumObserver<WallMoBot3>;
+
+struct WrongSign : Mo1 {
+  WrongSign() : Mo1(WallMoBot3()) {}
+  Estimate<3> update(const Measurement<3>& y) noexcept {
+    Estimate<3> e = Mo1::update(y);
+    e.tau_ext = -e.tau_ext;
+    return e;
+  }
+};
+
+struct Allocates : Mo1 {
+  Allocates() : Mo1(WallMoBot3()) {}
+  Estimate<3> update(const Measurement<3>& y) noexcept {
+    const auto copy = std::make_unique<std::vector<double>>(y.q.begin(), y.q.end());
+    return Mo1::update(copy->empty() ? Measurement<3>() : y);
+  }
+};
+
+struct TakesNaN : Mo1 {
+  TakesNaN() : Mo1(WallMoBot3()) {}
+  Estimate<3> update(const Measurement<3>& y) noexcept {
+    return y.q.allFinite() && y.qd.allFinite() && y.tau.allFinite() ? Mo1::update(y)
+                                                                    : Estimate<3>{Vec<3>::Zero()};
+  }
+};
+
+struct BelievesInAMillisecond : Mo1 {
+  BelievesInAMillisecond() : Mo1(WallMoBot3(), {.K = Vec<3>::Constant(5)}) {}
+  Estimate<3> update(const Measurement<3>& y) noexcept {
+    return Mo1::update({1e-3 * k_++, y.q, y.qd, y.tau});
+  }
+  int k_ = 0;
+};
+
+int shared = 0;
+struct SharesItsState : Mo1 {
+  SharesItsState() : Mo1(WallMoBot3()) {}
+  Estimate<3> update(const Measurement<3>& y) noexcept {
+    Estimate<3> e = Mo1::update(y);
+    e.tau_ext[0] += 1e-9 * ++shared;
+    return e;
+  }
+};
+
+// the failures of a claim
+template <class Claim>
+int failures(Claim&& claim) {
+  testing::TestPartResultArray results;
+  {
+    testing::ScopedFakeTestPartResultReporter reporter(
+        testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
+    claim();
+  }
+  int failed = 0;
+  for (int i = 0; i < results.size(); ++i) failed += results.GetTestPartResult(i).failed();
+  return failed;
+}
+
+template <class E>
+auto claims() {
+  const auto make = [] { return E(); };
+  return conformance::EstimatorClaims<WallMoBot3, decltype(make)>(WallMoBot3(), make);
+}
+
+TEST(Conformance, FindsWhatIsWrongWithAnEstimator) {
+  EXPECT_GT(failures([] { claims<WrongSign>().has_the_sign_of_equation_3(); }), 0);
+  EXPECT_GT(failures([] { claims<WrongSign>().ends_up_at_a_step(); }), 0);
+  if (allocations_are_counted()) {
+    EXPECT_GT(failures([] { claims<Allocates>().allocates_nothing(); }), 0);
+  }
+  EXPECT_GT(failures([] { claims<TakesNaN>().flags_a_bad_sample_holds_and_recovers(); }), 0);
+  EXPECT_GT(failures([] { claims<BelievesInAMillisecond>().answers_alike_at_every_sample_time(); }),
+            0);
+  EXPECT_GT(failures([] { claims<SharesItsState>().repeats_itself_alone_and_in_company(); }), 0);
+}
+
+// marks every tenth of a second, whatever happens
+struct Nervous {
+  static constexpr const char* kName = "nervous";
+  static constexpr int kDof = 3;
+  void reset() noexcept {}
+  Detection update(double t, const Vec<3>&) noexcept {
+    const bool mark = std::fmod(t, 0.1) < 1e-3;
+    return {mark, mark ? 0.5 : 0, Contact::kCollision};
+  }
+};
+
+TEST(Conformance, FindsWhatIsWrongWithADetector) {
+  const auto make = [] { return Nervous(); };
+  const conformance::DetectorClaims<decltype(make)> claims(make);
+  EXPECT_GT(failures([&] { claims.leaves_rest_in_peace(); }), 0);
+  EXPECT_GT(failures([&] { claims.marks_where_its_score_reaches_one(); }), 0);
+  EXPECT_GT(failures([&] { claims.ignores_bad_time_stamps(); }), 0);
+}
+
+}  // namespace
+}  // namespace tauext::test

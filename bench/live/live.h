@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Estimating while it happens: the body of a control loop's cycle, and its clock.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/live/histogram.h"
+#include "bench/roster/robot.h"
+#include "lcmtypes/live_stream.h"
+
+namespace tauext::live {
+
+/// What one estimator did so far. Written by the loop; any thread may read it.
+struct LiveFigures {
+  Histogram step_ns;  ///< [ns] wall time of an update
+  /// samples that made no estimate, but for the first one after a reset: bad ones, gaps, divergences
+  std::atomic<std::int64_t> unusable = 0;
+  std::atomic<std::int64_t> marks = 0;                    ///< of its detector
+  std::atomic<std::int64_t> compared = 0;                 ///< samples with a reference
+  std::array<std::atomic<double>, kMaxJoints> squares{};  ///< [N^2 m^2] of the error, summed
+  std::atomic<double> largest_error = 0;                  ///< [N m] of any joint
+
+  /// [N m] worst joint's root of the mean squared error; NaN without a reference.
+  double rmse() const noexcept;
+};
+
+/// Runs estimators, each with the same kind of detector behind it, on one sample after the other,
+/// and pushes what they say into a stream. `take` neither waits, allocates nor makes a system call.
+class LiveEstimation {
+ public:
+  /// @param trace what an estimator that copies the truth copies; else it may be empty
+  /// @param thresholds of each estimator's detector
+  /// @param stream may be null
+  /// @throws std::invalid_argument for unknown names, an estimator named twice, or more than 8
+  /// joints
+  LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
+                 const std::string& detector, const ThresholdSet& thresholds, const Trace& trace,
+                 LiveStream* stream);
+
+  /// All estimators, on a reading of the robot's number of joints.
+  void take(const Reading& reading) noexcept;
+  /// They forget everything: the sender has started anew.
+  void reset() noexcept;
+
+  int size() const { return static_cast<int>(pairs_.size()); }            ///< estimators
+  const std::string& name(int i) const { return pairs_[i]->name; }        ///< of estimator i
+  const LiveFigures& figures(int i) const { return pairs_[i]->figures; }  ///< of estimator i
+  /// That were estimated.
+  std::int64_t samples() const noexcept { return samples_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Pair {
+    std::string name;
+    std::unique_ptr<Stepper> stepper;
+    LiveFigures figures;
+    bool started = false;  // since the last reset
+  };
+  static void compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept;
+
+  std::vector<std::unique_ptr<Pair>> pairs_;
+  LiveStream* stream_;
+  LiveSample sample_;
+  std::atomic<std::int64_t> samples_ = 0;
+};
+
+/// The streams of such a run, in its order.
+std::vector<Stream> streams_of(const std::vector<std::string>& estimators,
+                               const std::string& detector);
+
+/// How fast recorded samples are played.
+struct Pace {
+  double speed = 1;     ///< [1] simulated seconds in a second
+  bool again = false;   ///< from the begin when they end
+  double duration = 0;  ///< [s] of the clock, after which it ends; 0: never
+};
+
+/// Plays readings to the estimators by the clock until they end, `stop` is set or the time is over.
+/// The thread that calls it is the loop: all it waits for is the time of the next sample. Where
+/// they begin again, estimators are reset and time goes on.
+/// @param late [ns] how much later than due a cycle began
+void play(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation& estimation,
+          Histogram& late, const std::atomic<bool>& stop);
+
+}  // namespace tauext::live

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/live_io.h"
+
+#include <stdexcept>
+#include <utility>
+
+namespace tauext::live {
+
+Outlet::Outlet(const Options& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
+  if (!o.stream) return;
+  transport_ = std::make_shared<Transport>(o.url);
+  if (!transport_->good()) fmt::print(stderr, "streaming is off: {}\n", transport_->trouble());
+  stream_.emplace(transport_, streams_, rate);
+}
+
+void Outlet::report_failures() {
+  if (!stream_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
+  reported_ = true;
+  notice(fmt::format("messages to {} fail ({}); the run goes on", transport_->url(),
+                     trouble_with(transport_->url()).empty() ? "send error" : "no route"));
+}
+
+StreamReport Outlet::finish(std::vector<summary_t> summaries) {
+  StreamReport report;
+  report.asked = stream_.has_value();
+  if (!stream_) return report;
+  report.url = transport_->url();
+  report.hung = !stream_->finish();
+  report.counts = stream_->counts();
+  if (!report.hung) publish(summaries, report.counts.dropped);
+  return report;
+}
+
+void Outlet::publish(std::vector<summary_t>& summaries, std::int64_t dropped) {
+  for (int i = 0; i < static_cast<int>(summaries.size()); ++i) {
+    summary_t& s = summaries[i];
+    s.published = stream_->counts(i).sent;
+    s.failed = stream_->counts(i).failed;
+    s.ring_drops = dropped;
+    std::vector<std::byte> bytes(s.getEncodedSize());
+    transport_->publish(kSummaryChannel, {bytes.data(), encode(s, bytes)});
+  }
+}
+
+Inlet::Inlet(const Options& o, const Robot& robot, LiveEstimation& estimation, LiveReport& report)
+    : channel_(o.subscribe),
+      type_(message_type(o.type)),
+      robot_(robot),
+      estimation_(estimation),
+      report_(report),
+      listener_(o.url, Listener::expression(o.subscribe),
+                [this](std::string_view, std::int64_t, Bytes message) { take(message); }) {}
+
+bool Inlet::wait() {
+  try {
+    listener_.wait(50);
+  } catch (const std::runtime_error& e) {
+    notice(e.what());
+    report_.failed = true;
+  }
+  report_.arrivals = arrivals_.counts();
+  return !report_.failed;
+}
+
+void Inlet::take(Bytes message) {
+  Reading reading;
+  const Reject reject = read(message, type_, reading);
+  if (reject != Reject::kNone || reading.n != robot_.dof()) {
+    if (report_.rejected++ == 0) explain(reject, reading.n);
+    return;
+  }
+  const Arrival arrival = arrivals_.take(reading);
+  if (arrival == Arrival::kRestart) estimation_.reset();
+  if (arrival == Arrival::kNext || arrival == Arrival::kRestart) estimation_.take(reading);
+}
+
+void Inlet::explain(Reject reject, int joints) const {
+  const std::string why = reject == Reject::kNone ? fmt::format("of {} joints, and {} has {}",
+                                                                joints, robot_.name(), robot_.dof())
+                                                  : describe(reject);
+  notice(fmt::format("{}: a message {}; the first that was rejected", channel_, why));
+}
+
+}  // namespace tauext::live

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/live_listen.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/live/interrupt.h"
+#include "bench/live/stream_table.h"
+#include "bench/program.h"
+#include "lcmtypes/listener.h"
+
+namespace tauext::live {
+namespace {
+
+// what is heard, on standard output: a table on a terminal, else events as they come and a table at
+// the end
+class Screen {
+ public:
+  explicit Screen(const std::string& url) : url_(url) {}
+
+  void show(StreamTable& table, double seconds, std::int64_t now) {
+    take_events(table);
+    if (!terminal_ || seconds - shown_ < kEvery) return;
+    shown_ = seconds;
+    fmt::print("\033[H\033[2J{}  {:.0f} s\n\n{}\n{}\n{}\n", url_, seconds, table.format(now),
+               table.totals(), fmt::join(events_, "\n"));
+    std::fflush(stdout);
+  }
+  void close(StreamTable& table, std::int64_t now) {
+    take_events(table);
+    fmt::print("{}{}", terminal_ ? "\n" : table.format(now), table.totals());
+  }
+
+ private:
+  static constexpr double kEvery = 0.2;  // [s]
+
+  void take_events(StreamTable& table) {
+    constexpr std::size_t kShown = 12;
+    for (std::string& line : table.events()) {
+      if (!terminal_) fmt::print("{}\n", line);
+      events_.push_back(std::move(line));
+    }
+    if (!terminal_) std::fflush(stdout);
+    if (events_.size() > kShown) events_.erase(events_.begin(), events_.end() - kShown);
+  }
+
+  std::string url_;
+  bool terminal_ = is_terminal(STDOUT_FILENO);
+  double shown_ = 0;  // [s]
+  std::vector<std::string> events_;
+};
+
+}  // namespace
+
+int run_listen(const Options& o) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto now = [&] { return static_cast<std::int64_t>(seconds_since(begin) * 1e6); };
+  StreamTable table;
+  Listener listener(o.url, "TAUEXT_.*", [&](std::string_view channel, std::int64_t, Bytes m) {
+    table.take(channel, now(), m);
+  });
+  const Interrupt interrupt;
+  fmt::print(stderr, "listening to TAUEXT_* at {}; Ctrl-C ends\n", listener.url());
+  Screen screen(listener.url());
+  bool broken = false, at_end = false;
+  while (!broken && !over(interrupt, begin, o.pace.duration)) {
+    try {
+      listener.wait(50);
+    } catch (const std::runtime_error& e) {
+      broken = true;
+      at_end = listener.url().starts_with("file://");  // a log is over
+      if (!at_end) fmt::print(stderr, "{}\n", e.what());
+    }
+    screen.show(table, seconds_since(begin), now());
+  }
+  screen.close(table, now());
+  return table.good() > 0 && (!broken || at_end) ? kGood : kAnswerIsNo;
+}
+
+}  // namespace tauext::live

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/live_modes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/live/interrupt.h"
+#include "bench/live/live_io.h"
+#include "bench/live/live_report.h"
+#include "bench/logs/lcm_trace.h"
+#include "bench/logs/read_log.h"
+#include "bench/program.h"
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/score/detection_metrics.h"
+
+namespace tauext::live {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// a robot on which all that was asked for can run
+const Robot& checked_robot(const Options& o) {
+  const Robot& r = robot(o.robot);
+  for (const std::string& e : o.estimators) r.check(e, o.detector);
+  return r;
+}
+
+ThresholdSet thresholds_of(const Options& o) {
+  if (o.thresholds.empty()) return {};
+  return read_thresholds(o.thresholds).of(o.robot, o.sensors.velocity_noise);
+}
+
+// the samples to play: simulated with everything that reacts in it, or read
+Trace recorded_trace(const Options& o, const Robot& r) {
+  if (!o.from.empty()) return read_log_or_csv(o.from, o.channel);
+  const Scenario& s = scenario_of(r, o.scenario);
+  Supervisor supervisor;
+  if (s.reacts && !o.detector.empty()) supervisor = r.supervisor(o.estimators[0], o.detector);
+  fmt::print(stderr, "simulating {} s of {}\n", s.duration, s.name);
+  return measure(
+      simulate(load_for(r.name(), s, o.model_error), s, o.recording, o.sensors, supervisor),
+      o.sensors);
+}
+
+std::string title_of(const Options& o) {
+  return o.robot + "/" +
+         (!o.subscribe.empty() ? o.subscribe
+          : !o.from.empty()    ? o.from
+                               : o.scenario);
+}
+
+int finish(const Options& o, Outlet& outlet, const LiveEstimation& e, LiveReport report) {
+  report.title = title_of(o);
+  report.stream = outlet.finish(summaries_of(report, e, o.detector));
+  fmt::print("{}", format(report, e));
+  if (report.stream.hung) {  // its thread is still in LCM
+    std::fflush(stdout);
+    std::_Exit(kAnswerIsNo);
+  }
+  const bool silent = report.stream.asked && report.stream.counts.published == 0;
+  return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
+}
+
+// [ns] from one sample to the next, as most are
+double period_of(const std::vector<Reading>& all, double speed) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < all.size(); ++k) steps.push_back(all[k].t - all[k - 1].t);
+  return steps.empty() ? 0 : metrics::quantile(steps, 0.5) * 1e9 / speed;
+}
+
+// the control loop in a thread of its own, which ends with us
+class Loop {
+ public:
+  Loop(const std::vector<Reading>& readings, const Pace& pace, LiveEstimation& estimation)
+      : thread_([&readings, pace, &estimation, this] {
+          play(readings, pace, estimation, late_, stop_);
+          ended_ = true;
+        }) {}
+  ~Loop() { stop(); }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  bool ended() const { return ended_; }
+  void stop() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  const Histogram& late() const { return late_; }
+
+ private:
+  Histogram late_;
+  std::atomic<bool> stop_ = false, ended_ = false;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace
+
+int run_recorded(const Options& o) {
+  const Robot& r = checked_robot(o);
+  const Trace trace = recorded_trace(o, r);
+  const std::vector<Reading> readings = readings_of(trace);
+  Outlet outlet(o, o.rate / o.pace.speed);  // a rate of the clock's seconds
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), trace, outlet.stream());
+  const Interrupt interrupt;
+  fmt::print(stderr, "playing {}{}; Ctrl-C ends\n", title_of(o), outlet.where());
+  const auto begin = Clock::now();
+  StatusLine status;
+  Loop loop(readings, o.pace, estimation);
+  while (!loop.ended() && !interrupt.seen()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    outlet.report_failures();
+    status.show(estimation, &loop.late(), outlet.stream());
+  }
+  loop.stop();
+  status.clear();
+  LiveReport report;
+  report.seconds = seconds_since(begin);
+  report.late = &loop.late();
+  report.period = period_of(readings, o.pace.speed);
+  return finish(o, outlet, estimation, report);
+}
+
+int run_subscribed(const Options& o) {
+  const Robot& r = checked_robot(o);
+  Outlet outlet(o, o.rate);
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(),
+                            outlet.stream());
+  LiveReport report;
+  report.subscribed = true;
+  Inlet inlet(o, r, estimation, report);
+  const Interrupt interrupt;
+  fmt::print(stderr, "listening to {} at {}{}; Ctrl-C ends\n", o.subscribe, inlet.url(),
+             o.stream ? ", streaming" : "");
+  const auto begin = Clock::now();
+  StatusLine status;
+  while (!over(interrupt, begin, o.pace.duration) && inlet.wait()) {
+    outlet.report_failures();
+    status.show(estimation, nullptr, outlet.stream());
+  }
+  status.clear();
+  report.seconds = seconds_since(begin);
+  if (report.arrivals.late > report.arrivals.used / 10) {
+    notice(fmt::format("{} messages on {} were late: are there two senders?", report.arrivals.late,
+                       o.subscribe));
+  }
+  if (report.arrivals.used == 0 && report.rejected == 0) {
+    notice(fmt::format("nothing came on {} at {}", o.subscribe, inlet.url()));
+  }
+  return finish(o, outlet, estimation, report);
+}
+
+}  // namespace tauext::live

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "lcmtypes/emitter.h"
+#include "lcmtypes/reading.h"
+#include "lcmtypes/transport.h"
+
+namespace tauext::live {
+
+void check(const Options& o, bool listen) {
+  const auto require = [](bool good, const std::string& what) {
+    if (!good) throw std::invalid_argument(what + "; see tauext-live --help");
+  };
+  require(std::isfinite(o.pace.duration) && o.pace.duration >= 0,
+          fmt::format("--duration {}: 0 s or more", o.pace.duration));
+  const bool receives = listen || !o.subscribe.empty();
+  require(!receives || !lcm_url(o.url).starts_with("memq://"),
+          "memq:// does not leave a process: nothing can arrive");
+  if (listen) {
+    require(o.robot.empty() && o.estimators.empty(),
+            "--listen shows streams and estimates nothing");
+    return;
+  }
+  const int sources = !o.scenario.empty() + !o.from.empty() + !o.subscribe.empty();
+  require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
+  require(!o.robot.empty() && !o.estimators.empty(), "--robot and --estimator are required");
+  require(o.pace.speed >= 1e-3 && o.pace.speed <= 1e3,
+          fmt::format("--speed {}: 0.001 to 1000", o.pace.speed));
+  require(o.rate >= 0 && o.rate <= 1e6, fmt::format("--rate {}: 0 to 1e6 a second", o.rate));
+  message_type(o.type);
+  for (const std::string& e : o.estimators) {
+    require(o.subscribe != kEstimateChannel + e,
+            fmt::format("--subscribe {}: its own estimates would come back to it", o.subscribe));
+  }
+}
+
+}  // namespace tauext::live

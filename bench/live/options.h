@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What tauext-live's command line says.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/live/live.h"
+#include "mjcf/plant/model_error.h"
+#include "mjcf/record.h"
+
+namespace tauext::live {
+
+/// What the command line says.
+struct Options {
+  std::string robot, scenario, from, channel, subscribe, type = "tauext";
+  std::vector<std::string> estimators;
+  std::string detector, thresholds;
+  bool stream = false;  ///< publish
+  std::string url;      ///< "": the default
+  double rate = 200;    ///< [1/s] messages of each channel; 0: every sample
+  Pace pace;
+  Sensors sensors;
+  ModelError model_error;
+  Recording recording;
+};
+
+/// @throws std::invalid_argument for options that are missing, out of range or do not go together
+void check(const Options& options, bool listen);
+
+}  // namespace tauext::live

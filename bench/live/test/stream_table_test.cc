@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/stream_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "lcmtypes/test/samples.h"
+
+namespace tauext::live::test {
+namespace {
+
+using namespace tauext::test;  // NOLINT(google-build-using-namespace): samples to try with
+
+bool has(const std::string& text, const std::string& what) {
+  return text.find(what) != std::string::npos;
+}
+
+TEST(StreamTableTest, ShowsEachJointAndCountsLostOnes) {
+  StreamTable table;
+  estimate_t e = estimate();
+  e.reference = estimate_t::kTruth;
+  e.tau_ext_true[2] = -99.5;
+  for (const int seq : {0, 1, 2, 5, 6}) {
+    e.seq = seq;
+    table.take("TAUEXT_ESTIMATE_ekf", 1000 * seq, bytes_of(e));
+  }
+  EXPECT_EQ(table.good(), 5);
+  EXPECT_EQ(table.lost(), 2);
+  const std::string text = table.format(6000);
+  EXPECT_TRUE(has(text, "TAUEXT_ESTIMATE_ekf                5       2      1")) << text;
+  EXPECT_TRUE(has(text, "-98.200")) << text;
+  EXPECT_TRUE(has(text, "-99.500")) << text;
+}
+
+TEST(StreamTableTest, ARestartOfTheSenderIsNoLoss) {
+  StreamTable table;
+  estimate_t e = estimate();
+  for (const int seq : {100, 101, 0, 1}) {
+    e.seq = seq;
+    table.take("TAUEXT_ESTIMATE_ekf", 0, bytes_of(e));
+  }
+  EXPECT_EQ(table.lost(), 0);
+}
+
+TEST(StreamTableTest, SwappedMessagesAreNoLossAndASilentSenderHasNoRate) {
+  StreamTable table;
+  estimate_t e = estimate();
+  for (const int seq : {0, 1, 3, 2, 4, 5}) {
+    e.seq = seq;
+    table.take("TAUEXT_ESTIMATE_ekf", 1000 * seq, bytes_of(e));
+  }
+  EXPECT_EQ(table.lost(), 0);
+  EXPECT_TRUE(has(table.format(6000), "TAUEXT_ESTIMATE_ekf                6       0      1"));
+  EXPECT_TRUE(has(table.format(2'000'000), "TAUEXT_ESTIMATE_ekf                0       0      1"));
+}
+
+TEST(StreamTableTest, TwoSendersOnAChannelAreNoLoss) {
+  StreamTable table;
+  estimate_t e = estimate();
+  for (int k = 0; k < 500; ++k) {
+    for (const int first : {0, 50'000}) {
+      e.seq = first + k;
+      table.take("TAUEXT_ESTIMATE_ekf", 1000 * k, bytes_of(e));
+    }
+  }
+  EXPECT_EQ(table.lost(), 0);
+  EXPECT_EQ(table.strays(), 499);  // all of one of them but its first
+  EXPECT_TRUE(has(table.totals(), "499 out of turn: copies, or two senders")) << table.totals();
+}
+
+TEST(StreamTableTest, MoreChannelsThanATableHoldsAreStillCounted) {
+  StreamTable table;
+  for (int i = 0; i < 1000; ++i) {
+    table.take("TAUEXT_ESTIMATE_" + std::to_string(i), 0, bytes_of(estimate()));
+  }
+  EXPECT_EQ(table.good(), 1000);
+  const std::string text = table.format(0);
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 320);
+}
+
+TEST(StreamTableTest, MarksAndSummariesAreEvents) {
+  StreamTable table;
+  detection_t d = detection();
+  d.mark_utime = 5'006'000;
+  d.contact = 2;
+  table.take("TAUEXT_DETECTION", 0, bytes_of(d));
+  table.take("TAUEXT_SUMMARY", 0, bytes_of(summary()));
+  const auto events = table.events();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0], "5.006 s  ekf+pan_tompkins marks: collision");
+  EXPECT_TRUE(has(events[1], "wallmobot3/step/ekf")) << events[1];
+  EXPECT_TRUE(table.events().empty());
+}
+
+TEST(StreamTableTest, ATerminalIsNotObeyedToWhatAMessageSays) {
+  StreamTable table;
+  summary_t s = summary();
+  s.entry = "\033]0;gotcha\007";
+  table.take("TAUEXT_SUMMARY", 0, bytes_of(s));
+  table.take("TAUEXT_\033[2J", 0, bytes_of(estimate()));
+  EXPECT_EQ(table.events()[0].find('\033'), std::string::npos);
+  EXPECT_EQ(table.format(0).find('\033'), std::string::npos);
+}
+
+TEST(StreamTableTest, EveryOneOfTenThousandMutatedMessagesIsCounted) {
+  std::mt19937_64 random(2);
+  const std::vector<std::vector<std::byte>> originals = {
+      bytes_of(estimate()), bytes_of(detection()), bytes_of(summary()),
+      write(reading(1), MessageType::kTauext), write(reading(1), MessageType::kIiwa)};
+  StreamTable table;
+  for (int i = 0; i < 10000; ++i) {
+    auto m = originals[i % originals.size()];
+    for (std::uint64_t n = 1 + random() % 4; n > 0; --n) {
+      m[random() % m.size()] = static_cast<std::byte>(random());
+    }
+    if (random() % 4 == 0) m.resize(random() % (m.size() + 1));
+    table.take("TAUEXT_X", i, m);
+  }
+  EXPECT_EQ(table.good() + table.rejected(), 10000);
+  EXPECT_GT(table.rejected(), 3000);
+  EXPECT_TRUE(has(table.totals(), "of another type")) << table.totals();
+}
+
+}  // namespace
+}  // namespace tauext::live::test

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/logs/identify.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "estimators/types.h"
+
+namespace tauext {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLongestGap = 0.05;  // [s]
+
+double sign(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+// whether (i) can be taken over samples a to b: moving one way all the time, and no gap
+bool usable(const Trace& log, int a, int b, double min_speed) {
+  for (int k = a; k <= b; ++k) {
+    const double qd = log.qd(0, k);
+    if (std::abs(qd) < min_speed || sign(qd) != sign(log.qd(0, a))) return false;
+    if (k > a && log.t[k] - log.t[k - 1] > kLongestGap) return false;
+  }
+  return true;
+}
+
+// (i) over samples a to b: the row of the regressor, and mean(tau) behind it
+VectorXd row(const Trace& log, int a, int b, const std::vector<Term>& terms) {
+  const double T = log.t[b] - log.t[a];
+  const auto n = static_cast<Eigen::Index>(terms.size());
+  VectorXd r = VectorXd::Zero(n + 1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& f = terms[i].column;
+    if (!f) {
+      r[i] = (log.qd(0, b) - log.qd(0, a)) / T;
+      continue;
+    }
+    for (int k = a; k < b; ++k) {
+      const double h = log.t[k + 1] - log.t[k];
+      r[i] += h / T * 0.5 * (f(log.q(0, k), log.qd(0, k)) + f(log.q(0, k + 1), log.qd(0, k + 1)));
+    }
+  }
+  for (int k = a; k < b; ++k) r[n] += (log.t[k + 1] - log.t[k]) / T * log.tau(0, k);
+  return r;
+}
+
+void check(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
+  if (log.dof() != 1) {
+    throw std::invalid_argument(
+        fmt::format("a one-joint model is identified; the log has {} joints", log.dof()));
+  }
+  if (terms.empty()) throw std::invalid_argument("no term to identify");
+  if (!(w.length > 0 && w.length <= 10) || !(w.min_speed >= 0 && std::isfinite(w.min_speed))) {
+    throw std::invalid_argument(fmt::format(
+        "window of {} s, min_speed {} rad/s: 0 to 10 s, and not negative", w.length, w.min_speed));
+  }
+}
+
+// share of each column of the scaled regressor that the others cannot imitate
+VectorXd own_shares(const MatrixXd& scaled) {
+  VectorXd own(scaled.cols());
+  for (Eigen::Index i = 0; i < scaled.cols(); ++i) {
+    MatrixXd others(scaled.rows(), scaled.cols() - 1);
+    others << scaled.leftCols(i), scaled.rightCols(scaled.cols() - 1 - i);
+    const VectorXd c = scaled.col(i);
+    own[i] = others.cols() == 0 ? 1 : (c - others * others.colPivHouseholderQr().solve(c)).norm();
+  }
+  return own;
+}
+
+}  // namespace
+
+const std::vector<Term>& terms() {
+  static const std::vector<Term> all = {
+      {"inertia", "kg m^2", "qdd", nullptr},
+      {"gravity_cos", "kg m", "g cos q", [](double q, double) { return kGravity * std::cos(q); }},
+      {"gravity_sin", "kg m", "g sin q", [](double q, double) { return kGravity * std::sin(q); }},
+      {"coulomb", "N m", "sign(qd)", [](double, double qd) { return sign(qd); }},
+      {"viscous", "N m s/rad", "qd", [](double, double qd) { return qd; }},
+      {"quadratic", "N m s^2/rad^2", "qd |qd|",
+       [](double, double qd) { return qd * std::abs(qd); }},
+      {"stribeck", "N m", "sign(qd) exp(-|qd| / 0.1 rad/s)",
+       [](double, double qd) { return sign(qd) * std::exp(-std::abs(qd) / 0.1); }},
+      {"coulomb_up", "N m", "1 where qd > 0", [](double, double qd) { return qd > 0 ? 1. : 0.; }},
+      {"coulomb_down", "N m", "-1 where qd < 0",
+       [](double, double qd) { return qd < 0 ? -1. : 0.; }},
+      {"spring", "N m/rad", "q", [](double q, double) { return q; }},
+      {"offset", "N m", "1", [](double, double) { return 1.; }},
+  };
+  return all;
+}
+
+std::vector<Term> find_terms(const std::vector<std::string>& names) {
+  std::vector<Term> found;
+  std::vector<std::string> known;
+  for (const Term& t : terms()) known.push_back(t.name);
+  for (const std::string& name : names) {
+    const auto it = std::find(known.begin(), known.end(), name);
+    if (it == known.end()) {
+      throw std::invalid_argument(
+          fmt::format("unknown term '{}'; known: {}", name, fmt::join(known, ", ")));
+    }
+    if (std::count(names.begin(), names.end(), name) > 1) {
+      throw std::invalid_argument(fmt::format("term '{}' is named twice", name));
+    }
+    found.push_back(terms()[it - known.begin()]);
+  }
+  return found;
+}
+
+Identification identify(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
+  check(log, terms, w);
+  Identification id;
+  std::vector<VectorXd> rows;
+  for (int a = 0; a + 1 < log.size();) {
+    int b = a + 1;
+    while (b + 1 < log.size() && log.t[b] - log.t[a] < w.length * (1 - 1e-9)) ++b;
+    if (log.t[b] - log.t[a] < w.length * (1 - 1e-9)) break;  // the rest is no whole window
+    if (usable(log, a, b, w.min_speed)) {
+      rows.push_back(row(log, a, b, terms));
+    } else {
+      ++id.left_out;
+    }
+    a = b;
+  }
+  id.windows = static_cast<int>(rows.size());
+  const auto n = static_cast<Eigen::Index>(terms.size()),
+             m = static_cast<Eigen::Index>(rows.size());
+  if (m < 3 * n) {
+    throw std::invalid_argument(fmt::format(
+        "{} usable windows of {} s for {} parameters, at least {} are needed; {} were left out as "
+        "slower than {} rad/s or across a gap, in a log of {:.3g} s",
+        m, w.length, n, 3 * n, id.left_out, w.min_speed, log.t.back() - log.t.front()));
+  }
+
+  MatrixXd A(m, n);
+  VectorXd y(m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    A.row(i) = rows[i].head(n);
+    y[i] = rows[i][n];
+  }
+  const VectorXd norm = A.colwise().norm();
+  const MatrixXd scaled = A * norm.cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const auto& s = svd.singularValues();
+  const VectorXd own = own_shares(scaled);
+  id.condition = s[0] / s[n - 1];
+  if (!(id.condition < 1e6)) {
+    Eigen::Index least = 0;
+    if (own.hasNaN()) {
+      while (norm[least] != 0) ++least;
+    } else {
+      own.minCoeff(&least);
+    }
+    throw std::invalid_argument(fmt::format(
+        "the motion cannot tell '{}' from the other terms (condition {:.1e}): record one "
+        "that excites it, or leave it out",
+        terms[least].name, id.condition));
+  }
+  const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
+  const double variance = (y - A * theta).squaredNorm() / static_cast<double>(m - n);
+  id.residual = std::sqrt(variance);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    // a row of V S^-1 is a row of (A^T A)^-1's root
+    const double root = (svd.matrixV().row(i).array() / s.transpose().array()).matrix().norm();
+    id.parameters.push_back({theta[i], id.residual * root / norm[i],
+                             norm[i] / std::sqrt(static_cast<double>(m)), own[i]});
+  }
+  return id;
+}
+
+}  // namespace tauext

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Identifies a one-joint model that is linear in its parameters, like (36), from a recorded motion
+/// without contact: section 6.1 of the paper, with standard errors.
+///
+/// Over a window [t_a, t_b) of length T, (3) integrates to
+///     theta_1 (qd_b - qd_a) / T + sum_i theta_i mean(f_i(q, qd)) = mean(tau)               (i)
+/// so the acceleration is the difference quotient of the velocity over the window, and every other
+/// term goes through the same mean (tau is held over each sample; the f_i by the trapezium rule). The
+/// terms stay in phase, and nothing is lost to a filter. Windows do not overlap; that neighbours share
+/// a velocity at their common end hardly correlates their errors. A window is left out where the joint is slower than `min_speed`, where nobody knows
+/// dry friction, or across a gap in the log.
+///
+/// (i) is solved by linear least squares over all windows; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2 the
+/// residuals' variance.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// A column of the regressor: what multiplies one parameter.
+struct Term {
+  std::string name;         ///< as the paper has it
+  std::string unit;         ///< of its parameter
+  std::string description;  ///< the column as a formula
+  /// of q [rad], qd [rad/s]; not set: qdd
+  std::function<double(double, double)> column;
+};
+
+/// The known terms: those of (36), and others of friction and of sensors.
+const std::vector<Term>& terms();
+
+/// Terms by name. @throws std::invalid_argument for an unknown one, listing the known ones
+std::vector<Term> find_terms(const std::vector<std::string>& names);
+
+/// How a log is cut into windows.
+struct Windows {
+  double length = 0.1;      ///< [s] longer: less noise, less of a fast motion
+  double min_speed = 0.02;  ///< [rad/s] above the slip at which dry friction is full, and the noise
+};
+
+/// A parameter and how well the motion shows it.
+struct Parameter {
+  double theta = 0;       ///< in the term's unit
+  double sigma = 0;       ///< standard error, in the same unit
+  double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
+  double own = 0;         ///< [1] share of the column that the others cannot imitate, 0 to 1
+};
+
+/// What a log says about a model.
+struct Identification {
+  std::vector<Parameter> parameters;  ///< in the order of the terms
+  double condition = 0;               ///< [1] of the regressor with its columns scaled to norm 1
+  double residual = 0;                ///< [N m] standard deviation of (i)
+  int windows = 0;                    ///< that were used
+  int left_out = 0;                   ///< that were not
+};
+
+/// @throws std::invalid_argument for a log of several joints, too few windows, or a motion that
+/// cannot tell the terms apart, naming the term
+Identification identify(const Trace& log, const std::vector<Term>& terms, const Windows& w = {});
+
+}  // namespace tauext

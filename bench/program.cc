@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/program.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace tauext {
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), TAUEXT_VERSION));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    fmt::print(stderr, "{0}: {1}\n{0}: see {0} --help\n", app.get_name(), e.what());
+    return kCouldNotRun;
+  } catch (const std::exception& e) {  // of a flag that reads a file
+    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
+    return kCouldNotRun;
+  }
+  try {
+    const int code = body();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("cannot write to standard output");
+    }
+    return code;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
+    return kCouldNotRun;
+  }
+}
+
+bool is_terminal(int stream) {
+  return ::isatty(stream) == 1;
+}
+
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(is_terminal(STDERR_FILENO)) {}
+
+void Progress::show(double share) {
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+  show(fmt::format("{} [{:<40}] {:.0f} %, {:.0f} s left", what_,
+                   std::string(static_cast<std::size_t>(40 * share), '='), 100 * share,
+                   share > 0 ? spent.count() * (1 - share) / share : 0));
+}
+
+void Progress::show(const std::string& line) {
+  if (!terminal_) return;
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  dirty_ = true;
+}
+
+void Progress::clear() {
+  if (std::exchange(dirty_, false)) fmt::print(stderr, "\r\033[K");
+}
+
+std::function<void(double)> Progress::callback() {
+  if (!terminal_) return nullptr;
+  return [this](double share) { show(share); };
+}
+
+void refuse_same_file(const std::string& log, const std::string& out) {
+  std::error_code ignored;  // a file that is not there yet is no other file
+  if (std::filesystem::equivalent(log, out, ignored)) {
+    throw std::invalid_argument(fmt::format("--out {} is the log itself", out));
+  }
+}
+
+}  // namespace tauext

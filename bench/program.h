@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What every program is made of: errors as one line, the share that is done.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "bench/exit_code.h"
+
+namespace tauext {
+
+/// Parses and runs; prints help, version and errors as "<program>: <what>"; returns the exit code.
+/// @param body is called once the flags are read; what it throws becomes kCouldNotRun
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+/// A line on a terminal's standard error with what is going on, how much of it is done, and the time that is
+/// left; nothing elsewhere. Erased when it ends.
+class Progress {
+ public:
+  explicit Progress(std::string what);  ///< what is going on
+  ~Progress() { clear(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// @param share 0 to 1
+  void show(double share);
+  /// Another line than that of a share.
+  void show(const std::string& line);
+  void clear();  ///< erases the line
+  /// Whether anybody sees it.
+  bool shown() const { return terminal_; }
+  /// show() as a function for those who work; empty if nobody sees it.
+  std::function<void(double)> callback();
+
+ private:
+  std::string what_;
+  bool terminal_, dirty_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Whether a standard stream (STDOUT_FILENO, STDERR_FILENO) is a terminal.
+bool is_terminal(int stream);
+
+/// @throws std::invalid_argument if writing `out` would overwrite the log that is read
+void refuse_same_file(const std::string& log, const std::string& out);
+
+}  // namespace tauext

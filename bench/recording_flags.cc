@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/recording_flags.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/roster/degradation.h"
+
+namespace tauext {
+
+namespace {
+
+// CLI11 takes a number that does not fit for the largest that does
+std::string whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size()) return "";
+  return fmt::format("{} is not a whole number from 0 to {}", text,
+                     std::numeric_limits<std::uint64_t>::max());
+}
+
+}  // namespace
+
+void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r) {
+  const auto list = [&](const char* name, auto& fields, const char* help) {
+    app.add_option_function<std::vector<std::string>>(
+           name,
+           [&fields, name](const std::vector<std::string>& items) {
+             try {
+               set_fields(items, fields);
+             } catch (const std::invalid_argument& error) {
+               throw CLI::ValidationError(name, error.what());
+             }
+           },
+           help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("K=V,..");
+  };
+  // first, so that flags have the last word
+  app.add_option_function<std::string>(
+         "--degrade",
+         [&s, &e](const std::string& path) {
+           Degradation d{s, e};
+           read_degradation(path, d);
+           s = d.sensors, e = d.model_error;
+         },
+         "sensor faults and model errors of a JSON file")
+      ->type_name("FILE");
+  list("--sensors", s, "their faults: velocity_noise=1e-3,latency=0.002,dropped=0.01,..");
+  list("--loadcell", s.loadcell, "faults of the loadcells, like noise=1,offset=5 [N]");
+  list("--model_error", e, "what estimators do not know: mass=1.05,com=0.01,friction=2,..");
+  app.add_option("--velocity_noise", s.velocity_noise, "the same as in --sensors [rad/s]")
+      ->capture_default_str();
+  app.add_option("--encoder_step", s.encoder_step)->group("");  // likewise
+  app.add_option("--loadcell_noise", s.loadcell_noise)->group("");
+  app.add_option("--seed", s.seed, "of the sensors' faults")
+      ->check(whole_number, "WHOLE")
+      ->capture_default_str();
+  app.add_option("--kp", r.Kp, "tracking stiffness [1/s^2], else the scenario's own");
+  app.add_option("--kd", r.Kd, "tracking damping [1/s], else the scenario's own");
+}
+
+}  // namespace tauext

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Flags of the programs that simulate: how the plant is run, and what its sensors are like.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "mjcf/plant/model_error.h"
+#include "mjcf/record.h"
+#include "mjcf/trace/sensors.h"
+
+namespace tauext {
+
+/// Adds the flags of the sensors' faults, the model's errors, a file of both, --seed, --kp and --kd.
+void add_recording_flags(CLI::App& app, Sensors& sensors, ModelError& error, Recording& recording);
+
+}  // namespace tauext

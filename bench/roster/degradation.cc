@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/degradation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <tuple>
+
+#include "bench/roster/specification.h"
+
+namespace tauext {
+
+// what sensors.h and model_error.h take, each checked again where it is used
+template <>
+struct FieldsOf<Loadcell> {
+  static constexpr auto list() {
+    using L = Loadcell;
+    return std::tuple(
+        Field{"scale", &L::scale, "1", 0, 1e3, "gain error; 1: none"},
+        Field{"offset", &L::offset, "N", -1e6, 1e6, "added to the force"},
+        Field{"hysteresis", &L::hysteresis, "of full scale", 0, 1, "width of the loop"},
+        Field{"nonlinearity", &L::nonlinearity, "of full scale", -1, 1, "deviation at half scale"},
+        Field{"noise", &L::noise, "N", 0, 1e6, "standard deviation, white"},
+        Field{"step", &L::step, "N", 0, 1e6, "readings are whole steps"},
+        Field{"full_scale", &L::full_scale, "N", 0, 1e6, "0: 1000 N of a screw, 3000 N m"});
+  }
+};
+
+template <>
+struct FieldsOf<Sensors> {
+  static constexpr auto list() {
+    using S = Sensors;
+    return std::tuple(
+        Field{"velocity_noise", &S::velocity_noise, "rad/s", 0, 1e9, "standard deviation, on qd"},
+        Field{"encoder_step", &S::encoder_step, "rad", 0, 1, "q is in whole steps"},
+        Field{"loadcell_noise", &S::loadcell_noise, "N m", 0, 1e5, "standard deviation, on tau"},
+        Field{"latency", &S::latency, "s", 0, 1, "age of q, qd and tau"},
+        Field{"tau_latency", &S::tau_latency, "s", 0, 1, "how much older tau is"},
+        Field{"jitter", &S::jitter, "s", 0, 1, "largest error of a time stamp"},
+        Field{"dropped", &S::dropped, "1", 0, 0.99, "share of samples that are lost"},
+        Field{"repeated", &S::repeated, "1", 0, 0.99, "share of samples with the values before"},
+        Nested{"loadcell", &S::loadcell});
+  }
+};
+
+template <>
+struct FieldsOf<ModelError> {
+  static constexpr auto list() {
+    using M = ModelError;
+    return std::tuple(
+        Field{"mass", &M::mass, "1", 0.01, 100, "factor on the last link's mass and inertia"},
+        Field{"com", &M::com, "m", -10, 10, "how much farther its centre of mass is"},
+        Field{"friction", &M::friction, "N m", 0, 1e4, "more dry friction of every joint"},
+        Field{"viscous", &M::viscous, "N m s/rad", 0, 1e4, "more viscous friction"},
+        Field{"armature", &M::armature, "kg m^2", 0, 1e4, "more inertia of every rotor"});
+  }
+};
+
+namespace {
+
+using Json = nlohmann::json;
+
+template <class S>
+void set_keys(const KeyValues& keys, const char* owner, S& s) {
+  explaining_keys(owner, field_help<S>(), [&] { set_parameters(keys, s); });
+}
+
+template <class S>
+void set_items(const std::vector<std::string>& items, const char* owner, S& s) {
+  explaining_keys(owner, field_help<S>(), [&] {
+    KeyValues keys;
+    for (const std::string& item : items) keys.push_back(key_and_value(item));
+    set_parameters(keys, s);
+  });
+}
+
+void add_number(const std::string& key, const Json& value, KeyValues& to) {
+  if (!value.is_number()) {
+    throw std::invalid_argument(fmt::format("\"{}\" is {}, no number", key, value.dump()));
+  }
+  to.emplace_back(key, value.dump());
+}
+
+// the numbers of an object within the file
+void add_object(const std::string& name, const std::string& prefix, const Json& object,
+                KeyValues& to) {
+  if (!object.is_object()) throw std::invalid_argument(fmt::format("\"{}\" is no object", name));
+  for (const auto& [key, value] : object.items()) add_number(prefix + key, value, to);
+}
+
+Degradation from_json(const Json& document, Degradation d) {
+  if (!document.is_object()) {
+    throw std::invalid_argument("a JSON object is wanted, like {\"velocity_noise\": 1e-3}");
+  }
+  KeyValues sensors, model_error;
+  for (const auto& [key, value] : document.items()) {
+    if (key == "loadcell") {
+      add_object(key, "loadcell.", value, sensors);
+    } else if (key == "model_error") {
+      add_object(key, "", value, model_error);
+    } else if (key == "seed" && value.is_number_unsigned()) {
+      d.sensors.seed = value.get<std::uint64_t>();
+    } else {
+      add_number(key, value, sensors);
+    }
+  }
+  set_keys(sensors, "sensors", d.sensors);
+  set_keys(model_error, "model_error", d.model_error);
+  return d;
+}
+
+template <class S, class T>
+void add_changed(const Field<S, T>& f, const std::string& prefix, const S& s,
+                 std::vector<std::string>& out) {
+  if (s.*f.at != S().*f.at) out.push_back(fmt::format("{}{}={}", prefix, f.key, s.*f.at));
+}
+
+template <class S, class Inner>
+void add_changed(const Nested<S, Inner>& n, const std::string& prefix, const S& s,
+                 std::vector<std::string>& out) {
+  for_each_field<Inner>([&](const auto& f) { add_changed(f, prefix + n.key + ".", s.*n.at, out); });
+}
+
+}  // namespace
+
+void set_fields(const std::vector<std::string>& items, Sensors& s) {
+  set_items(items, "sensors", s);
+}
+
+void set_fields(const std::vector<std::string>& items, Loadcell& l) {
+  set_items(items, "loadcell", l);
+}
+
+void set_fields(const std::vector<std::string>& items, ModelError& e) {
+  set_items(items, "model_error", e);
+}
+
+void read_degradation(const std::string& path, Degradation& d) try {
+  std::ifstream in(path);
+  if (!in) throw std::runtime_error("cannot open");
+  d = from_json(Json::parse(in, nullptr, true, true), d);  // comments are welcome
+} catch (const std::exception& e) {
+  throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+}
+
+std::string describe(const Degradation& d) {
+  std::vector<std::string> all;
+  for_each_field<Sensors>([&](const auto& f) { add_changed(f, "", d.sensors, all); });
+  for_each_field<ModelError>(
+      [&](const auto& f) { add_changed(f, "model_error.", d.model_error, all); });
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
+}  // namespace tauext

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Everything that can stand between an estimator's model and what it gets to see: faults of the
+/// sensors and errors of the model, by name, in any combination.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mjcf/plant/model_error.h"
+#include "mjcf/trace/sensors.h"
+
+namespace tauext {
+
+/// A combination of them; the default is none.
+struct Degradation {
+  Sensors sensors;         ///< what they make of the truth
+  ModelError model_error;  ///< what the estimators do not know
+};
+
+/// Sets what a JSON file names and leaves the rest:
+///     { "velocity_noise": 1e-3, "dropped": 0.01, "loadcell": { "hysteresis": 0.002 },
+///       "model_error": { "mass": 1.05, "friction": 2 } }
+/// The keys are the fields of Sensors, Loadcell and ModelError, in their units.
+/// @throws std::runtime_error naming the file and what is wrong: unreadable, not JSON, an unknown key or a
+/// value out of range (listing the known ones with their limits), a value that is no number
+void read_degradation(const std::string& path, Degradation& d);
+
+/// Sets fields from "key=number" items: of Sensors, of a Loadcell, of a ModelError.
+/// @throws std::invalid_argument naming the key and the known ones with their units and limits
+void set_fields(const std::vector<std::string>& items, Sensors& s);
+/// As those of Sensors.
+void set_fields(const std::vector<std::string>& items, Loadcell& l);
+/// As those of Sensors.
+void set_fields(const std::vector<std::string>& items, ModelError& e);
+
+/// What is not ideal, like "velocity_noise=0.001 model_error.mass=1.05"; "" if all is.
+std::string describe(const Degradation& d);
+
+}  // namespace tauext

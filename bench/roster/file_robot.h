@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A robot that nobody compiled in: estimators on the model of an MJCF file.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "bench/roster/robot.h"
+#include "mjcf/plant/model.h"
+
+namespace tauext {
+
+/// The most joints of such a robot. Each number of joints is compiled for itself: builds with sanitizers have fewer.
+inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
+
+/// The estimators and detectors that every arm has, at 30 rad/s, on the dynamics of an MJCF file of
+/// 1 to kMaxFileJoints hinges and slides (mjcf/plant/arm_dynamics.h). MuJoCo costs some us for each estimator and
+/// step.
+/// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong
+std::unique_ptr<const Robot> file_robot(const std::string& path);
+
+namespace detail {
+// one number of joints of it; each is compiled for itself, from file_robot_of.cc.in
+template <int N>
+std::unique_ptr<const Robot> file_robot_of(const std::string& path, const Model& model);
+}  // namespace detail
+
+}  // namespace tauext

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/making.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace tauext::detail {
+
+std::vector<Registered>& registered_specifications() {
+  static std::vector<Registered> all;
+  return all;
+}
+
+void fail_taken(const char* what, const std::string& taken, const std::string& robot) {
+  throw std::invalid_argument(fmt::format(
+      "{} '{}' of {}: the name is taken; other parameters of it are a specification, {}:key=value",
+      what, taken, robot, name_of_specification(taken)));
+}
+
+void fail_joints(const std::string& robot, int joints, int samples_have) {
+  throw std::invalid_argument(
+      fmt::format("{} has {} joints, the samples have {}", robot, joints, samples_have));
+}
+
+void fail_truth(const std::string& estimator) {
+  throw std::invalid_argument(
+      fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", estimator));
+}
+
+void refuse_keys(const Specification& s) {
+  if (!s.keys.empty()) fail_unknown_key(s.keys.front().first);
+}
+
+std::optional<double> take_bandwidth(Specification& s) {
+  const auto key = std::find_if(s.keys.begin(), s.keys.end(),
+                                [](const auto& k) { return k.first == "bandwidth"; });
+  if (key == s.keys.end()) return std::nullopt;
+  const double w = number_of("bandwidth", key->second, kLeastBandwidth, kMostBandwidth);
+  s.keys.erase(key);
+  return w;
+}
+
+FieldHelp bandwidth_help() {
+  return {"bandwidth", "rad/s", range_of(kLeastBandwidth, kMostBandwidth),
+          "larger is faster, noisier; sets the others first"};
+}
+
+}  // namespace tauext::detail

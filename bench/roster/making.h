@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// How a specification becomes an estimator or a detector.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "bench/roster/robot.h"
+#include "bench/roster/roster.h"
+
+namespace tauext::detail {
+
+// what does not depend on types, compiled once
+[[noreturn]] void fail_taken(const char* what, const std::string& taken, const std::string& robot);
+[[noreturn]] void fail_joints(const std::string& robot, int joints, int samples_have);
+[[noreturn]] void fail_truth(const std::string& estimator);
+void refuse_keys(const Specification& s);
+std::optional<double> take_bandwidth(Specification& s);
+FieldHelp bandwidth_help();
+
+// what bench/registry.h has put beside the roster: robot and specification
+using Registered = std::pair<std::string, std::string>;
+std::vector<Registered>& registered_specifications();
+
+// sets what is known of Parameters p
+template <class P>
+void set_trained(P& p, const char* name, const DetectorThresholds& known) {
+  const auto it = known.find(name);
+  if (it == known.end()) return;
+  p.threshold = it->second.threshold;
+  if constexpr (requires { p.metric; }) {
+    if (it->second.metric.size() > 0) p.metric = it->second.metric;
+  }
+}
+
+// first what training says, then what the specification says
+template <class D>
+D make_detector(const DetectorSettings& settings, const Specification& s) {
+  constexpr int N = D::kDof;
+  if constexpr (requires { typename D::Parameters; }) {
+    typename D::Parameters p;
+    if constexpr (requires { p.collision.threshold, p.clamping.threshold; }) {
+      set_trained(p.collision, PanTompkins<N>::kName, settings.thresholds);
+      set_trained(p.clamping, Clamping<N>::kName, settings.thresholds);
+      p.collision.start_up = p.clamping.start_up = settings.start_up;
+    } else {
+      if constexpr (requires { p.threshold; }) set_trained(p, D::kName, settings.thresholds);
+      if constexpr (requires { p.start_up; }) p.start_up = settings.start_up;
+    }
+    set_parameters(s.keys, p);
+    return D(p);
+  } else {
+    refuse_keys(s);
+    return D();
+  }
+}
+
+// what the keys change: the roster's own parameters, or those of a bandwidth, whose key is taken out
+template <class E, bool tunable, class Make, class M>
+typename E::Parameters start_of(const Make& make, const M& model, Specification& s) {
+  using P = typename E::Parameters;
+  if constexpr (tunable) {
+    if (const std::optional<double> w = take_bandwidth(s)) return P::for_bandwidth(model, *w);
+  }
+  if constexpr (requires { make.parameters; }) {
+    return make.parameters;
+  } else if constexpr (std::is_default_constructible_v<P>) {
+    return P();
+  }
+}
+
+// some estimators believe in a model of their own
+template <class Make, class M>
+const M& model_of(const Make& make, const M& model) {
+  if constexpr (requires { make.model; }) {
+    return make.model;
+  } else {
+    return model;
+  }
+}
+
+template <class P>
+std::vector<FieldHelp> fields_of(bool tunable) {
+  std::vector<FieldHelp> all = field_help<P>();
+  std::erase_if(all, [&](const FieldHelp& f) { return tunable && f.key == "bandwidth"; });
+  if (tunable) all.insert(all.begin(), bandwidth_help());
+  return all;
+}
+
+}  // namespace tauext::detail

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A robot at run time: estimators and detectors by name.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/roster/specification.h"
+#include "bench/roster/stages.h"
+#include "bench/roster/thresholds.h"
+#include "mjcf/record.h"
+
+namespace tauext {
+
+/// How the detectors behind an estimator are set.
+struct DetectorSettings {
+  DetectorThresholds thresholds;  ///< of those that are in it; the others keep their defaults
+  double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
+};
+
+/// What calibrating a detector needs to know.
+struct Calibration {
+  int degree = 1;             ///< power of tau_ext that its statistic grows with
+  Eigen::VectorXd threshold;  ///< its default, in the unit of its statistic
+  bool has_metric = false;    ///< whether it weighs the joints by a metric, too
+};
+
+/// A robot with the estimators and detectors that run on it. Wherever an estimator or a detector is asked
+/// for, a specification (bench/roster/specification.h) is understood. Every call throws
+/// std::invalid_argument for an unknown name or key, listing the known ones, and for a trace of another
+/// number of joints.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  const std::string& name() const { return name_; }  ///< or the path of its file
+  int dof() const { return dof_; }                   ///< joints
+
+  virtual std::vector<std::string> estimators() const = 0;  ///< by name
+  virtual std::vector<std::string> detectors() const = 0;   ///< by name
+  virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
+  virtual std::vector<std::string> calibratable()
+      const = 0;  ///< detectors with thresholds from data
+
+  /// What can be set in an estimator or a detector.
+  virtual std::vector<FieldHelp> estimator_fields(std::string_view name) const = 0;
+  virtual std::vector<FieldHelp> detector_fields(
+      std::string_view name) const = 0;  ///< of a detector
+
+  /// Binds an estimator, and a detector unless it is "", to a trace's samples.
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  virtual std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
+                                         const Trace& trace,
+                                         const DetectorSettings& settings = {}) const = 0;
+
+  /// The same for a live run. The trace is what an estimator that copies the truth copies; else it may be empty.
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  virtual std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
+                                           const Trace& trace,
+                                           const DetectorSettings& settings = {}) const = 0;
+
+  /// Nothing, if the specifications of an estimator and of a detector (or "") are good ones: to be asked before
+  /// any work begins.
+  void check(std::string_view estimator, std::string_view detector) const;
+
+  /// The pair as the one who stops the motor: at the first mark. It never sees a truth.
+  /// @throws std::invalid_argument for an estimator that copies the truth
+  Supervisor supervisor(std::string_view estimator, std::string_view detector,
+                        const DetectorSettings& settings = {}) const;
+
+  /// What a detector says of estimates that an estimator made of the trace, sample by sample.
+  virtual std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                        const Output& estimates,
+                                        const DetectorSettings& settings) const = 0;
+
+  /// The largest statistic of a calibratable detector, joint by joint, over samples with t >= from [s].
+  virtual Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
+                                            const Output& estimates,
+                                            const DetectorSettings& settings,
+                                            double from) const = 0;
+
+  /// The mean of z z^T over samples with t >= from, z the change() of a detector with a metric.
+  virtual Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace,
+                                     const Output& estimates, const DetectorSettings& settings,
+                                     double from) const = 0;
+
+  /// How a calibratable detector's thresholds are set.
+  virtual const Calibration& calibration(std::string_view detector) const = 0;
+
+ protected:
+  /// For whoever derives.
+  Robot(std::string name, int dof) : name_(std::move(name)), dof_(dof) {}
+
+ private:
+  std::string name_;
+  int dof_;
+};
+
+}  // namespace tauext

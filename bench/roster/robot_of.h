@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// From the roster's types to a Robot that is asked by name. Include this to make a robot of your own
+/// model; else bench/roster/robots.h is enough.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/roster/making.h"
+#include "mjcf/trace/known.h"
+
+namespace tauext {
+namespace detail {
+
+template <int N>
+class RobotOf;
+
+// what bench/registry.h has put beside the roster
+template <RobotModel M>
+auto& registered_estimators() {
+  static std::vector<std::function<void(const M&, RobotOf<M::kDof>&)>> all;
+  return all;
+}
+template <int N>
+auto& registered_detectors() {
+  static std::vector<std::function<void(RobotOf<N>&)>> all;
+  return all;
+}
+
+// a robot of N joints: its factories, by name
+template <int N>
+class RobotOf final : public Robot {
+ public:
+  template <RobotModel M>
+  RobotOf(const std::string& name, const M& model) : Robot(name, N) {
+    for_each_estimator(model, [&](auto make) { add_estimator(model, make); });
+    for_each_detector<N>([&](auto make) { add_detector<decltype(make())>(); });
+    for (const auto& add : registered_estimators<M>()) add(model, *this);
+    for (const auto& add : registered_detectors<N>()) add(*this);
+    for (const auto& [robot, text] : registered_specifications()) {
+      if (robot == name) add_specification(text);
+    }
+  }
+
+  /// make(trace) builds one; make.parameters, if it has them, are what a specification begins with.
+  /// @throws std::invalid_argument if the name is taken
+  template <RobotModel M, class Make>
+  void add_estimator(const M& model, Make make) {
+    using E = std::decay_t<decltype(make(std::declval<const Trace&>()))>;
+    using Stage = EstimatorStageOf<E>;
+    refuse_taken(estimators_, "estimator", E::kName);
+    EstimatorEntry entry{E::kName, {}, {}, false};
+    entry.make = [make](const Trace& trace, const Specification& s) -> EstimatorPtr {
+      refuse_keys(s);
+      return std::make_unique<Stage>(make(trace));
+    };
+    if constexpr (requires(typename E::Parameters p) { E(model, p); }) {
+      using P = typename E::Parameters;
+      constexpr bool kTunable = requires {
+        P::for_bandwidth(model, 1.);
+      }
+      &&!requires {
+        E::kFixedTuning;
+      };
+      entry.tunable = kTunable;
+      entry.fields = fields_of<P>(kTunable);
+      entry.make = [make, model](const Trace& trace, const Specification& s) -> EstimatorPtr {
+        if (s.keys.empty()) return std::make_unique<Stage>(make(trace));
+        Specification rest = s;
+        P p = start_of<E, kTunable>(make, model, rest);
+        set_parameters(rest.keys, p);
+        return std::make_unique<Stage>(E(model_of(make, model), p));
+      };
+    }
+    estimators_.push_back(std::move(entry));
+  }
+
+  /// @throws std::invalid_argument if the name is taken
+  template <CollisionDetector D>
+  void add_detector() {
+    refuse_taken(detectors_, "detector", D::kName);
+    DetectorEntry entry{D::kName,
+                        [](const DetectorSettings& s, const Specification& spec) -> DetectorPtr {
+                          return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec));
+                        },
+                        {},
+                        std::nullopt};
+    if constexpr (requires { typename D::Parameters; }) {
+      entry.fields = field_help<typename D::Parameters>();
+    }
+    if constexpr (CalibratableDetector<D>) {
+      const typename D::Parameters p;
+      constexpr bool kMetric = requires(D d) {
+        p.metric, d.change();
+      };
+      entry.calibration = Calibration{D::kDegree, p.threshold, kMetric};
+    }
+    detectors_.push_back(std::move(entry));
+  }
+
+  /// Lists a specification among the estimators.
+  /// @throws std::invalid_argument if it means nothing here, or is listed already
+  void add_specification(const std::string& text) {
+    for (const std::string& e : estimators()) {
+      if (e == text) fail_taken("estimator", text, name());
+    }
+    estimator_of(text, Trace());
+    specifications_.push_back(text);
+  }
+
+  std::vector<std::string> estimators() const override {
+    std::vector<std::string> all = names(estimators_, [](const auto&) { return true; });
+    all.insert(all.end(), specifications_.begin(), specifications_.end());
+    return all;
+  }
+  std::vector<std::string> detectors() const override {
+    return names(detectors_, [](const auto&) { return true; });
+  }
+  std::vector<std::string> tunable() const override {
+    return names(estimators_, [](const EstimatorEntry& e) { return e.tunable; });
+  }
+  std::vector<std::string> calibratable() const override {
+    return names(detectors_, [](const DetectorEntry& d) { return d.calibration.has_value(); });
+  }
+  std::vector<FieldHelp> estimator_fields(std::string_view name) const override {
+    return find(estimators_, "estimator", name).fields;
+  }
+  std::vector<FieldHelp> detector_fields(std::string_view name) const override {
+    return find(detectors_, "detector", name).fields;
+  }
+
+  std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
+                                 const Trace& trace, const DetectorSettings& s) const override {
+    check(trace);
+    return std::make_unique<RunnerOf<N>>(estimator_of(estimator, trace), detector_of(detector, s),
+                                         trace);
+  }
+
+  std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
+                                   const Trace& trace, const DetectorSettings& s) const override {
+    if (trace.size() > 0) check(trace);
+    return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
+  }
+
+  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                const Output& estimates, const DetectorSettings& s) const override {
+    std::vector<Detection> out;
+    out.reserve(static_cast<std::size_t>(trace.size()));
+    feed(detector, trace, estimates, s,
+         [&](DetectorStage<N>&, double, const Detection& d) { out.push_back(d); });
+    return out;
+  }
+
+  Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
+                                    const Output& estimates, const DetectorSettings& s,
+                                    double from) const override {
+    Vec<N> largest = Vec<N>::Zero();
+    feed(detector, trace, estimates, s, [&](DetectorStage<N>& d, double t, const Detection&) {
+      if (t >= from) largest = largest.cwiseMax(d.statistic());
+    });
+    return largest;
+  }
+
+  Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace, const Output& estimates,
+                             const DetectorSettings& s, double from) const override {
+    Mat<N> sum = Mat<N>::Zero();
+    int count = 0;
+    feed(detector, trace, estimates, s, [&](DetectorStage<N>& d, double t, const Detection&) {
+      if (t < from) return;
+      sum += d.change() * d.change().transpose();
+      ++count;
+    });
+    return sum / std::max(count, 1);
+  }
+
+  const Calibration& calibration(std::string_view detector) const override {
+    const DetectorEntry& d = find(detectors_, "detector", detector);
+    if (d.calibration) return *d.calibration;
+    throw unknown("calibratable detector", detector, calibratable());
+  }
+
+ private:
+  using EstimatorPtr = std::unique_ptr<EstimatorStage<N>>;
+  using DetectorPtr = std::unique_ptr<DetectorStage<N>>;
+
+  struct EstimatorEntry {
+    std::string name;
+    std::function<EstimatorPtr(const Trace&, const Specification&)> make;
+    std::vector<FieldHelp> fields;
+    bool tunable;
+  };
+  struct DetectorEntry {
+    std::string name;
+    std::function<DetectorPtr(const DetectorSettings&, const Specification&)> make;
+    std::vector<FieldHelp> fields;
+    std::optional<Calibration> calibration;
+  };
+
+  template <class List>
+  static const auto& find(const List& list, const char* what, std::string_view specification) {
+    return find_known(list, what, name_of_specification(specification),
+                      [](const auto& e) { return e.name; });
+  }
+
+  template <class List, class Wanted>
+  static std::vector<std::string> names(const List& list, Wanted&& wanted) {
+    std::vector<std::string> all;
+    for (const auto& e : list) {
+      if (wanted(e)) all.push_back(e.name);
+    }
+    return all;
+  }
+
+  template <class List>
+  void refuse_taken(const List& list, const char* what, const std::string& taken) const {
+    for (const auto& e : list) {
+      if (e.name == taken) fail_taken(what, taken, name());
+    }
+  }
+
+  void check(const Trace& trace) const {
+    if (trace.dof() != N) fail_joints(name(), N, trace.dof());
+  }
+
+  DetectorPtr detector_of(std::string_view text, const DetectorSettings& s) const {
+    if (text.empty()) return nullptr;
+    return made(find(detectors_, "detector", text), text, s);
+  }
+
+  EstimatorPtr estimator_of(std::string_view text, const Trace& trace) const {
+    const EstimatorEntry& e = find(estimators_, "estimator", text);
+    if (needs_truth(text) && !trace.has_truth()) fail_truth(e.name);
+    return made(e, text, trace);
+  }
+
+  template <class Entry, class Behind>
+  static auto made(const Entry& e, std::string_view text, const Behind& behind) {
+    const Specification s = parse_specification(text);
+    if (s.keys.empty()) return e.make(behind, s);
+    return explaining_keys(text, e.fields, [&] { return e.make(behind, s); });
+  }
+
+  // look(detector, t, detection) at every sample
+  template <class Look>
+  void feed(std::string_view name, const Trace& trace, const Output& estimates,
+            const DetectorSettings& s, Look&& look) const {
+    check(trace);
+    const DetectorPtr d = detector_of(name, s);
+    for (int k = 0; k < trace.size(); ++k) {
+      const Measurement<N> y = trace.measurement<N>(k);
+      const Estimate<N> e{estimates.tau_ext.col(k), estimates.status[static_cast<std::size_t>(k)]};
+      Detection out;
+      d->run({&y, 1}, {&e, 1}, {&out, 1});
+      look(*d, y.t, out);
+    }
+  }
+
+  std::vector<EstimatorEntry> estimators_;
+  std::vector<DetectorEntry> detectors_;
+  std::vector<std::string> specifications_;  // that are listed beside the estimators
+};
+
+}  // namespace detail
+
+/// A robot with every estimator that for_each_estimator has for its model, and every detector.
+template <RobotModel M>
+std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model) {
+  return std::make_unique<detail::RobotOf<M::kDof>>(name, model);
+}
+
+}  // namespace tauext

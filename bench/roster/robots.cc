@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/robots.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+
+#include "bench/roster/file_robot.h"
+#include "bench/roster/robot_of.h"
+#include "mjcf/scenario.h"
+
+namespace tauext {
+namespace {
+
+std::vector<detail::MakeRobot>& registered_robots() {
+  static std::vector<detail::MakeRobot> all;
+  return all;
+}
+
+bool in_use = false;  // whether the list of robots has been made
+
+// the robot of an MJCF file, read the first time that it is asked for
+const Robot& robot_of_file(const std::string& path) {
+  static std::mutex mutex;
+  static std::map<std::string, std::unique_ptr<const Robot>> all;
+  const std::lock_guard lock(mutex);
+  std::unique_ptr<const Robot>& r = all[path];
+  if (!r) r = file_robot(path);
+  return *r;
+}
+
+const auto& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
+                       std::string_view name) {
+  return find_known(all, "robot", name, [](const auto& r) { return r->name(); });
+}
+
+}  // namespace
+
+namespace detail {
+
+void require_unused() {
+  if (!in_use) return;
+  throw std::logic_error("register at the begin of main(), before the robots are asked for");
+}
+
+void add_robot(MakeRobot make) {
+  registered_robots().push_back(std::move(make));
+}
+
+}  // namespace detail
+
+const std::vector<std::unique_ptr<const Robot>>& robots() {
+  static const std::vector<std::unique_ptr<const Robot>> all = [] {
+    in_use = true;
+    std::vector<std::unique_ptr<const Robot>> list;
+    for_each_robot(
+        [&](const char* name, const auto& model) { list.push_back(make_robot(name, model)); });
+    for (const auto& make : registered_robots()) list.push_back(make());
+    for (const auto& [robot, text] : detail::registered_specifications()) {
+      if (!is_robot_file(robot)) find_robot(list, robot);
+    }
+    return list;
+  }();
+  return all;
+}
+
+bool is_robot_file(std::string_view name_or_file) {
+  return name_or_file.ends_with(".xml");
+}
+
+const Robot& robot(std::string_view name_or_file) {
+  if (is_robot_file(name_or_file)) return robot_of_file(std::string(name_or_file));
+  return *find_robot(robots(), name_or_file);
+}
+
+std::unique_ptr<const Robot> wallmobot3_believing(double panel) {
+  return make_robot("wallmobot3", WallMoBot3(WallMoBot3::Parameters::with_panel(panel)));
+}
+
+const Scenario& scenario_of(const Robot& r, std::string_view name) {
+  if (is_robot_file(r.name())) {
+    throw std::invalid_argument(fmt::format(
+        "{}: a robot from a file has no scenarios yet: it cannot be simulated, but its logs can be "
+        "replayed (tauext-replay, tauext-live --from) and its messages estimated (--subscribe)",
+        r.name()));
+  }
+  return scenario(r.name(), name);
+}
+
+bool study_only(std::string_view detector) {
+  const std::string_view name = name_of_specification(detector);
+  bool found = false;
+  for_each_study_detector<1>([&](auto make) { found = found || decltype(make())::kName == name; });
+  return found;
+}
+
+std::string list_known() {
+  std::string out;
+  for (const auto& r : robots()) {
+    out += fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n", r->name(),
+                       r->dof(), fmt::join(r->estimators(), ", "), fmt::join(r->detectors(), ", "));
+    out += "  scenarios\n";
+    for (const Scenario& s : scenarios(r->name()))
+      out += fmt::format("    {:<12} {}\n", s.name, s.description);
+  }
+  return out +
+         "\nrobot FILE.xml: any MJCF arm of hinges and slides\n\n"
+         "what can be set, as name:key=value:key=value (a value for each joint: 1/2/3), and what "
+         "larger "
+         "does\n" +
+         list_fields(*robots().front());
+}
+
+std::string list_fields(const Robot& r) {
+  std::string out;
+  const auto add = [&](const std::string& name, const std::vector<FieldHelp>& fields) {
+    if (!fields.empty()) out += name + "\n";
+    std::size_t key = 0, unit = 0, range = 0;
+    for (const FieldHelp& f : fields) {
+      key = std::max(key, f.key.size());
+      unit = std::max(unit, f.unit.size());
+      range = std::max(range, f.range.size());
+    }
+    for (const FieldHelp& f : fields) {
+      out += fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", f.key, key, f.unit, unit, f.range, range,
+                         f.effect);
+    }
+  };
+  for (const std::string& e : r.estimators()) add(e, r.estimator_fields(e));
+  for (const std::string& d : r.detectors()) add(d, r.detector_fields(d));
+  return out;
+}
+
+}  // namespace tauext

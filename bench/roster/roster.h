@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// THE list: what the suite runs. One line here adds an estimator, a detector or a robot to the
+/// benchmark, to tauext-replay and to the conformance tests. (Scenarios: mjcf/scenario_wallmobot3.cc and its like.)
+#pragma once
+
+#include <type_traits>
+
+#include "bench/roster/baselines.h"
+#include "estimators/active_observer.h"
+#include "estimators/detectors/band_pass.h"
+#include "estimators/detectors/clamping.h"
+#include "estimators/detectors/contact_classifier.h"
+#include "estimators/detectors/cusum.h"
+#include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/high_pass.h"
+#include "estimators/detectors/pan_tompkins.h"
+#include "estimators/detectors/threshold.h"
+#include "estimators/disturbance_kalman_filter.h"
+#include "estimators/ekf.h"
+#include "estimators/higher_order_momentum_observer.h"
+#include "estimators/inverse_dynamics.h"
+#include "estimators/momentum_observer.h"
+#include "estimators/ndob.h"
+#include "estimators/ndob_inertia.h"
+#include "estimators/sliding_mode_observer.h"
+#include "estimators/testbed1.h"
+#include "estimators/wallmobot3.h"
+
+namespace tauext {
+
+// Forms as the paper prints them, to be compared with those that we stand for (kPrintedForm). What has a
+// kFixedTuning is no tunable estimator, whatever its Parameters can do.
+
+/// The testbed's EKF from x_0 = 0, as section 6.2 starts it, wherever the arm is.
+struct EkfZeroStart : Ekf<Testbed1> {
+  static constexpr const char* kName = "ekf_zero_start";
+  static constexpr bool kPrintedForm = true, kFixedTuning = true;
+  using Ekf::Ekf;
+  /// The paper's, but for the start.
+  static Parameters parameters() {
+    Parameters p = Parameters::paper();
+    p.start = Start::kZero;
+    return p;
+  }
+};
+
+/// The EKF with the printed sign(qd) for its friction.
+struct EkfRawSign : Ekf<Testbed1> {
+  static constexpr const char* kName = "ekf_raw_sign";
+  static constexpr bool kPrintedForm = true, kFixedTuning = true;
+  using Ekf::Ekf;
+};
+
+/// The NDOB with the printed sign(qd) for its friction.
+struct NdobRawSign : Ndob<Testbed1> {
+  static constexpr const char* kName = "ndob_raw_sign";
+  static constexpr bool kPrintedForm = true, kFixedTuning = true;
+  using Ndob::Ndob;
+};
+
+/// The NDOB's gain on the testbed, for which the paper prints none: X = 100 1/s theta_1, a pole of
+/// 100 rad/s. Its 10 ms are a tenth of a human's quickest push, and 1e-3 rad/s of velocity noise
+/// cost 0.04 N m.
+inline Ndob<Testbed1>::Parameters testbed1_ndob() {
+  return {.X = Vec<1>(100 * Testbed1::Parameters().theta1)};
+}
+
+/// [rad/s] of the estimators whose bandwidth is ours to choose: they are comparable with each other.
+inline constexpr double kRosterBandwidth = 30;
+
+/// The EKF with the Q and R of the sensors instead of the printed ones: what the filter can do.
+struct EkfHonest : Ekf<WallMoBot3> {
+  static constexpr const char* kName = "ekf_honest";
+  static constexpr bool kFixedTuning = true;
+  using Ekf::Ekf;
+};
+
+/// Builds an estimator of the roster; a specification changes its parameters.
+template <class E, RobotModel M>
+struct Make {
+  M model;                            ///< of the robot
+  typename E::Parameters parameters;  ///< unless a specification changes them
+  E operator()(const Trace&) const {
+    return E(model, parameters);
+  }  ///< no estimator of the roster looks at it
+};
+/// Builds E with these parameters.
+template <class E, RobotModel M>
+Make<E, M> with(const M& model, const typename E::Parameters& parameters) {
+  return {model, parameters};
+}
+
+/// Calls visit(make) for the estimators that every arm has; make(trace) builds one.
+template <RobotModel M, class Visit>
+void for_each_common_estimator(const M& model, Visit&& visit) {
+  constexpr int N = M::kDof;
+  visit([](const Trace&) { return Zero<N>(); });
+  visit([](const Trace& trace) { return Truth<N>(trace); });
+  visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
+  const auto at_bandwidth = [&]<class E>(std::type_identity<E>) {
+    visit(with<E>(model, E::Parameters::for_bandwidth(model, kRosterBandwidth)));
+  };
+  at_bandwidth(std::type_identity<InverseDynamics<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver2<M>>());
+  at_bandwidth(std::type_identity<MomentumObserver3<M>>());
+  at_bandwidth(std::type_identity<NdobInertia<M>>());
+  at_bandwidth(std::type_identity<DisturbanceKalmanFilter<M>>());
+  at_bandwidth(std::type_identity<SlidingModeObserver<M>>());
+  at_bandwidth(std::type_identity<ActiveObserver<M>>());
+}
+
+/// Calls visit(make) for every estimator of a robot that is not named below.
+template <RobotModel M, class Visit>
+void for_each_estimator(const M& model, Visit&& visit) {
+  for_each_common_estimator(model, visit);
+}
+
+/// Calls visit(make) for every estimator of wallmobot3.
+template <class Visit>
+void for_each_estimator(const WallMoBot3& arm, Visit&& visit) {
+  using M = WallMoBot3;
+  for_each_common_estimator(arm, visit);
+  visit(with<Ekf<M>>(arm, Ekf<M>::Parameters::paper()));
+  visit(with<EkfHonest>(arm, EkfHonest::Parameters::honest()));
+  visit(with<Ndob<M>>(arm, Ndob<M>::Parameters::paper()));
+}
+
+/// Calls visit(make) for every estimator of testbed1.
+template <class Visit>
+void for_each_estimator(const Testbed1& arm, Visit&& visit) {
+  using M = Testbed1;
+  for_each_common_estimator(arm, visit);
+  const Testbed1 raw_sign(Testbed1::Parameters::raw_sign());
+  visit(with<Ekf<M>>(arm, Ekf<M>::Parameters::paper()));
+  visit(with<EkfZeroStart>(arm, EkfZeroStart::parameters()));
+  visit(with<EkfRawSign>(raw_sign, EkfRawSign::Parameters::paper()));
+  visit(with<Ndob<M>>(arm, testbed1_ndob()));
+  visit(with<NdobRawSign>(raw_sign, testbed1_ndob()));
+}
+
+/// Calls visit(make) for the detectors that the suite runs behind every estimator; make() builds one.
+template <int N, class Visit>
+void for_each_suite_detector(Visit&& visit) {
+  visit([] { return PanTompkins<N>(); });
+  visit([] { return ContactClassifier<N>(); });
+}
+
+/// Calls visit(make) for those that stand in the studies alone: with all of them the suite's tables would not end.
+template <int N, class Visit>
+void for_each_study_detector(Visit&& visit) {
+  visit([] { return Clamping<N>(); });
+  visit([] { return Threshold<N>(); });
+  visit([] { return DynamicThreshold<N>(); });
+  visit([] { return HighPass<N>(); });
+  visit([] { return BandPass<N>(); });
+  visit([] { return Cusum<N>(); });
+}
+
+/// Calls visit(make) for every detector of N joints; make() builds one.
+template <int N, class Visit>
+void for_each_detector(Visit&& visit) {
+  for_each_suite_detector<N>(visit);
+  for_each_study_detector<N>(visit);
+}
+
+/// Calls visit(name, model) for every robot; the MJCF of that name is its truth.
+template <class Visit>
+void for_each_robot(Visit&& visit) {
+  visit("wallmobot3", WallMoBot3());
+  visit("testbed1", Testbed1());
+}
+
+}  // namespace tauext

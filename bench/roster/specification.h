@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Estimators and detectors as people write them: `name[:key=value]...`, like `mo2:bandwidth=50`,
+/// `ekf:integration=euler:alignment=paper` or `ndob:X=600/600/600`. Values of joints are apart by slashes; one
+/// value stands for all joints. The keys are those that the Parameters list (estimators/parameters.h), and
+/// `bandwidth` [rad/s] of every estimator that can be set to one.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "estimators/parameters.h"
+
+namespace tauext {
+
+/// Keys and their values as text, in their order.
+using KeyValues = std::vector<std::pair<std::string, std::string>>;
+
+/// "key=value", taken apart.
+/// @throws std::invalid_argument for text that is none
+KeyValues::value_type key_and_value(std::string_view item);
+
+/// A specification, taken apart.
+struct Specification {
+  std::string name;  ///< of an estimator or a detector
+  KeyValues keys;    ///< in their order
+};
+
+/// @throws std::invalid_argument for text that is none: no name, a key without `=`, a key named twice
+Specification parse_specification(std::string_view text);
+
+/// What stands before the first colon.
+std::string_view name_of_specification(std::string_view text);
+
+/// The specification of an estimator at bandwidth w [rad/s] of its own formula.
+std::string at_bandwidth(const std::string& estimator, double w);
+
+/// What people are told of a field.
+struct FieldHelp {
+  std::string key, unit, range, effect;  ///< as Field has them, in words
+};
+
+/// "key [unit] range, .." of all fields.
+std::string describe_fields(const std::vector<FieldHelp>& fields);
+
+namespace detail {
+
+/// "0.001 to 1e+06"
+std::string range_of(double least, double most);
+/// @throws std::invalid_argument naming key, value and range
+double number_of(const std::string& key, std::string_view text, double least, double most);
+/// The numbers between slashes: n of them, or one that stands for all.
+std::vector<double> numbers_of(const std::string& key, std::string_view text, int n, double least,
+                               double most);
+[[noreturn]] void fail_unknown_key(const std::string& key);
+[[noreturn]] void fail_choice(const std::string& key, const std::string& value,
+                              const std::vector<std::string>& known);
+/// @throws std::invalid_argument "<owner>: <what>; known: <fields>"
+[[noreturn]] void fail_keys(std::string_view owner, const char* what,
+                            const std::vector<FieldHelp>& known);
+
+template <class P, class T>
+void add_help(const Field<P, T>& f, const std::string& prefix, std::vector<FieldHelp>& out) {
+  if constexpr (std::is_enum_v<T>) {
+    std::string names;
+    for (const auto& c : choices(T{})) names += (names.empty() ? "" : "|") + std::string(c.name);
+    out.push_back({prefix + f.key, "", names, f.effect});
+  } else {
+    out.push_back({prefix + f.key, f.unit, range_of(f.least, f.most), f.effect});
+  }
+}
+
+template <class P, class Inner>
+void add_help(const Nested<P, Inner>& n, const std::string& prefix, std::vector<FieldHelp>& out) {
+  for_each_field<Inner>([&](const auto& f) { add_help(f, prefix + n.key + ".", out); });
+}
+
+// whether `key` was this field's; then it is set
+template <class P, class T>
+bool set_if(const Field<P, T>& f, const std::string& prefix, const std::string& key,
+            const std::string& value, P& p) {
+  if (key != prefix + f.key) return false;
+  if constexpr (std::is_enum_v<T>) {
+    std::vector<std::string> known;
+    for (const auto& c : choices(T{})) {
+      if (value == c.name) return p.*f.at = c.value, true;
+      known.emplace_back(c.name);
+    }
+    fail_choice(key, value, known);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    const double x = number_of(key, value, f.least, f.most);
+    p.*f.at = static_cast<T>(x);
+    if (static_cast<double>(p.*f.at) != x) fail_choice(key, value, {"a whole number"});
+  } else {
+    const int n = static_cast<int>((p.*f.at).size());
+    const std::vector<double> x = numbers_of(key, value, n, f.least, f.most);
+    for (int i = 0; i < n; ++i) (p.*f.at)[i] = x[static_cast<std::size_t>(i)];
+  }
+  return true;
+}
+
+template <class P, class Inner>
+bool set_if(const Nested<P, Inner>& n, const std::string& prefix, const std::string& key,
+            const std::string& value, P& p) {
+  bool found = false;
+  for_each_field<Inner>([&](const auto& f) {
+    found = found || set_if(f, prefix + n.key + ".", key, value, p.*n.at);
+  });
+  return found;
+}
+
+}  // namespace detail
+
+/// What can be set in P; nothing if it lists no fields.
+template <class P>
+std::vector<FieldHelp> field_help() {
+  std::vector<FieldHelp> out;
+  if constexpr (ListsFields<P>) {
+    for_each_field<P>([&](const auto& f) { detail::add_help(f, "", out); });
+  }
+  return out;
+}
+
+/// Sets the keys in p, in their order.
+/// @throws std::invalid_argument for an unknown key or a value out of range
+template <class P>
+void set_parameters(const KeyValues& keys, P& p) {
+  for (const auto& item : keys) {
+    bool found = false;
+    if constexpr (ListsFields<P>) {
+      for_each_field<P>([&](const auto& f) {
+        found = found || detail::set_if(f, "", item.first, item.second, p);
+      });
+    }
+    if (!found) detail::fail_unknown_key(item.first);
+  }
+}
+
+/// What body() returns.
+/// @param owner what the keys are of, as it was asked for
+/// @throws std::invalid_argument what body() throws as such, with the owner and the known fields
+template <class Body>
+auto explaining_keys(std::string_view owner, const std::vector<FieldHelp>& known, Body&& body) {
+  try {
+    return body();
+  } catch (const std::invalid_argument& e) {
+    detail::fail_keys(owner, e.what(), known);
+  }
+}
+
+}  // namespace tauext

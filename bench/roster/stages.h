@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Estimators and detectors behind one virtual call for a batch of samples, never for one sample.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "estimators/concepts.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// An estimator of N joints, type-erased.
+template <int N>
+class EstimatorStage {
+ public:
+  virtual ~EstimatorStage() = default;
+  virtual void reset() = 0;  ///< forgets all samples
+  virtual void run(std::span<const Measurement<N>> in,
+                   std::span<Estimate<N>> out) = 0;  ///< an estimate for each sample
+};
+
+/// A detector of N joints, type-erased.
+template <int N>
+class DetectorStage {
+ public:
+  virtual ~DetectorStage() = default;
+  virtual void reset() = 0;  ///< forgets all samples
+  /// What is detected at each sample.
+  virtual void run(std::span<const Measurement<N>> at, std::span<const Estimate<N>> in,
+                   std::span<Detection> out) = 0;
+  /// Of the last sample; zero for a detector that cannot be calibrated.
+  virtual Vec<N> statistic() const = 0;
+  /// What its metric weighs; zero for a detector without one.
+  virtual Vec<N> change() const = 0;
+};
+
+/// The stage of this estimator.
+template <TorqueEstimator E>
+class EstimatorStageOf final : public EstimatorStage<E::kDof> {
+ public:
+  explicit EstimatorStageOf(E e) : e_(std::move(e)) {}  ///< takes it over
+  void reset() override { e_.reset(); }
+  /// As EstimatorStage says.
+  void run(std::span<const Measurement<E::kDof>> in, std::span<Estimate<E::kDof>> out) override {
+    for (std::size_t k = 0; k < in.size(); ++k) out[k] = e_.update(in[k]);
+  }
+
+ private:
+  E e_;
+};
+
+/// The stage of this detector.
+template <CollisionDetector D>
+class DetectorStageOf final : public DetectorStage<D::kDof> {
+ public:
+  explicit DetectorStageOf(D d) : d_(std::move(d)) {}  ///< takes it over
+  void reset() override { d_.reset(); }
+  /// As DetectorStage says.
+  void run(std::span<const Measurement<D::kDof>> at, std::span<const Estimate<D::kDof>> in,
+           std::span<Detection> out) override {
+    for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k].tau_ext);
+  }
+  Vec<D::kDof> statistic() const override {
+    if constexpr (CalibratableDetector<D>) {
+      return d_.statistic();
+    } else {
+      return Vec<D::kDof>::Zero();
+    }
+  }
+  Vec<D::kDof> change() const override {
+    if constexpr (requires { d_.change(); }) {
+      return d_.change();
+    } else {
+      return Vec<D::kDof>::Zero();
+    }
+  }
+
+ private:
+  D d_;
+};
+
+/// What a run over a whole trace gives; one column or element per sample.
+struct Output {
+  Eigen::MatrixXd tau_ext;          ///< [N m]
+  std::vector<Status> status;       ///< of the estimates
+  std::vector<std::uint8_t> marks;  ///< empty without a detector
+};
+
+/// An estimator, and a detector behind it if there is one, bound to the samples of a trace.
+class Runner {
+ public:
+  virtual ~Runner() = default;
+  /// From a reset over all samples.
+  virtual Output run() = 0;
+  /// The next batch of samples, from the begin again after the last one: the work that is timed.
+  virtual void batch() = 0;
+  static constexpr int kBatch = 1000;  ///< samples
+};
+
+/// What became of one sample of a live run.
+struct Stepped {
+  Status status = Status::kOk;  ///< of the estimate
+  Detection detection;          ///< of the detector, if there is one
+};
+
+/// An estimator, and a detector behind it if there is one, one sample after the other.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  virtual void reset() noexcept = 0;  ///< forgets all samples
+  /// Reads a value for each joint of q [rad], qd [rad/s] and tau [N m] at time t [s], and writes tau_ext [N m].
+  /// Allocates nothing.
+  virtual Stepped step(double t, const double* q, const double* qd, const double* tau,
+                       double* tau_ext) noexcept = 0;
+};
+
+/// Of these stages.
+template <int N>
+class StepperOf final : public Stepper {
+ public:
+  /// The second may be null.
+  StepperOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<N>> d)
+      : estimator_(std::move(e)), detector_(std::move(d)) {}
+
+  void reset() noexcept override {
+    estimator_->reset();
+    if (detector_) detector_->reset();
+  }
+
+  Stepped step(double t, const double* q, const double* qd, const double* tau,
+               double* tau_ext) noexcept override {
+    using Values = Eigen::Map<const Vec<N>>;
+    const Measurement<N> y{t, Values(q), Values(qd), Values(tau)};
+    Estimate<N> estimate;
+    Stepped out;
+    estimator_->run({&y, 1}, {&estimate, 1});
+    if (detector_) detector_->run({&y, 1}, {&estimate, 1}, {&out.detection, 1});
+    Vec<N>::Map(tau_ext) = estimate.tau_ext;
+    out.status = estimate.status;
+    return out;
+  }
+
+ private:
+  std::unique_ptr<EstimatorStage<N>> estimator_;
+  std::unique_ptr<DetectorStage<N>> detector_;
+};
+
+/// Of these stages.
+template <int N>
+class RunnerOf final : public Runner {
+ public:
+  /// The second may be null.
+  RunnerOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<N>> d,
+           const Trace& trace)
+      : estimator_(std::move(e)), detector_(std::move(d)) {
+    samples_.reserve(trace.size());
+    for (int k = 0; k < trace.size(); ++k) samples_.push_back(trace.measurement<N>(k));
+  }
+
+  Output run() override {
+    Output out{Eigen::MatrixXd(N, samples_.size()), {}, {}};
+    next_ = 0;
+    for (std::size_t done = 0; done < samples_.size();) {
+      const std::size_t first = next_, n = advance();
+      for (std::size_t k = 0; k < n; ++k) {
+        out.tau_ext.col(first + k) = estimates_[k].tau_ext;
+        out.status.push_back(estimates_[k].status);
+        if (detector_) out.marks.push_back(detections_[k].mark);
+      }
+      done += n;
+    }
+    return out;
+  }
+
+  void batch() override {
+    for (std::size_t n = 0; n < kBatch;) n += advance();
+  }
+
+ private:
+  // up to a batch, not beyond the last sample
+  std::size_t advance() {
+    if (next_ == 0) {
+      estimator_->reset();
+      if (detector_) detector_->reset();
+    }
+    const std::size_t n = std::min<std::size_t>(kBatch, samples_.size() - next_);
+    const std::span<const Measurement<N>> in(&samples_[next_], n);
+    estimator_->run(in, {estimates_.data(), n});
+    if (detector_) detector_->run(in, {estimates_.data(), n}, {detections_.data(), n});
+    next_ = next_ + n == samples_.size() ? 0 : next_ + n;
+    return n;
+  }
+
+  std::unique_ptr<EstimatorStage<N>> estimator_;
+  std::unique_ptr<DetectorStage<N>> detector_;
+  std::vector<Measurement<N>> samples_;
+  std::vector<Estimate<N>> estimates_ = std::vector<Estimate<N>>(kBatch);
+  std::vector<Detection> detections_ = std::vector<Detection>(kBatch);
+  std::size_t next_ = 0;
+};
+
+}  // namespace tauext

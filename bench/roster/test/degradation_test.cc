@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/degradation.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "mjcf/test/error_of.h"
+
+namespace tauext::test {
+namespace {
+
+class DegradationFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = testing::TempDir() + "degradation_" +
+            testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  Degradation read(const std::string& text, Degradation d = {}) {
+    std::ofstream(path_) << text;
+    read_degradation(path_, d);
+    return d;
+  }
+  std::string error(const std::string& text) {
+    const std::string what = error_of([&] { read(text); });
+    EXPECT_EQ(what.find(path_ + ": "), 0u) << what;
+    return what;
+  }
+
+  std::string path_;
+};
+
+TEST_F(DegradationFile, SetsWhatItNamesAndLeavesTheRest) {
+  Degradation before;
+  before.sensors.encoder_step = 1e-4;
+  const Degradation d = read(R"({ "velocity_noise": 1e-3, "dropped": 0.01, "seed": 7,  // a comment
+                                  "loadcell": { "hysteresis": 0.002 },
+                                  "model_error": { "mass": 1.05, "friction": 2 } })",
+                             before);
+  EXPECT_EQ(d.sensors.velocity_noise, 1e-3);
+  EXPECT_EQ(d.sensors.dropped, 0.01);
+  EXPECT_EQ(d.sensors.seed, 7u);
+  EXPECT_EQ(d.sensors.loadcell.hysteresis, 0.002);
+  EXPECT_EQ(d.sensors.loadcell.scale, 1);
+  EXPECT_EQ(d.model_error.mass, 1.05);
+  EXPECT_EQ(d.model_error.friction, 2);
+  EXPECT_EQ(d.sensors.encoder_step, 1e-4);
+}
+
+TEST_F(DegradationFile, SaysWhatIsWrongAndKnowsBetter) {
+  EXPECT_NE(error("{").find("parse error"), std::string::npos);
+  EXPECT_NE(error("[1]").find("a JSON object is wanted"), std::string::npos);
+  EXPECT_NE(error(R"({"velocity_nose": 1})")
+                .find("sensors: there is no key 'velocity_nose'; known: "
+                      "velocity_noise [rad/s] 0 to 1e+09, encoder_step [rad] 0 to 1"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"model_error": {"weight": 1}})")
+                .find("model_error: there is no key 'weight'; "
+                      "known: mass [1] 0.01 to 100, com [m] -10 to 10"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"loadcell": 3})").find("\"loadcell\" is no object"), std::string::npos);
+  EXPECT_NE(error(R"({"latency": "long"})").find("\"latency\" is \"long\", no number"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"dropped": 1})").find("dropped=1: it must be 0 to 0.99; known: "),
+            std::string::npos);
+  EXPECT_NE(error(R"({"loadcell": {"hysteresis": -1}})")
+                .find("loadcell.hysteresis=-1: it must be 0 to 1; known: "),
+            std::string::npos);
+  EXPECT_EQ(error_of([] {
+              Degradation d;
+              read_degradation("/nowhere/x.json", d);
+            }),
+            "/nowhere/x.json: cannot open");
+}
+
+TEST_F(DegradationFile, ABadOneChangesNothing) {
+  Degradation d;
+  std::ofstream(path_) << R"({"velocity_noise": 1, "nonsense": 2})";
+  EXPECT_THROW(read_degradation(path_, d), std::runtime_error);
+  EXPECT_EQ(describe(d), "");
+}
+
+TEST(SetFields, TakesKeysAndNumbersAndRefusesTheRest) {
+  ModelError e;
+  set_fields({"mass=0.9", "com=-0.01"}, e);
+  EXPECT_EQ(e.mass, 0.9);
+  EXPECT_EQ(e.com, -0.01);
+  const std::string known = "; known: mass [1] 0.01 to 100, com [m] -10 to 10, friction [N m]";
+  const std::pair<const char*, const char*> wrong[] = {
+      {"mass", "'mass' is not key=value"},     {"mass=", "'mass=' is not key=value"},
+      {"=1", "'=1' is not key=value"},         {"", "'' is not key=value"},
+      {"mass=1x", "mass=1x: not a number"},    {"mass=0", "mass=0: it must be 0.01 to 100"},
+      {"weight=1", "there is no key 'weight'"}};
+  for (const auto& [item, why] : wrong) {
+    EXPECT_EQ(error_of([&] { set_fields({item}, e); }).find("model_error: " + (why + known)), 0u)
+        << item;
+  }
+}
+
+// the limits are those of mjcf/, which has them from nobody here
+TEST(SetFields, LimitsAreThoseThatASimulationTakes) {
+  const auto simulates = [](const Sensors& s) { return error_of([&] { SensorStream(s, 3, {}); }); };
+  for (const char* item :
+       {"velocity_noise=1e9", "encoder_step=1", "loadcell_noise=1e5", "latency=1", "tau_latency=1",
+        "jitter=1", "dropped=0.99", "repeated=0.99", "loadcell.scale=1e3", "loadcell.offset=-1e6",
+        "loadcell.hysteresis=1", "loadcell.nonlinearity=-1", "loadcell.noise=1e6",
+        "loadcell.step=1e6", "loadcell.full_scale=1e6"}) {
+    Sensors s;
+    EXPECT_EQ(error_of([&] { set_fields({item}, s); }), "no error") << item;
+    EXPECT_EQ(simulates(s), "no error") << item;
+    const std::string beyond = item + std::string("1");  // ten times as much, or more than 0.99
+    EXPECT_NE(error_of([&] { set_fields({beyond}, s); }).find("it must be"), std::string::npos)
+        << beyond;
+  }
+}
+
+TEST(Ideal, AreSensorsWhateverTheirSeedAndFullScale) {
+  Sensors s;
+  s.seed = 7;
+  s.loadcell.full_scale = 500;
+  EXPECT_TRUE(s.ideal());
+  EXPECT_TRUE(s.loadcell.ideal());
+  for (const char* fault :
+       {"velocity_noise=1e-9", "encoder_step=1e-9", "loadcell_noise=1e-9", "latency=1e-9",
+        "tau_latency=1e-9", "jitter=1e-9", "dropped=1e-9", "repeated=1e-9", "loadcell.scale=1.01",
+        "loadcell.offset=-1", "loadcell.hysteresis=1e-9", "loadcell.nonlinearity=-1e-9",
+        "loadcell.noise=1e-9", "loadcell.step=1e-9"}) {
+    Sensors faulty = s;
+    set_fields({fault}, faulty);
+    EXPECT_FALSE(faulty.ideal()) << fault;
+    EXPECT_EQ(faulty.loadcell.ideal(), std::string(fault).find("loadcell.") != 0) << fault;
+  }
+  for (const char* error : {"mass=1.01", "com=-1e-9", "friction=1", "viscous=1", "armature=1"}) {
+    ModelError e;
+    EXPECT_TRUE(e.none());
+    set_fields({error}, e);
+    EXPECT_FALSE(e.none()) << error;
+  }
+}
+
+TEST(Describe, NamesWhatIsNotIdealAndNothingElse) {
+  EXPECT_EQ(describe({}), "");
+  Degradation d;
+  d.sensors.jitter = 2e-4;
+  d.sensors.loadcell.scale = 1.01;
+  d.model_error.mass = 1.05;
+  EXPECT_EQ(describe(d), "jitter=0.0002 loadcell.scale=1.01 model_error.mass=1.05");
+}
+
+}  // namespace
+}  // namespace tauext::test

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/file_robot.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "bench/kit/allocations.h"
+#include "bench/roster/baselines.h"
+#include "bench/score/metrics.h"
+#include "mjcf/plant/arm_dynamics.h"
+
+namespace tauext {
+namespace {
+
+namespace fs = std::filesystem;
+
+// an arm of n hinges about z and y in turn, in space, with rotors and friction; position servos instead of motors
+// make it one that can only be watched
+std::string arm(int n, bool motors = true) {
+  std::string bodies, ends, actuators;
+  for (int j = 1; j <= n; ++j) {
+    bodies += fmt::format(
+        "<body pos='0 0 0.3'><joint name='j{0}' axis='{1}' damping='0.4' armature='0.1'/>"
+        "<geom type='capsule' fromto='0 0 0 0.05 0.02 0.3' size='0.05' mass='{2}'/>",
+        j, j % 2 == 1 ? "0.3 0 1" : "0 1 0.2", 4.0 / j);
+    ends += "</body>";
+    actuators += motors ? fmt::format("<motor joint='j{}'/>", j)
+                        : fmt::format("<position joint='j{}' kp='100'/>", j);
+  }
+  return "<mujoco><option integrator='RK4' timestep='0.001'/><worldbody>" + bodies +
+         "<site name='end_effector' pos='0 0 0.3'/>" + ends + "</worldbody><actuator>" + actuators +
+         "</actuator><contact/></mujoco>";
+}
+
+class FileRobot : public testing::TestWithParam<int> {
+ protected:
+  FileRobot() : path_(fs::temp_directory_path() / fmt::format("tauext_arm_{}.xml", ::getpid())) {}
+  ~FileRobot() override { fs::remove(path_); }
+  std::string put(const std::string& xml) const {
+    std::ofstream(path_) << xml;
+    return path_.string();
+  }
+  std::string error(const std::string& xml) const {
+    try {
+      file_robot(put(xml));
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return "no error";
+  }
+  fs::path path_;
+};
+
+// the truth is what the simulation was given
+TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
+  const int n = GetParam();
+  const std::unique_ptr<const Robot> owned = file_robot(put(arm(n)));
+  const Robot& r = *owned;
+  EXPECT_EQ(r.dof(), n);
+  Scenario s = quiet();
+  s.duration = 3;
+  s.start_on_reference = true;
+  s.reference = [](double t) { return sine_motion(0.3, 3, t); };
+  s.tau_ext = [](double t) { return t < 1 ? 0 : 5; };
+  const Trace trace = record(load_mjcf(path_.string()), s);
+  for (const std::string& e : r.estimators()) {
+    if (is_baseline(e)) continue;
+    const Output out = r.runner(e, "", trace)->run();
+    Score score;
+    add_error_metrics(trace, out, 2, score);
+    EXPECT_LT(*score.get(Metric::kRmse), 0.02) << e;  // of 5 N m
+    Score before;
+    add_error_metrics(select_samples(trace,
+                                     [] {
+                                       std::vector<int> first;
+                                       for (int k = 0; k < 990; ++k) first.push_back(k);
+                                       return first;
+                                     }()),
+                      {out.tau_ext.leftCols(990), {}, {}}, 0, before);
+    EXPECT_LT(*before.get(Metric::kMax), 0.05) << e;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(OneToSevenJoints, FileRobot, testing::Range(1, 8),
+                         [](const auto& i) { return fmt::format("{}_joints", i.param); });
+
+TEST_P(FileRobot, NoStepAllocates) {
+  const int n = GetParam();
+  const std::unique_ptr<const Robot> owned = file_robot(put(arm(n)));
+  const Robot& r = *owned;
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, 0.3), qd = q, tau = q;
+  Eigen::VectorXd out(n);
+  for (const std::string& e : r.estimators()) {
+    if (is_baseline(e)) continue;
+    const auto stepper = r.stepper(e, "contact_classifier", Trace());
+    stepper->step(0, q.data(), qd.data(), tau.data(), out.data());
+    EXPECT_EQ(allocations_of([&] {
+                for (int k = 1; k < 10; ++k) {
+                  stepper->step(1e-3 * k, q.data(), qd.data(), tau.data(), out.data());
+                }
+              }),
+              0u)
+        << e;
+  }
+}
+
+TEST_F(FileRobot, AGearIsTheMotorsAndNotTheJoints) {
+  std::string geared = arm(2);
+  for (std::size_t at = 0; (at = geared.find("<motor ", at)) != std::string::npos; ++at) {
+    geared.insert(at + 7, "gear='100' ");
+  }
+  const MjcfArm<2> with(load_mjcf(put(geared))), without(load_mjcf(put(arm(2))));
+  const Vec<2> q(0.1, -0.4);
+  EXPECT_EQ(with.inertia(q), without.inertia(q));
+  EXPECT_EQ(with.gravity(q), without.gravity(q));
+}
+
+TEST_F(FileRobot, PositionServosAreFineForAnArmThatIsWatched) {
+  const std::string servos = put(arm(3, false));
+  const MjcfArm<3> watched(load_mjcf(servos)), driven(load_mjcf(put(arm(3))));
+  const Vec<3> q(0.1, -0.4, 0.7), qd(1, 0.5, -2);
+  EXPECT_EQ(watched.bias(q, qd), driven.bias(q, qd));
+  EXPECT_EQ(watched.inertia(q), driven.inertia(q));
+}
+
+TEST_F(FileRobot, WhatIsNoArmIsRefusedWithItsName) {
+  const auto refuses = [&](const std::string& xml, const std::string& why) {
+    const std::string what = error(xml);
+    EXPECT_NE(what.find(path_.string()), std::string::npos) << what;
+    EXPECT_NE(what.find(why), std::string::npos) << what;
+  };
+  refuses(arm(8), "8 joints: 1 to 7 are supported");
+  refuses("<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>",
+          "hinges and slides");
+  refuses("<mujoco><worldbody/></mujoco>", "hinges and slides");
+  refuses(
+      "<mujoco><worldbody><body><joint stiffness='3'/><geom size='1'/></body></worldbody></mujoco>",
+      "springs");
+  refuses(
+      "<mujoco><option density='1.2'/><worldbody><body><joint/><geom "
+      "size='1'/></body></worldbody></mujoco>",
+      "air");
+  refuses(
+      "<mujoco><worldbody><body><joint name='a'/><geom size='1'/></body></worldbody><tendon><fixed "
+      "damping='1'>"
+      "<joint joint='a' coef='1'/></fixed></tendon></mujoco>",
+      "tendons");
+  refuses("no xml", "");
+}
+
+}  // namespace
+}  // namespace tauext

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/roster/threshold_file.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/roster/robots.h"
+#include "mjcf/trace/atomic_file.h"
+
+namespace tauext {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "tauext-thresholds-1";
+
+Json to_json(const Trained& t) {
+  Json j;
+  j["threshold"] = std::vector<double>(t.threshold.begin(), t.threshold.end());
+  for (const auto& row : t.metric.rowwise()) {
+    j["metric"].push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return j;
+}
+
+Eigen::VectorXd vector_of(const Json& j, int dof, const std::string& where) {
+  const auto values = j.get<std::vector<double>>();
+  if (static_cast<int>(values.size()) != dof) {
+    throw std::runtime_error(
+        fmt::format("{}: {} numbers for {} joints", where, values.size(), dof));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), dof);
+}
+
+Trained trained_of(const Json& j, int dof, const std::string& where) {
+  Trained t{vector_of(j.at("threshold"), dof, where), {}};
+  if (!(t.threshold.minCoeff() > 0)) {
+    throw std::runtime_error(
+        fmt::format("{}: a threshold of {} is not positive", where, t.threshold.minCoeff()));
+  }
+  if (!j.contains("metric")) return t;
+  if (j["metric"].size() != static_cast<std::size_t>(dof)) {
+    throw std::runtime_error(
+        fmt::format("{}: the metric has {} rows for {} joints", where, j["metric"].size(), dof));
+  }
+  t.metric.resize(dof, dof);
+  for (int i = 0; i < dof; ++i) t.metric.row(i) = vector_of(j["metric"][i], dof, where).transpose();
+  return t;
+}
+
+ThresholdSet set_of(const Json& j) {
+  ThresholdSet set;
+  set.robot = j.at("robot").get<std::string>();
+  set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
+  const Robot& r = robot(set.robot);
+  for (const auto& [estimator, detectors] : j.at("thresholds").items()) {
+    r.estimator_fields(estimator);  // throws if it is unknown
+    for (const auto& [detector, values] : detectors.items()) {
+      r.detector_fields(detector);
+      set.by_estimator[estimator][detector] =
+          trained_of(values, r.dof(), fmt::format("{}/{}+{}", set.robot, estimator, detector));
+    }
+  }
+  return set;
+}
+
+}  // namespace
+
+void write_thresholds(const Thresholds& t, const std::string& path) {
+  Json j;
+  j["format"] = kFormat;
+  j["trained_on"] = t.trained_on;
+  j["margin"] = t.margin;
+  j["units"] = "each detector's statistic, see estimators/detectors/; one value per joint";
+  j["sets"] = Json::array();
+  for (const ThresholdSet& s : t.sets) {
+    Json set;
+    set["robot"] = s.robot;
+    set["velocity_noise_rad_s"] = s.velocity_noise;
+    for (const auto& [estimator, detectors] : s.by_estimator) {
+      for (const auto& [detector, values] : detectors) {
+        set["thresholds"][estimator][detector] = to_json(values);
+      }
+    }
+    j["sets"].push_back(set);
+  }
+  AtomicFile file(path);
+  file.write(j.dump(2) + "\n");
+  file.commit();
+}
+
+Thresholds read_thresholds(const std::string& path) {
+  try {
+    std::ifstream in(path);
+    if (!in) throw std::runtime_error("cannot open");
+    const Json j = Json::parse(in);
+    if (j.at("format") != kFormat) {
+      throw std::runtime_error(
+          fmt::format("\"format\" is {}, not \"{}\"; write it with "
+                      "tauext-detect --calibrate",
+                      j.at("format").dump(), kFormat));
+    }
+    Thresholds t;
+    t.trained_on = j.at("trained_on").get<std::string>();
+    t.margin = j.at("margin").get<double>();
+    for (const Json& set : j.at("sets")) t.sets.push_back(set_of(set));
+    return t;
+  } catch (const Json::exception& e) {
+    throw std::runtime_error(fmt::format(
+        "{}: no file of thresholds, as tauext-detect --calibrate writes it: {}", path, e.what()));
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+  }
+}
+
+DetectorThresholds trained_for(const ThresholdSet& set, const std::string& estimator,
+                               const std::string& detector) {
+  const auto found = set.by_estimator.find(estimator);
+  if (found == set.by_estimator.end()) return {};
+  DetectorThresholds known = found->second;
+  const auto own = known.find(detector);
+  if (own != known.end())
+    known[std::string(name_of_specification(detector))] = Trained(own->second);
+  return known;
+}
+
+}  // namespace tauext

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Detector thresholds that come from data: what --calibrate writes and the suite reads.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tauext {
+
+/// What training says of one detector.
+struct Trained {
+  Eigen::VectorXd threshold;  ///< in the unit of its statistic, per joint
+  Eigen::MatrixXd metric;     ///< [1] of a detector that has one; else empty
+};
+
+/// The detectors behind one estimator. One that is not in it keeps its defaults.
+using DetectorThresholds = std::map<std::string, Trained>;
+
+/// Thresholds of one robot behind sensors of one quality, by estimator.
+struct ThresholdSet {
+  std::string robot;                                       ///< its name
+  double velocity_noise = 0;                               ///< [rad/s] of the training traces
+  std::map<std::string, DetectorThresholds> by_estimator;  ///< by specification
+};
+
+/// A parameter file.
+struct Thresholds {
+  std::string trained_on;  ///< in words
+  double margin = 1;       ///< [1] threshold over the largest value in training, as an amplitude
+  std::vector<ThresholdSet> sets;  ///< in no order
+
+  /// The set of this robot for sensors of this quality: the least noisy one that is as noisy, or
+  /// else the noisiest. Empty if there is none of this robot.
+  ThresholdSet of(const std::string& robot, double velocity_noise) const;
+};
+
+inline ThresholdSet Thresholds::of(const std::string& robot, double velocity_noise) const {
+  const ThresholdSet* best = nullptr;
+  for (const ThresholdSet& s : sets) {
+    if (s.robot != robot) continue;
+    const bool enough = s.velocity_noise >= velocity_noise;
+    const bool had_enough = best != nullptr && best->velocity_noise >= velocity_noise;
+    const bool better =
+        best == nullptr || (enough && !had_enough) ||
+        (enough == had_enough && (s.velocity_noise < best->velocity_noise) == enough);
+    if (better) best = &s;
+  }
+  return best == nullptr ? ThresholdSet{.robot = robot} : *best;
+}
+
+}  // namespace tauext

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/score/detection_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tauext {
+namespace metrics {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// one past the last sample of the collision that begins at sample k, rebounds and grace included
+std::size_t end_of_collision(const std::vector<double>& t, const std::vector<std::uint8_t>& contact,
+                             std::size_t k) {
+  std::size_t last = k;  // sample of contact
+  std::size_t j = k + 1;
+  for (; j < t.size(); ++j) {
+    const bool goes_on = contact[j] && last == j - 1;  // whatever the time between two samples
+    if (!goes_on && t[j] > t[last] + kGrace) break;
+    if (contact[j]) last = j;
+  }
+  return j;
+}
+
+}  // namespace
+
+DetectionScore detection_score(const std::vector<double>& t,
+                               const std::vector<std::uint8_t>& contact,
+                               const std::vector<std::uint8_t>& marks) {
+  DetectionScore s;
+  s.delay = kNaN;
+  const std::size_t n = t.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!contact[k]) {
+      s.false_alarms += marks[k] != 0;
+      continue;
+    }
+    ++s.collisions;
+    const std::size_t end = end_of_collision(t, contact, k);
+    std::size_t first = k;
+    while (first < end && !marks[first]) ++first;
+    if (first < end) {
+      ++s.detected;
+      s.delay = std::fmax(s.delay, t[first] - t[k]);
+    }
+    k = end - 1;
+  }
+  if (n > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (t.back() - t.front());
+  return s;
+}
+
+double overtravel(const Trace& trace) {
+  const int at = trace.stopped_at;
+  if (at < 0) return kNaN;
+  double most = 0;
+  for (int j = 0; j < trace.dof(); ++j) {
+    const double sense = trace.qd(j, at) < 0 ? -1 : 1;
+    const auto after = trace.q.row(j).tail(trace.size() - at).array();
+    most = std::max(most, (sense * (after - trace.q(j, at))).maxCoeff());
+  }
+  return most;
+}
+
+double peak(const std::vector<double>& force) {
+  return force.empty() ? 0 : *std::max_element(force.begin(), force.end());
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return kNaN;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];
+}
+
+double poisson_upper(int count) {
+  // P(at most `count`) falls with the mean
+  const auto probability = [&](double mean) {
+    double sum = 0;
+    for (int k = 0; k <= count; ++k)
+      sum += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
+    return sum;
+  };
+  double least = count + 1e-9, most = count + 10 + 5 * std::sqrt(count + 1.);
+  for (int i = 0; i < 60; ++i) {
+    const double mean = (least + most) / 2;
+    (probability(mean) > 0.05 ? least : most) = mean;
+  }
+  return least;
+}
+
+}  // namespace metrics
+
+void add_detection_metrics(const Trace& trace, const Output& out, Score& score) {
+  if (out.marks.empty() || trace.contact.empty()) return;
+  const metrics::DetectionScore d = metrics::detection_score(trace.t, trace.contact, out.marks);
+  if (d.collisions > 0) {
+    score.set(Metric::kDelay, d.delay);
+    score.set(Metric::kRecall, static_cast<double>(d.detected) / d.collisions);
+  }
+  score.set(Metric::kFalseAlarms, d.false_alarms);
+  score.set(Metric::kFalseAlarmsPerHour, d.false_alarms_per_hour);
+}
+
+void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score) {
+  score.set(Metric::kOvertravel, metrics::overtravel(stopped));
+  score.set(Metric::kPeak, metrics::peak(stopped.contact_force));
+  score.set(Metric::kPeakUnstopped, metrics::peak(free.contact_force));
+}
+
+}  // namespace tauext

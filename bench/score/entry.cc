@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/score/entry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/roster/baselines.h"
+#include "bench/roster/robots.h"
+
+namespace tauext {
+namespace {
+
+// building the pair tells what is wrong with it; copies of the truth need a sample of one
+void require_known(const Robot& r, std::string_view estimator, std::string_view detector) {
+  Trace one;
+  one.t = {0};
+  one.q = one.qd = one.tau = one.tau_ext = Eigen::MatrixXd::Zero(r.dof(), 1);
+  r.stepper(estimator, detector, one);
+}
+
+// what is selected of the estimators or of the detectors
+class Selected {
+ public:
+  enum class Kind { kEstimators, kDetectors };
+
+  Selected(Kind kind, const std::vector<std::string>& specifications)
+      : kind_(kind), specifications_(specifications) {
+    for (const std::string& s : specifications_) {
+      if (std::count(specifications_.begin(), specifications_.end(), s) > 1) {
+        throw std::invalid_argument(fmt::format("'{}' is named twice", s));
+      }
+      require_on_some_robot(s);
+    }
+  }
+
+  std::vector<std::string> of(const Robot& r) const {
+    std::vector<std::string> all = specifications_.empty() ? names(r) : specifications_;
+    std::erase_if(all, [&](const std::string& s) {
+      return specifications_.empty() ? kind_ == Kind::kDetectors && study_only(s)
+                                     : !error(r, s).empty();
+    });
+    return all;
+  }
+
+ private:
+  std::vector<std::string> names(const Robot& r) const {
+    return kind_ == Kind::kEstimators ? r.estimators() : r.detectors();
+  }
+
+  // why a robot cannot run it; "" if it can
+  std::string error(const Robot& r, const std::string& specification) const {
+    try {
+      if (kind_ == Kind::kEstimators) {
+        require_known(r, specification, "");
+      } else {
+        require_known(r, r.estimators().front(), specification);
+      }
+      return "";
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+  }
+
+  // the error of a robot that knows the name says more than that of one that does not
+  void require_on_some_robot(const std::string& specification) const {
+    std::string unknown_name, wrong_keys;
+    for (const auto& r : robots()) {
+      const std::string e = error(*r, specification);
+      if (e.empty()) return;
+      const std::vector<std::string> known = names(*r);
+      const bool named = std::count(known.begin(), known.end(),
+                                    std::string(name_of_specification(specification))) > 0;
+      std::string& first = named ? wrong_keys : unknown_name;
+      if (first.empty()) first = e;
+    }
+    throw std::invalid_argument(wrong_keys.empty() ? unknown_name : wrong_keys);
+  }
+
+  Kind kind_;
+  const std::vector<std::string>& specifications_;
+};
+
+}  // namespace
+
+Entry::Entry(std::string_view robot, std::string_view scenario, std::string_view estimator,
+             std::string_view detector)
+    : robot_(&tauext::robot(robot)),
+      scenario_(&scenario_of(*robot_, scenario)),
+      estimator_(estimator),
+      detector_(detector) {
+  require_known(*robot_, estimator_, detector_);
+}
+
+std::string Entry::group() const {
+  return robot_->name() + "/" + scenario_->name;
+}
+
+std::string Entry::name() const {
+  return group() + "/" + estimator_ + (detector_.empty() ? "" : "+" + detector_);
+}
+
+Entry Entry::with_detector(const std::string& detector) const {
+  Entry e = *this;
+  e.detector_ = detector;
+  return e;
+}
+
+std::vector<Entry> entries(const Selection& selection) {
+  const Selected estimators(Selected::Kind::kEstimators, selection.estimators);
+  const Selected detectors(Selected::Kind::kDetectors, selection.detectors);
+  std::vector<Entry> all;
+  for (const auto& known : robots()) {
+    const Robot& r = *known;
+    const std::vector<std::string> of_robot = estimators.of(r), behind = detectors.of(r);
+    for (const Scenario& s : scenarios(r.name())) {
+      for (const std::string& e : of_robot) all.push_back(Entry(r, s, e));
+      if (s.response != Response::kDetection && s.response != Response::kLag) continue;
+      for (const std::string& e : of_robot) {
+        if (is_baseline(e)) continue;
+        for (const std::string& d : behind) all.push_back(Entry(r, s, e).with_detector(d));
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace tauext

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The metrics of estimates, each defined once. A signal is one joint's row over the samples; `truth`
+/// and `estimate` are tau_ext [N m]; NaN says that a metric does not exist for these signals.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "bench/roster/stages.h"
+#include "bench/score/score.h"
+#include "mjcf/scenario.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+namespace metrics {
+
+/// A row of a matrix: a value for each sample.
+using Signal = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+using Times = std::vector<double>;  ///< [s], increasing
+
+/// [N m] root of the mean squared error over samples with t >= from.
+double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] mean of estimate - truth over samples with t >= from.
+double bias(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] largest |estimate - truth| over samples with t >= from.
+double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [s] when |estimate - truth| is largest, over samples with t >= from; NaN without a sample.
+double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run, over
+/// samples with t >= from.
+double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from);
+
+/// [N m] mean of estimate - truth over the last second: where an estimate ends up.
+double final_error(const Times& t, const Signal& truth, const Signal& estimate);
+
+/// The answer to the largest jump of the truth, from level a to level b at time t_s. A crossing
+/// lies on the straight line between two samples.
+struct StepResponse {
+  double rise;       ///< [s] from first reaching 10 % to first reaching 90 % of the way from a to b
+  double rise_0_90;  ///< [s] from t_s to first reaching 90 %
+  double
+      settling;  ///< [s] from t_s to last entering b +- 2 % of b - a; NaN if it never stays there
+  double overshoot;  ///< [%] of b - a, beyond b; at least 0
+};
+/// The answer of that estimate to that truth.
+StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate);
+
+/// [s] the delay L, at sample resolution and up to 2 s, for which truth(t - L) is closest to
+/// estimate(t) in the mean square over t >= from + 2 s. NaN for a constant truth or estimate, for a
+/// shorter run, and if no delay below 2 s fits best.
+double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [rad/s] -3 dB: the frequency at which the estimate's answer to a swept sine first falls below
+/// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's own
+/// spectrum, each a mean over a band of 10 %. NaN if it does not fall or already has at 0.7 rad/s, if the
+/// truth does not cover these frequencies, or if samples are not evenly spaced (within 1 %).
+double bandwidth(const Times& t, const Signal& truth, const Signal& estimate);
+
+}  // namespace metrics
+
+/// The errors of a trace's estimates, over samples with t >= from [s].
+void add_error_metrics(const Trace& trace, const Output& output, double from, Score& score);
+
+/// What sensor noise adds: two estimates of one run, over samples with t >= from [s]. Nothing if samples were
+/// dropped, so that the two are of different lengths.
+void add_noise_metric(const Trace& trace, const Output& ideal, const Output& noisy, double from,
+                      Score& score);
+
+/// What scenario.response asks for.
+void add_response_metrics(const Trace& trace, const Output& output, const Scenario& scenario,
+                          Score& score);
+
+}  // namespace tauext

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What an entry was worth.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/score/metric_list.h"
+
+namespace tauext {
+
+/// A value for each metric that exists for the run, NaN where it has no value ("never settles"), and the values
+/// of the joints where the metric is judged joint by joint.
+class Score {
+ public:
+  std::string error;  ///< why the entry failed; "" if it did not
+
+  /// Nothing for a metric that does not exist for the run.
+  std::optional<double> get(Metric m) const { return values_[index(m)]; }
+
+  /// By joint, from 0; empty unless the metric exists and is judged joint by joint.
+  const std::vector<double>& joints(Metric m) const { return joints_[index(m)]; }
+
+  /// @throws std::out_of_range for a joint that has no value
+  double joint(Metric m, int j) const { return joints(m).at(static_cast<std::size_t>(j)); }
+
+  /// Whether nothing was scored yet.
+  bool empty() const;
+
+  void set(Metric m, double value) { values_[index(m)] = value; }  ///< NaN for "never"
+
+  /// Sets the joints' values and that of the worst of them.
+  void set_joints(Metric m, std::vector<double> values);
+
+  /// Every value by its key, those of joints after that of the entry.
+  std::vector<std::pair<std::string, double>> by_key() const;
+
+ private:
+  static constexpr std::size_t index(Metric m) { return static_cast<std::size_t>(m); }
+
+  std::array<std::optional<double>, kMetricCount> values_;
+  std::array<std::vector<double>, kMetricCount> joints_;
+};
+
+}  // namespace tauext

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/score/suite.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bench/kit/allocations.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/score/detection_metrics.h"
+#include "bench/score/metrics.h"
+
+namespace tauext {
+namespace {
+
+const char* name_of(Status s) {
+  switch (s) {
+    case Status::kOk:
+      return "ok";
+    case Status::kStarted:
+      return "started";
+    case Status::kBadMeasurement:
+      return "bad measurement";
+    case Status::kSingularInertia:
+      return "singular inertia";
+    case Status::kDiverged:
+      return "diverged";
+  }
+  return "?";
+}
+
+double allocations_per_step(Runner& runner) {
+  runner.batch();  // the first batch may fill caches of its own
+  const auto before = allocations();
+  runner.batch();
+  return static_cast<double>(allocations() - before) / Runner::kBatch;
+}
+
+}  // namespace
+
+std::string bad_status(const Trace& trace, const Output& out) {
+  for (int k = 0; k < trace.size(); ++k) {
+    if (!out.tau_ext.col(k).allFinite()) return fmt::format("not finite at t = {} s", trace.t[k]);
+    const Status s = out.status[k];
+    if (s == Status::kOk || (s == Status::kStarted && k == 0)) continue;
+    return fmt::format("{} at t = {} s", name_of(s), trace.t[k]);
+  }
+  return "";
+}
+
+std::string failure(const Trace& ideal, const Output& out, double from) {
+  if (std::string bad = bad_status(ideal, out); !bad.empty()) return bad;
+  constexpr double kSlack = 5;  // [N m]
+  for (int j = 0; j < ideal.dof(); ++j) {
+    const auto truth = ideal.tau_ext.row(j);
+    const double error = metrics::rmse(ideal.t, truth, out.tau_ext.row(j), from);
+    const double guess =
+        metrics::rmse(ideal.t, truth, Eigen::RowVectorXd::Zero(ideal.size()), from);
+    if (error <= 1.5 * guess + kSlack) continue;
+    return fmt::format(
+        "wrong answer: {:.3g} N m rms on joint {}, where an estimate of 0 has {:.3g}", error, j + 1,
+        guess);
+  }
+  return "";
+}
+
+DetectorSettings Suite::settings(const Entry& e) const {
+  const ThresholdSet set =
+      options_.thresholds.of(e.robot().name(), options_.sensors.velocity_noise);
+  return {.thresholds = trained_for(set, e.estimator(), e.detector())};
+}
+
+const Suite::Traces& Suite::traces(const Entry& e) {
+  const std::string key = e.closed_loop() ? e.name() : e.group();
+  const auto it = traces_.find(key);
+  if (it != traces_.end()) return it->second;
+  Traces t;
+  const Scenario& s = e.scenario();
+  t.ideal = simulate(
+      load_for(e.robot().name(), s, options_.model_error), s, options_.recording, options_.sensors,
+      e.closed_loop() ? e.robot().supervisor(e.estimator(), e.detector(), settings(e)) : nullptr);
+  Sensors sensors = options_.sensors;
+  if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
+  t.noisy = measure(t.ideal, sensors);
+  return traces_.emplace(key, std::move(t)).first->second;
+}
+
+const Trace& Suite::scored(const Entry& e) {
+  return options_.sensors.ideal() ? traces(e).ideal : traces(e).noisy;
+}
+
+std::unique_ptr<Runner> Suite::runner(const Entry& e, const Trace& trace) const {
+  return e.robot().runner(e.estimator(), e.detector(), trace, settings(e));
+}
+
+std::unique_ptr<Runner> Suite::runner(const Entry& e) {
+  return runner(e, scored(e));
+}
+
+Suite::Run Suite::run(const Entry& e) {
+  Run r{scored(e), runner(e)->run(), {}};
+  if (!e.detector().empty()) {
+    r.detections = e.robot().detect(e.detector(), r.trace, r.output, settings(e));
+  }
+  return r;
+}
+
+// with a wrong model an estimate may be as wrong as that: then it only has to be one
+std::string Suite::error(const Entry& e, const Output& ideal, const Output& noisy) {
+  const Traces& recorded = traces(e);
+  const std::string bad = options_.model_error.none()
+                              ? failure(recorded.ideal, ideal, e.scenario().score_from)
+                              : bad_status(recorded.ideal, ideal);
+  if (!bad.empty()) return bad;
+  const std::string rejected = bad_status(recorded.noisy, noisy);
+  return rejected.empty() ? "" : "under sensor noise: " + rejected;
+}
+
+Score Suite::score(const Entry& e) {
+  const Scenario& s = e.scenario();
+  const Traces& recorded = traces(e);
+  const auto ideal_runner = runner(e, recorded.ideal);
+  const Output ideal = ideal_runner->run();
+  const Output noisy = runner(e, recorded.noisy)->run();
+
+  Score score;
+  score.error = error(e, ideal, noisy);
+  const Trace& trace = scored(e);
+  const Output& out = options_.sensors.ideal() ? ideal : noisy;
+  add_error_metrics(trace, out, s.score_from, score);
+  add_noise_metric(trace, ideal, noisy, s.score_from, score);
+  add_response_metrics(trace, out, s, score);
+  add_detection_metrics(trace, out, score);
+  if (e.closed_loop()) {
+    add_reaction_metrics(recorded.ideal, traces(e.with_detector("")).ideal, score);
+  }
+  if (allocations_are_counted()) score.set(Metric::kAllocs, allocations_per_step(*ideal_runner));
+  return score;
+}
+
+}  // namespace tauext

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Scoring: every entry is judged on a recorded trace before anything is timed.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/roster/robot.h"
+#include "bench/score/entry.h"
+#include "bench/score/score.h"
+#include "mjcf/record.h"
+
+namespace tauext {
+
+/// What is the same for all entries of a run.
+struct SuiteOptions {
+  Sensors sensors;            ///< of the scored trace
+  ModelError model_error;     ///< of the robot that is scored
+  Recording recording;        ///< how the robot is simulated
+  Thresholds thresholds;      ///< of the detectors; those that are not in it keep their defaults
+  double noise_probe = 1e-3;  ///< [rad/s] velocity noise behind noise_Nm when `sensors` are ideal
+};
+
+/// The first estimate that is not finite or whose status says that it is an old one; "" for none.
+std::string bad_status(const Trace& trace, const Output& output);
+
+/// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one is
+/// not finite, a status says so, or from time `from` [s] on some joint's rmse exceeds
+/// 1.5 times that of an estimate of 0 by more than 5 N m.
+std::string failure(const Trace& ideal, const Output& output, double from);
+
+/// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is recorded
+/// anew for each pair of estimator and detector, whose mark then stops the motor. Safe for one thread.
+class Suite {
+ public:
+  /// For scores of these sensors, errors and thresholds.
+  explicit Suite(const SuiteOptions& options) : options_(options) {}
+
+  /// Runs the entry and judges it.
+  Score score(const Entry& entry);
+
+  /// What score() judges: the trace, and what the entry makes of it.
+  struct Run {
+    const Trace& trace;                 ///< kept by the suite
+    Output output;                      ///< of the entry
+    std::vector<Detection> detections;  ///< empty without a detector
+  };
+  /// Runs the entry.
+  Run run(const Entry& entry);
+
+  /// A runner over the trace that was scored, for the clock.
+  std::unique_ptr<Runner> runner(const Entry& entry);
+
+  const SuiteOptions& options() const { return options_; }  ///< as constructed
+
+ private:
+  struct Traces {
+    Trace ideal, noisy;  // noisy: by `sensors`, or by the noise probe if these are ideal
+  };
+  DetectorSettings settings(const Entry& entry) const;
+  std::unique_ptr<Runner> runner(const Entry& entry, const Trace& trace) const;
+  std::string error(const Entry& entry, const Output& ideal, const Output& noisy);
+  const Traces& traces(const Entry& entry);
+  const Trace& scored(const Entry& entry);
+
+  SuiteOptions options_;
+  std::map<std::string, Traces> traces_;  // by group; a closed loop's by name
+};
+
+}  // namespace tauext

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/score/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "bench/roster/baselines.h"
+
+namespace tauext {
+namespace {
+
+// what is printed decides who is best: two values that read the same are both best
+double rounded(double value, int digits) {
+  const double scale = std::pow(10, digits);
+  return std::round(value * scale) / scale;
+}
+
+bool competes(const Row& r, const MetricRow& m) {
+  const bool untouched = m.is(MetricRow::kZeroIsNoMerit) && r.score.get(m.metric) == 0;
+  return !is_baseline(r.entry.estimator()) && r.score.error.empty() && !untouched;
+}
+
+bool rivals(const Row& a, const Row& b) {
+  return a.entry.group() == b.entry.group() &&
+         a.entry.detector().empty() == b.entry.detector().empty();
+}
+
+// the best value that a competitor of the row reached, if two of them differ
+std::optional<double> best(const std::vector<Row>& rows, const Row& row, const MetricRow& m) {
+  if (!m.is(MetricRow::kStar) || m.better == Better::kNeither) return std::nullopt;
+  std::vector<double> values;
+  bool never = false;
+  for (const Row& r : rows) {
+    const auto value = r.score.get(m.metric);
+    if (!value || !rivals(r, row) || !competes(r, m)) continue;
+    never = never || std::isnan(*value);
+    if (!std::isnan(*value)) values.push_back(rounded(*value, m.digits));
+  }
+  if (values.empty()) return std::nullopt;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (*least == *most && !never) return std::nullopt;
+  return m.better == Better::kLess ? *least : *most;
+}
+
+std::string cell(const std::vector<Row>& rows, const Row& row, const MetricRow& m) {
+  const auto value = row.score.get(m.metric);
+  if (!value || !row.score.error.empty()) return "-";
+  if (std::isnan(*value)) return "never";
+  const bool mark = competes(row, m) && rounded(*value, m.digits) == best(rows, row, m);
+  return fmt::format("{:.{}f}", *value, m.digits) +
+         (mark ? std::string(1, TableWriter::kMark) : "");
+}
+
+bool failed(const Row& r) {
+  return !r.score.error.empty();
+}
+
+// of the table's metrics those that some row has
+std::vector<const MetricRow*> columns_of(const std::vector<Row>& rows) {
+  std::vector<const MetricRow*> columns;
+  for (const MetricRow& m : kMetrics) {
+    const auto has = [&](const Row& r) { return !failed(r) && r.score.get(m.metric); };
+    if (m.is(MetricRow::kTable) && std::any_of(rows.begin(), rows.end(), has))
+      columns.push_back(&m);
+  }
+  return columns;
+}
+
+// read by programs, which know columns by keys
+bool by_keys(TableFormat format) {
+  return format == TableFormat::kCsv || format == TableFormat::kJson;
+}
+
+TableWriter::Column column_of(const MetricRow& m, TableFormat format) {
+  if (by_keys(format)) return {std::string(m.key)};
+  return {std::string(m.title), std::string(m.unit)};
+}
+
+const char* text_of(Better b) {
+  switch (b) {
+    case Better::kLess:
+      return "less";
+    case Better::kMore:
+      return "more";
+    case Better::kNeither:
+      return "neither";
+  }
+  return "";
+}
+
+const char* text_of(WorstJoint j) {
+  switch (j) {
+    case WorstJoint::kNone:
+      return "";
+    case WorstJoint::kLargest:
+      return "largest";
+    case WorstJoint::kSmallest:
+      return "smallest";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string format_table(const std::vector<Row>& rows, TableFormat format) {
+  const std::vector<const MetricRow*> metrics = columns_of(rows);
+  std::vector<TableWriter::Column> columns = {
+      {.title = by_keys(format) ? "entry" : "robot/scenario/estimator", .left = true}};
+  for (const MetricRow* m : metrics) columns.push_back(column_of(*m, format));
+  // text tells a failure across the columns
+  const bool tells = format != TableFormat::kText && std::any_of(rows.begin(), rows.end(), failed);
+  if (tells) columns.push_back({.title = "error", .left = true});
+  TableWriter table(std::move(columns));
+  std::string group;
+  for (const Row& r : rows) {
+    if (!group.empty() && r.entry.group() != group) table.add_gap();
+    group = r.entry.group();
+    if (failed(r) && !tells) {
+      table.add_note(r.entry.name() + "  FAILED: " + r.score.error);
+      continue;
+    }
+    std::vector<std::string> cells = {r.entry.name()};
+    for (const MetricRow* m : metrics) cells.push_back(cell(rows, r, *m));
+    if (tells) cells.push_back(r.score.error);
+    table.add(std::move(cells));
+  }
+  return table.format(format);
+}
+
+std::string table_legend(const std::vector<Row>& rows) {
+  std::string out =
+      "Each row shows its worst joint. * is the best of a group; zero, truth and delayed_truth do "
+      "not compete.\n";
+  for (const MetricRow* m : columns_of(rows)) {
+    out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
+  }
+  return out;
+}
+
+std::string list_of_metrics(TableFormat format) {
+  TableWriter table({{.title = "key", .left = true},
+                     {.title = "column", .left = true},
+                     {.title = "unit", .left = true},
+                     {.title = "better", .left = true},
+                     {.title = "worst joint", .left = true},
+                     {.title = "gated", .left = true},
+                     {.title = "what it says", .left = true}});
+  for (const MetricRow& m : kMetrics) {
+    table.add({fmt::format("`{}`", m.key), std::string(m.is(MetricRow::kTable) ? m.title : ""),
+               std::string(m.unit), text_of(m.better), text_of(m.joints),
+               m.is(MetricRow::kGate) ? "yes" : "no", std::string(m.meaning)});
+  }
+  return table.format(format);
+}
+
+}  // namespace tauext

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/score/golden.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "mjcf/test/error_of.h"
+
+namespace tauext::test {
+namespace {
+
+GoldenOptions small() {
+  GoldenOptions o;
+  o.filter = "testbed1/(collision/(truth|ekf.pan_tompkins)|hold/delayed_truth)$";
+  o.seeds = {1, 7};
+  return o;
+}
+
+const std::string& text() {
+  static const std::string once = golden_metrics(small());
+  return once;
+}
+
+TEST(Golden, HasALineForEachEntryAndMetricSorted) {
+  std::istringstream in(text());
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  EXPECT_EQ(lines.front(), "# tauext golden metrics 1");
+  EXPECT_EQ(lines.back(), "# end");
+  EXPECT_TRUE(std::is_sorted(lines.begin() + 5, lines.end() - 1));
+  EXPECT_NE(text().find("\nentry\tmetric\ttolerance\tseed 1\tseed 7\n"), std::string::npos)
+      << text();
+}
+
+TEST(Golden, TheBaselinesScoreWhatTheyAreMadeFor) {
+  EXPECT_NE(text().find("testbed1/collision/truth\trmse_Nm\t1e-6\t0\t0\n"), std::string::npos)
+      << text();
+  EXPECT_NE(text().find("testbed1/hold/delayed_truth\tfailed\t1e-9\t0\t0\n"), std::string::npos);
+}
+
+TEST(Golden, LeavesOutSingleJointsAndWhatIsNotGated) {
+  for (const char* key : {"_joint", "\tfalse_alarms_per_hour"}) {
+    EXPECT_EQ(text().find(key), std::string::npos) << key;
+  }
+  EXPECT_NE(text().find("\trise_0_90_s"), std::string::npos);
+}
+
+TEST(Golden, IsTheSameTextWithAnyNumberOfThreads) {
+  GoldenOptions o = small();
+  o.threads = 3;
+  EXPECT_EQ(golden_metrics(o), text());
+}
+
+TEST(Golden, HasTheSelectedSpecificationsAlone) {
+  GoldenOptions o;
+  o.selection.estimators = {"mo2:bandwidth=50"};
+  o.filter = "testbed1/hold/";
+  o.seeds = {1};
+  const std::string selected = golden_metrics(o);
+  EXPECT_NE(selected.find("\ntestbed1/hold/mo2:bandwidth=50\trmse_Nm\t1e-9\t"), std::string::npos)
+      << selected;
+  EXPECT_EQ(selected.find("/ekf\t"), std::string::npos);
+}
+
+TEST(Golden, RefusesAFilterThatMatchesNothingAndNoSeed) {
+  GoldenOptions o = small();
+  o.filter = "nosuchthing";
+  EXPECT_NE(error_of([&] { golden_metrics(o); }).find("'nosuchthing' matches nothing"),
+            std::string::npos);
+  o.filter.assign(1, '(');
+  EXPECT_NE(error_of([&] { golden_metrics(o); }).find("'(' is no regular expression"),
+            std::string::npos);
+  o = small();
+  o.seeds.clear();
+  EXPECT_NE(error_of([&] { golden_metrics(o); }).find("need a seed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tauext::test

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metrics on signals whose answer is known by hand.
+#include "bench/score/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench/score/detection_metrics.h"
+#include "mjcf/scenario.h"
+
+namespace tauext::test {
+namespace {
+
+using namespace metrics;  // NOLINT(google-build-using-namespace)
+using Row = Eigen::RowVectorXd;
+
+Times times(int n, double Ts = 1e-3) {
+  Times t(n);
+  for (int k = 0; k < n; ++k) t[k] = k * Ts;
+  return t;
+}
+
+template <class F>
+Row signal(const Times& t, F&& f) {
+  Row x(t.size());
+  for (std::size_t k = 0; k < t.size(); ++k) x[k] = f(t[k]);
+  return x;
+}
+
+TEST(ErrorMetrics, OfFourSamples) {
+  const Times t = times(4, 1);
+  const Row truth = (Row(4) << 0, 0, 10, 10).finished(),
+            estimate = (Row(4) << 100, 3, 6, 10).finished();
+  EXPECT_DOUBLE_EQ(rmse(t, truth, estimate, 1), std::sqrt((9. + 16 + 0) / 3));
+  EXPECT_DOUBLE_EQ(bias(t, truth, estimate, 1), (3. - 4 + 0) / 3);
+  EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 1), 4);
+  EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 0), 100) << "the start counts if asked";
+  EXPECT_DOUBLE_EQ(time_of_max_error(t, truth, estimate, 1), t[2]);
+  EXPECT_DOUBLE_EQ(time_of_max_error(t, truth, estimate, 0), t[0]);
+  EXPECT_TRUE(std::isnan(time_of_max_error(t, truth, estimate, 100)));
+}
+
+TEST(Noise, IsTheDeviationOfTheDifferenceWithoutItsMean) {
+  const Times t = times(4, 1);
+  const Row ideal = Row::Zero(4), noisy = (Row(4) << 7, 3, 7, 3).finished();
+  EXPECT_DOUBLE_EQ(noise(t, ideal, noisy, 0), 2);
+}
+
+// the answer of a first-order filter of bandwidth K to a step from a to b at 1 s
+Row first_order(const Times& t, double K, double a, double b) {
+  return signal(t, [=](double s) { return s < 1 ? a : b + (a - b) * std::exp(-K * (s - 1)); });
+}
+Row step(const Times& t, double a, double b) {
+  return signal(t, [=](double s) { return s < 1 ? a : b; });
+}
+
+TEST(StepResponse, OfAFirstOrderFilterIsInClosedForm) {
+  const Times t = times(5000);
+  for (const auto& [a, b] : {std::pair(0., 98.2), std::pair(20., -30.)}) {
+    const StepResponse r = step_response(t, step(t, a, b), first_order(t, 10, a, b));
+    EXPECT_NEAR(r.rise, std::log(9) / 10, 1e-5) << "straight lines between samples leave h^2 K / 8";
+    EXPECT_NEAR(r.rise_0_90, std::log(10) / 10, 1e-5);
+    EXPECT_NEAR(r.settling, std::log(50) / 10, 1e-5);
+    EXPECT_EQ(r.overshoot, 0);
+  }
+}
+
+TEST(StepResponse, OfASecondOrderFilterOvershootsByItsDamping) {
+  // zeta = 0.5: overshoot exp(-pi zeta / sqrt(1 - zeta^2)) = 16.3 %
+  const Times t = times(5000);
+  const double w = 10, zeta = 0.5, wd = w * std::sqrt(1 - zeta * zeta);
+  const Row x = signal(t, [=](double s) {
+    const double u = s - 1;
+    return u < 0 ? 0
+                 : 1 - std::exp(-zeta * w * u) *
+                           (std::cos(wd * u) + zeta * w / wd * std::sin(wd * u));
+  });
+  EXPECT_NEAR(step_response(t, step(t, 0, 1), x).overshoot,
+              100 * std::exp(-M_PI * zeta / std::sqrt(1 - zeta * zeta)), 0.01);
+}
+
+TEST(StepResponse, OfThePerfectEstimateIsZero) {
+  const Times t = times(3000);
+  const StepResponse r = step_response(t, step(t, 0, 5), step(t, 0, 5));
+  EXPECT_EQ(r.rise, 0);
+  EXPECT_EQ(r.rise_0_90, 0);
+  EXPECT_EQ(r.settling, 0);
+}
+
+TEST(StepResponse, OfAnEstimateThatNeverArrivesIsNaN) {
+  const Times t = times(3000);
+  const StepResponse r = step_response(t, step(t, 0, 5), step(t, 0, 4));
+  EXPECT_TRUE(std::isnan(r.rise));
+  EXPECT_TRUE(std::isnan(r.settling));
+  EXPECT_TRUE(std::isnan(step_response(t, step(t, 5, 5), step(t, 0, 4)).rise))
+      << "no step, no answer";
+}
+
+TEST(Lag, OfADelayedSignalIsExactlyItsDelay) {
+  const Times t = times(20000);
+  const auto truth = [](double s) { return 10 * std::sin(s) + 5 * std::cos(2 * s); };
+  for (const int delay : {0, 1, 17, 400, 1999}) {
+    const Row late = signal(t, [&](double s) { return truth(s - delay * 1e-3); });
+    EXPECT_NEAR(lag(t, signal(t, truth), late, 3), delay * 1e-3, 1e-12);
+  }
+}
+
+TEST(Lag, OfAFirstOrderFilterOnARampIsOneOverItsBandwidth) {
+  const Times t = times(20000);
+  const Row truth = signal(t, [](double s) { return 5 * s; });
+  const Row late = signal(t, [](double s) { return 5 * (s - (1 - std::exp(-20 * s)) / 20); });
+  EXPECT_NEAR(lag(t, truth, late, 3), 1. / 20, 1e-9);
+}
+
+TEST(Lag, OfAnAnswerThatIsNoneIsNaN) {
+  const Times t = times(20000);
+  const Row moving = signal(t, [](double s) { return std::sin(s); }), still = Row::Zero(20000);
+  EXPECT_TRUE(std::isnan(lag(t, moving, still, 0)));
+  EXPECT_TRUE(std::isnan(lag(t, still, moving, 0)));
+  EXPECT_TRUE(std::isnan(lag(times(100), moving.head(100), moving.head(100), 0)))
+      << "too short to tell";
+}
+
+std::vector<std::uint8_t> flags(int n, std::initializer_list<std::pair<int, int>> ranges) {
+  std::vector<std::uint8_t> f(n, 0);
+  for (const auto& [first, last] : ranges) std::fill(f.begin() + first, f.begin() + last + 1, 1);
+  return f;
+}
+
+TEST(DetectionScore, CountsEachCollisionOnceAndTheRestAsFalse) {
+  // two collisions; the first marked after 15 ms and again (no matter), the second missed; one mark
+  // before everything and one 0.3 s after the first contact are false
+  const Times t = times(3600);
+  const auto contact = flags(3600, {{1000, 1019}, {2000, 2019}});
+  const auto marks = flags(3600, {{100, 100}, {1015, 1015}, {1100, 1100}, {1320, 1320}});
+  const DetectionScore s = detection_score(t, contact, marks);
+  EXPECT_EQ(s.collisions, 2);
+  EXPECT_EQ(s.detected, 1);
+  EXPECT_DOUBLE_EQ(s.delay, t[1015] - t[1000]);
+  EXPECT_EQ(s.false_alarms, 2);
+  EXPECT_NEAR(s.false_alarms_per_hour, 2 * 3600 / 3.599, 1e-9);
+}
+
+// an arm that was stopped 15 ms after the first contact touches again twice, 0.18 s apart each time
+TEST(DetectionScore, ReboundsWithinTheGraceAreTheSameCollision) {
+  const Times t = times(3000);
+  const auto contact = flags(3000, {{1000, 1019}, {1200, 1209}, {1390, 1399}});
+  const DetectionScore s = detection_score(t, contact, flags(3000, {{1015, 1015}}));
+  EXPECT_EQ(s.collisions, 1);
+  EXPECT_EQ(s.detected, 1);
+  EXPECT_DOUBLE_EQ(s.delay, t[1015] - t[1000]);
+  EXPECT_EQ(s.false_alarms, 0);
+}
+
+TEST(DetectionScore, AMarkAtTheReboundIsLateByTheTimeFromTheFirstContact) {
+  const Times t = times(3000);
+  const auto contact = flags(3000, {{1000, 1019}, {1200, 1209}});
+  const DetectionScore s = detection_score(t, contact, flags(3000, {{1205, 1205}, {1500, 1500}}));
+  EXPECT_EQ(s.collisions, 1);
+  EXPECT_DOUBLE_EQ(s.delay, t[1205] - t[1000]);
+  EXPECT_EQ(s.false_alarms, 1) << "0.29 s after the last contact";
+}
+
+TEST(DetectionScore, AContactBeyondTheGraceIsAnotherCollision) {
+  const Times t = times(3000);
+  const auto contact = flags(3000, {{1000, 1019}, {1221, 1230}});
+  const DetectionScore s = detection_score(t, contact, flags(3000, {{1015, 1015}}));
+  EXPECT_EQ(s.collisions, 2);
+  EXPECT_EQ(s.detected, 1);
+}
+
+TEST(DetectionScore, AContactThatLastsIsOneHoweverFarApartItsSamplesAre) {
+  const Times t = times(10, 1);
+  const DetectionScore s = detection_score(t, flags(10, {{2, 6}}), flags(10, {{5, 5}}));
+  EXPECT_EQ(s.collisions, 1);
+  EXPECT_EQ(s.delay, 3);
+}
+
+TEST(DetectionScore, WithoutContactEveryMarkIsFalseAndThereIsNoDelay) {
+  const DetectionScore s = detection_score(times(100), flags(100, {}), flags(100, {{5, 5}}));
+  EXPECT_EQ(s.collisions, 0);
+  EXPECT_EQ(s.false_alarms, 1);
+  EXPECT_TRUE(std::isnan(s.delay));
+}
+
+TEST(Metrics, FinalErrorIsTheMeanOfTheLastSecond) {
+  const Times t = {0, 1, 2, 2.5, 3};
+  const Eigen::RowVectorXd truth = Eigen::RowVectorXd::Constant(5, 10);
+  Eigen::RowVectorXd estimate(5);
+  estimate << 0, 0, 10, 11, 12;
+  EXPECT_DOUBLE_EQ(final_error(t, truth, estimate), 1);
+}
+
+TEST(Metrics, OvertravelIsTheWayOnInTheDirectionOfTheMotion) {
+  Trace trace;
+  trace.t = {0, 1, 2, 3, 4};
+  trace.q.resize(2, 5);
+  trace.q << 0, 1, 1.5, 1.2, 0.5,  // moves up, stopped at 1
+      0, -1, -1.1, -1.2, -0.5;
+  trace.qd.resize(2, 5);
+  trace.qd << 1, 1, 0, 0, 0, -1, -1, 0, 0, 0;
+  EXPECT_TRUE(std::isnan(overtravel(trace))) << "nothing stopped it";
+  trace.stopped_at = 1;
+  EXPECT_DOUBLE_EQ(overtravel(trace), 0.5);
+}
+
+TEST(Metrics, PeakIsTheLargestForce) {
+  EXPECT_EQ(peak({1, 7, 3}), 7);
+  EXPECT_EQ(peak({}), 0);
+}
+
+// a swept sine through a first-order low-pass K, exactly discretised for a held input
+struct Swept {
+  Times t;
+  Eigen::RowVectorXd truth, estimate;
+  explicit Swept(double K, double h = 1e-3) {
+    const Scenario& chirp = scenario("wallmobot3", "chirp");
+    const int n = static_cast<int>(chirp.duration / h);
+    truth.resize(n);
+    estimate.resize(n);
+    double y = 0;
+    for (int k = 0; k < n; ++k) {
+      t.push_back(k * h);
+      estimate[k] = y;
+      truth[k] = chirp.tau_ext(t[k]);
+      y += -std::expm1(-K * h) * (truth[k] - y);
+    }
+  }
+};
+
+TEST(Bandwidth, OfAFirstOrderLowPassIsItsPole) {
+  for (const double K : {2., 10., 30., 100., 200.}) {
+    const Swept s(K);
+    EXPECT_NEAR(bandwidth(s.t, s.truth, s.estimate), K, 0.02 * K);
+  }
+}
+
+TEST(Bandwidth, DoesNotExistWhereNothingFallsOrNothingIsSwept) {
+  const Swept s(10);
+  const Row nothing = Row::Zero(s.truth.size());
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, s.truth)));
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, nothing)));
+  EXPECT_TRUE(std::isnan(bandwidth(s.t, nothing, s.estimate)));
+  Times uneven = s.t;
+  uneven[100] += 0.5e-3;
+  EXPECT_TRUE(std::isnan(bandwidth(uneven, s.truth, s.estimate)));
+}
+
+TEST(PoissonUpper, IsThatOfTheTables) {
+  // Garwood's limits: half the 95 % quantile of chi squared with 2 (n + 1) degrees of freedom
+  EXPECT_NEAR(poisson_upper(0), -std::log(0.05), 1e-6);
+  EXPECT_NEAR(poisson_upper(1), 4.744, 1e-3);
+  EXPECT_NEAR(poisson_upper(10), 16.962, 1e-3);
+  EXPECT_NEAR(poisson_upper(100), 118.08, 0.01);
+}
+
+TEST(Quantile, IsTheSmallestThatEnoughDoNotExceed) {
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.5), 2);
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.95), 4);
+  EXPECT_EQ(quantile({7}, 0), 7);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+}  // namespace
+}  // namespace tauext::test

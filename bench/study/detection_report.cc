@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/detection_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/score/detection_metrics.h"
+#include "bench/score/metric_list.h"
+#include "bench/study/study_runs.h"
+
+namespace tauext::study {
+namespace {
+
+using metrics::poisson_upper;
+using metrics::quantile;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kLegend = R"(
+recall: share of the blows that were marked until 0.2 s after their end. p50, p95: half, and 95 %
+of these marks come within this time from the blow's begin. stray: other marks in the same runs.
+alarms: marks in free motion and slow pushes, where nothing is hit; with 95 % confidence there are
+fewer of them per hour than `fewer than`. on: share of that time in which the detector is in
+alarm. called: marks there that are called a collision. brisk: share of the pushes of 100 N in
+0.1 s that were marked. clamping: share of the soft clampings that were marked while they held.
+named: share that was also called a clamping. failed: runs in which an estimate was missing; they
+count like the others.
+)";
+
+std::string percent(double part, double of) {
+  return of == 0 ? "-" : fmt::format("{:.1f}", 100 * part / of);
+}
+
+std::string per_hour(double alarms, const Cell& c) {
+  return c.quiet_samples == 0 ? "-" : fmt::format("{:.1f}", alarms / c.hours());
+}
+
+std::vector<TableWriter::Column> columns() {
+  return {{"estimator+detector", "", true},
+          {"recall", "%"},
+          {"p50", "ms"},
+          {"p95", "ms"},
+          {"stray", "marks"},
+          {"alarms", "1/h"},
+          {"fewer than", "1/h"},
+          {"on", "%"},
+          {"called", "collision"},
+          {"brisk", "%"},
+          {"clamping", "%"},
+          {"named", "%"},
+          {"failed", "runs"}};
+}
+
+std::vector<std::string> cells_of(const Cell& c) {
+  return {c.estimator + "+" + c.detector,
+          percent(c.detected, c.blows),
+          milliseconds(quantile(c.delays, 0.5)),
+          milliseconds(quantile(c.delays, 0.95)),
+          fmt::to_string(c.stray),
+          per_hour(c.alarms, c),
+          per_hour(poisson_upper(c.alarms), c),
+          percent(static_cast<double>(c.alarmed_samples), static_cast<double>(c.quiet_samples)),
+          fmt::to_string(c.collision_alarms),
+          percent(c.brisk_flagged, c.brisk),
+          percent(c.clampings_flagged, c.clampings),
+          percent(c.clampings_named, c.clampings),
+          fmt::to_string(c.failed_runs)};
+}
+
+std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
+  std::string out;
+  for (auto first = cells.begin(); first != cells.end();) {
+    const auto last = std::find_if(first, cells.end(),
+                                   [&](const Cell& c) { return c.condition != first->condition; });
+    out += fmt::format("{}{}: {}; {} blows, {:.2f} h, {} brisk pushes, {} clampings\n",
+                       out.empty() ? "" : "\n", first->condition,
+                       condition(runs, first->condition).description, first->blows, first->hours(),
+                       first->brisk, first->clampings);
+    TableWriter table(columns());
+    for (; first != last; ++first) table.add(cells_of(*first));
+    out += table.format();
+  }
+  return out + kLegend;
+}
+
+Json number(double x) {
+  return std::isnan(x) ? Json(nullptr) : Json(x);
+}
+
+Json roc_of(const Cell& c) {
+  Json roc;
+  for (std::size_t i = 0; i < kLevels.size(); ++i) {
+    Json point;
+    point["threshold_factor"] = kLevels[i];
+    point["recall"] = c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
+    if (c.quiet_samples > 0)
+      point[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms_at[i] / c.hours();
+    roc.push_back(point);
+  }
+  return roc;
+}
+
+Json to_json(const Cell& c) {
+  Json j;
+  j["condition"] = c.condition;
+  j["estimator"] = c.estimator;
+  j["detector"] = c.detector;
+  j["runs"] = c.runs;
+  j["failed_runs"] = c.failed_runs;
+  j["collisions"] = c.blows;
+  j["detected"] = c.detected;
+  j["recall"] = c.recall();
+  j["delay_p50_s"] = number(quantile(c.delays, 0.5));
+  j["delay_p95_s"] = number(quantile(c.delays, 0.95));
+  j["stray_marks"] = c.stray;
+  j["quiet_h"] = c.hours();
+  j[key_of(Metric::kFalseAlarms)] = c.alarms;
+  j["quiet_time_in_alarm_h"] = static_cast<double>(c.alarmed_samples) * 1e-3 / 3600;
+  j["false_alarms_called_collision"] = c.collision_alarms;
+  if (c.quiet_samples > 0) {
+    j[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms / c.hours();
+    j["false_alarms_per_hour_upper95"] = poisson_upper(c.alarms) / c.hours();
+  }
+  j["brisk_pushes"] = c.brisk;
+  j["brisk_pushes_flagged"] = c.brisk_flagged;
+  j["clampings"] = c.clampings;
+  j["clampings_flagged"] = c.clampings_flagged;
+  j["clampings_named"] = c.clampings_named;
+  j["roc"] = roc_of(c);
+  return j;
+}
+
+Json to_json(const Condition& c) {
+  Json j;
+  j["description"] = c.description;
+  j["panel_kg"] = c.panel;
+  j["believed_kg"] = c.believed;
+  j["degradation"] = describe(c.degradation);
+  return j;
+}
+
+}  // namespace
+
+std::string milliseconds(double s, int digits) {
+  return std::isnan(s) ? "-" : fmt::format("{:.{}f}", 1e3 * s, digits);
+}
+
+std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
+                         TableFormat format) {
+  if (format == TableFormat::kText) return text(touched_runs(robot), cells);
+  std::vector<TableWriter::Column> all = columns();
+  all.insert(all.begin(), {"condition", "", true});
+  TableWriter table(all);
+  for (const Cell& c : cells) {
+    std::vector<std::string> row = cells_of(c);
+    row.insert(row.begin(), c.condition);
+    table.add(row);
+  }
+  return table.format(format);
+}
+
+std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
+                       const Thresholds& thresholds) {
+  const StudyRuns& runs = touched_runs(robot);
+  Json j;
+  j["format"] = "tauext-detection-1";
+  j["robot"] = runs.robot;
+  j["thresholds_trained_on"] = thresholds.trained_on;
+  j["margin"] = thresholds.margin;
+  for (const Condition& c : runs.conditions) {
+    const bool used = std::any_of(cells.begin(), cells.end(),
+                                  [&](const Cell& cell) { return cell.condition == c.name; });
+    if (used) j["conditions"][c.name] = to_json(c);
+  }
+  j["cells"] = Json::array();
+  for (const Cell& c : cells) j["cells"].push_back(to_json(c));
+  return j.dump(1) + "\n";
+}
+
+}  // namespace tauext::study

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What people and programs see of a detection study.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/roster/thresholds.h"
+#include "bench/study/study_counts.h"
+#include "mjcf/trace/table_writer.h"
+
+namespace tauext::study {
+
+/// As text a table for each condition, and what the columns mean; else one table with a column of conditions.
+/// @param robot that was studied; "" for the first one that has runs
+std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
+                         TableFormat format = TableFormat::kText);
+
+/// All of it as JSON text: counts, quantiles, the bound on false alarms, points of the ROC.
+std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
+                       const Thresholds& thresholds);
+
+/// A time [s] in milliseconds for a table; "-" for NaN.
+std::string milliseconds(double s, int digits = 0);
+
+}  // namespace tauext::study

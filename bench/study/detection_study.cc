@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/detection_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/score/parallel.h"
+#include "bench/score/suite.h"
+#include "bench/study/calibration.h"
+#include "bench/study/study_runs.h"
+
+namespace tauext::study {
+namespace {
+
+// seeds from `first` on until their runs hold `count` touches
+void add_jobs(const StudyRuns& runs, const PlantKey& plant, TouchKind kind, std::uint64_t first,
+              int count, std::vector<Job>& jobs) {
+  for (std::uint64_t seed = first; count > 0; ++seed) {
+    jobs.push_back({plant, kind, seed});
+    count -= static_cast<int>(runs.touches(kind, seed).size());
+  }
+}
+
+std::vector<Job> jobs_of(const StudyRuns& study, const PlantKey& plant, const StudyOptions& o) {
+  std::vector<Job> jobs;
+  add_jobs(study, plant, TouchKind::kBlow, o.first_seed, o.blows, jobs);
+  add_jobs(study, plant, TouchKind::kBriskPush, o.first_seed, o.brisk_pushes, jobs);
+  add_jobs(study, plant, TouchKind::kClamp, o.first_seed, o.clampings, jobs);
+  const double scored = study.touched(TouchKind::kSlowPush, 1).duration - kScoreFrom;
+  const int runs = static_cast<int>(std::ceil(o.hours * 3600 / scored - 1e-9));
+  for (int i = 0; i < runs; ++i) jobs.push_back({plant, TouchKind::kSlowPush, o.first_seed + i});
+  return jobs;
+}
+
+// the study's tables, and the work on one run
+class Study {
+ public:
+  Study(const StudyOptions& o, const Thresholds& thresholds)
+      : runs_(touched_runs(o.robot)),
+        estimators_(chosen_estimators(robot(runs_.robot), o.estimators)),
+        detectors_(chosen_detectors(robot(runs_.robot), o.detectors)) {
+    for (const std::string& name : chosen_conditions(runs_, o.conditions, condition_names(runs_))) {
+      add_condition(condition(runs_, name), thresholds);
+    }
+    for (auto& [plant, model] : models_) {
+      model = runs_.model(plant);
+      const std::vector<Job> jobs = jobs_of(runs_, plant, o);
+      jobs_.insert(jobs_.end(), jobs.begin(), jobs.end());
+    }
+  }
+
+  int size() const { return static_cast<int>(jobs_.size()); }
+
+  void run(int i) {
+    const Job& job = jobs_[static_cast<std::size_t>(i)];
+    const Trace truth = simulated(runs_, job, models_.at(job.plant));
+    const std::vector<Touch> touches = runs_.touches(job.kind, job.seed);
+    for (std::size_t c = 0; c < conditions_.size(); ++c) {
+      if (plant_of(*conditions_[c]) != job.plant) continue;
+      run(job, c, measured(truth, conditions_[c]->degradation.sensors, job), touches);
+    }
+  }
+
+  std::vector<Cell> cells() && {
+    for (Cell& c : cells_) std::sort(c.delays.begin(), c.delays.end());
+    return std::move(cells_);
+  }
+
+ private:
+  void add_condition(const Condition& c, const Thresholds& thresholds) {
+    conditions_.push_back(&c);
+    if (!believers_.contains(c.believed)) believers_[c.believed] = runs_.believer(c.believed);
+    models_.try_emplace(plant_of(c), nullptr);
+    sets_.push_back(thresholds.of(runs_.robot, c.degradation.sensors.velocity_noise));
+    for (const std::string& e : estimators_) {
+      for (const std::string& d : detectors_) {
+        cells_.push_back({.condition = c.name, .estimator = e, .detector = d});
+      }
+    }
+  }
+
+  void run(const Job& job, std::size_t c, const Trace& t, const std::vector<Touch>& touches) {
+    const Robot& r = *believers_.at(conditions_[c]->believed);
+    std::vector<Cell> adds;
+    for (const std::string& e : estimators_) {
+      const Output estimates = r.runner(e, "", t)->run();
+      const bool failed = !bad_status(t, estimates).empty();
+      for (const std::string& d : detectors_) {
+        Cell cell{.runs = 1, .failed_runs = failed};
+        const DetectorSettings settings{trained_for(sets_[c], e, d), kStartUp};
+        count(job.kind, t, r.detect(d, t, estimates, settings), touches, cell);
+        adds.push_back(std::move(cell));
+      }
+    }
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < adds.size(); ++i) add(adds[i], cells_[c * adds.size() + i]);
+  }
+
+  const StudyRuns& runs_;
+  std::vector<std::string> estimators_, detectors_;
+  std::vector<const Condition*> conditions_;
+  std::vector<ThresholdSet> sets_;                            // of each condition
+  std::map<double, std::unique_ptr<const Robot>> believers_;  // by the panel that they believe in
+  std::map<PlantKey, Model> models_;
+  std::vector<Job> jobs_;
+  std::vector<Cell> cells_;
+  std::mutex mutex_;  // of cells_
+};
+
+}  // namespace
+
+void check_study(const StudyOptions& o) {
+  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || !(o.hours >= 0 && o.hours <= 1000)) {
+    throw std::invalid_argument("a study has 0 or more touches of each kind, and 0 to 1000 hours");
+  }
+  if (o.blows + o.brisk_pushes + o.clampings == 0 && o.hours == 0) {
+    throw std::invalid_argument("nothing to try: 0 collisions, pushes, clampings and hours");
+  }
+  const double runs = std::max({o.blows, o.brisk_pushes, o.clampings}) + o.hours * 3600;
+  if (static_cast<double>(o.first_seed) + runs >= static_cast<double>(kTrainingSeed)) {
+    throw std::invalid_argument(fmt::format(
+        "seeds from {} on are for calibration: a test would know its training", kTrainingSeed));
+  }
+  const StudyRuns& of = touched_runs(o.robot);
+  chosen_conditions(of, o.conditions, {});
+  chosen_estimators(robot(of.robot), o.estimators);
+  chosen_detectors(robot(of.robot), o.detectors);
+}
+
+std::vector<Cell> detection_study(const StudyOptions& o, const Thresholds& thresholds) {
+  check_study(o);
+  Study study(o, thresholds);
+  parallel_for(
+      study.size(), o.threads, [&](int i) { study.run(i); }, o.progress);
+  return std::move(study).cells();
+}
+
+}  // namespace tauext::study

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/equal_bandwidth.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <stdexcept>
+
+#include "bench/roster/robots.h"
+#include "bench/score/metrics.h"
+#include "bench/score/parallel.h"
+#include "bench/score/suite.h"
+#include "bench/study/detection_report.h"
+#include "mjcf/record.h"
+
+namespace tauext::study {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSettled = 3;  // [s] the start is over
+
+constexpr const char* kLegend =
+    R"(bandwidth: where the gain of the slowest joint falls to -3 dB in `chirp`; design: the parameter
+`bandwidth` that gives it. noise: what a velocity noise of 1e-3 rad/s and an encoder of 17 bits
+add. lag: how far the estimate is behind `sine`. to 90 %, overshoot: the answer to `step`. mass:
+mean error if the last link is 5 % heavier than the model says. friction: rms error under a dry
+friction of 5 N m that the model does not know. step: CPU time. Every figure is that of the worst
+joint.
+)";
+constexpr const char* kNever = "never: no design comes within 25 % of this bandwidth.\n";
+
+void require_scenarios(const Robot& r, const std::vector<std::string>& wanted) {
+  std::vector<std::string> lacks = wanted;
+  try {
+    for (const Scenario& s : scenarios(r.name())) std::erase(lacks, s.name);
+  } catch (const std::invalid_argument&) {  // it has none at all
+  }
+  if (lacks.empty()) return;
+  throw std::invalid_argument(fmt::format("this study needs the scenarios {}; {} lacks {}",
+                                          fmt::join(wanted, ", "), r.name(),
+                                          fmt::join(lacks, ", ")));
+}
+
+Trace run_of(const Robot& r, const char* name, const ModelError& error = {}) {
+  const Scenario& s = scenario(r.name(), name);
+  return simulate(load_for(r.name(), s, error), s);
+}
+
+Output estimate(const Robot& r, const std::string& specification, const Trace& t) {
+  return r.runner(specification, "", t)->run();
+}
+
+// the runs that all estimators share
+struct SharedRuns : StepRuns {
+  explicit SharedRuns(const Robot& r)
+      : StepRuns(r),
+        chirp(run_of(r, "chirp")),
+        sine(run_of(r, "sine")),
+        heavy(run_of(r, "free", {.mass = 1.05})),
+        rubbing(run_of(r, "free", {.friction = 5})) {}
+
+  Trace chirp, sine, heavy, rubbing;
+};
+
+double value(const Score& score, Metric metric) {
+  return score.get(metric).value_or(kNaN);
+}
+
+// what the scenario of this run asks for
+Score response_of(const Robot& r, const std::string& specification, const char* name,
+                  const Trace& t) {
+  Score score;
+  add_response_metrics(t, estimate(r, specification, t), scenario(r.name(), name), score);
+  return score;
+}
+
+Score errors_of(const Robot& r, const std::string& specification, const Trace& t) {
+  Score score;
+  add_error_metrics(t, estimate(r, specification, t), kSettled, score);
+  return score;
+}
+
+double measured_bandwidth(const SharedRuns& runs, const std::string& specification) {
+  return value(response_of(runs.robot, specification, "chirp", runs.chirp), Metric::kBandwidth);
+}
+
+double cpu_seconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double measured_cpu(const SharedRuns& runs, const std::string& specification) {
+  const auto runner = runs.robot.runner(specification, "", runs.free);
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 200; ++i) {
+    const double start = cpu_seconds();
+    runner->batch();
+    best = std::min(best, cpu_seconds() - start);
+  }
+  return 1e9 * best / Runner::kBatch;
+}
+
+Worth worth_of(const SharedRuns& runs, const std::string& specification) {
+  const Robot& r = runs.robot;
+  Worth w;
+  static_cast<NoiseAndDelay&>(w) = noise_and_delay(runs, specification);
+  w.bandwidth = measured_bandwidth(runs, specification);
+  w.lag = value(response_of(r, specification, "sine", runs.sine), Metric::kLag);
+  w.mass_bias = value(errors_of(r, specification, runs.heavy), Metric::kBias);
+  w.friction_rms = value(errors_of(r, specification, runs.rubbing), Metric::kRmse);
+  return w;
+}
+
+// the design whose measured bandwidth comes nearest to w, within 25 %: the secant method in the
+// logarithms, bisection once w lies between two designs. A bandwidth may jump over w where coupled
+// joints hold the gain near -3 dB.
+std::optional<double> design_for(const SharedRuns& runs, const std::string& estimator, double w) {
+  double x = std::log(w), best_x = x, best_f = std::log(1.25);
+  std::optional<double> slow, fast;  // designs on either side
+  bool found = false;
+  for (int i = 0; i < 12; ++i) {
+    const double f = std::log(measured_bandwidth(runs, at_bandwidth(estimator, std::exp(x))) / w);
+    if (std::abs(f) < best_f) {
+      found = true;
+      best_f = std::abs(f);
+      best_x = x;
+    }
+    if (best_f < 0.01) break;
+    if (std::isnan(f)) {
+      x += x > std::log(w) ? -0.5 : 0.5;  // too slow or too fast to be seen by the chirp
+      continue;
+    }
+    (f < 0 ? slow : fast) = x;
+    x = slow && fast ? (*slow + *fast) / 2 : x - std::clamp(1.2 * f, -1.5, 1.5);
+    if (x < std::log(0.01) || x > std::log(1e4)) break;
+  }
+  return found ? std::optional(std::exp(best_x)) : std::nullopt;
+}
+
+std::vector<std::string> cells_of(const AtBandwidth& r) {
+  if (!r.worth) return {r.estimator, "-", "never", "-", "-", "-", "-", "-", "-", "-"};
+  const Worth& x = *r.worth;
+  return {r.estimator,
+          fmt::format("{:.1f}", r.design),
+          fmt::format("{:.1f}", x.bandwidth),
+          fmt::format("{:.3f}", x.noise),
+          milliseconds(x.lag),
+          milliseconds(x.rise_0_90),
+          fmt::format("{:.1f}", x.overshoot),
+          fmt::format("{:.2f}", x.mass_bias),
+          fmt::format("{:.2f}", x.friction_rms),
+          fmt::format("{:.0f}", x.cpu_ns)};
+}
+
+}  // namespace
+
+StepRuns::StepRuns(const Robot& r) : robot(r) {
+  require_scenarios(r, {"step", "free"});
+  step = run_of(r, "step");
+  free = run_of(r, "free");
+  noisy = measure(free, {.velocity_noise = 1e-3, .encoder_step = 4.8e-5});
+}
+
+NoiseAndDelay noise_and_delay(const StepRuns& runs, const std::string& specification) {
+  const Robot& r = runs.robot;
+  Score score = response_of(r, specification, "step", runs.step);
+  tauext::add_noise_metric(runs.free, estimate(r, specification, runs.free),
+                           estimate(r, specification, runs.noisy), kSettled, score);
+  NoiseAndDelay x;
+  x.noise = value(score, Metric::kNoise);
+  x.rise_0_90 = value(score, Metric::kRise0To90);
+  x.overshoot = value(score, Metric::kOvershoot);
+  x.settling = value(score, Metric::kSettling);
+  return x;
+}
+
+std::vector<AtBandwidth> at_equal_bandwidth(const Robot& r, double w, int threads,
+                                            const std::function<void(double)>& progress) {
+  if (!(w >= 1 && w <= 200)) {
+    throw std::invalid_argument(
+        fmt::format("a bandwidth of {} rad/s: 1 to 200 can be measured", w));
+  }
+  require_scenarios(r, {"chirp", "step", "sine", "free"});
+  const SharedRuns runs(r);
+  std::vector<AtBandwidth> rows;
+  for (const std::string& e : r.tunable()) rows.push_back({.estimator = e});
+  const auto work = [&](int i) {
+    AtBandwidth& row = rows[static_cast<std::size_t>(i)];
+    const auto design = design_for(runs, row.estimator, w);
+    if (!design) return;
+    row.design = *design;
+    row.worth = worth_of(runs, at_bandwidth(row.estimator, *design));
+  };
+  parallel_for(static_cast<int>(rows.size()), threads, work, progress);
+  for (AtBandwidth& row : rows) {  // one after the other, for the clock
+    if (row.worth) row.worth->cpu_ns = measured_cpu(runs, at_bandwidth(row.estimator, row.design));
+  }
+  return rows;
+}
+
+std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<AtBandwidth>& rows,
+                                   TableFormat format) {
+  TableWriter table({{"estimator", "", true},
+                     {"design", "rad/s"},
+                     {"bandwidth", "rad/s"},
+                     {"noise", "N m"},
+                     {"lag", "ms"},
+                     {"to 90 %", "ms"},
+                     {"overshoot", "%"},
+                     {"mass", "N m"},
+                     {"friction", "N m"},
+                     {"step", "ns"}});
+  for (const AtBandwidth& row : rows) table.add(cells_of(row));
+  if (format != TableFormat::kText) return table.format(format);
+  const bool all =
+      std::all_of(rows.begin(), rows.end(), [](const AtBandwidth& x) { return bool(x.worth); });
+  return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}", r.name(), w, table.format(),
+                     kLegend, all ? "" : kNever);
+}
+
+}  // namespace tauext::study

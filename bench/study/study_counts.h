@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What is counted of an estimator and a detector under one condition, and what one run adds to it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "estimators/types.h"
+#include "mjcf/touch.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext::study {
+
+/// Multiples of the detector's threshold at which its score is judged, too.
+inline constexpr std::array kLevels = {0.125, 0.25, 0.5, 0.71, 1.0, 1.41, 2.0, 4.0, 8.0};
+
+/// One estimator and detector, by specification, under one condition.
+struct Cell {
+  std::string condition, estimator, detector;  ///< what was counted
+  int runs = 0, failed_runs = 0;     ///< failed: an estimate was missing (any status but ok)
+  int blows = 0, detected = 0;       ///< by a mark until 0.2 s after the blow
+  int stray = 0;                     ///< marks in these runs outside such windows
+  std::vector<double> delays;        ///< [s] from a detected blow's begin to its mark, sorted
+  long quiet_samples = 0;            ///< of slow pushes and free motion, at 1 kHz
+  long alarmed_samples = 0;          ///< of them, where the score is 1 or more
+  int alarms = 0;                    ///< marks in them
+  int collision_alarms = 0;          ///< those that say collision
+  int brisk = 0, brisk_flagged = 0;  ///< brisk pushes, and those that were marked
+  int clampings = 0, clampings_flagged = 0;       ///< by any mark while it holds
+  int clampings_named = 0;                        ///< by a mark that says clamping
+  std::array<int, kLevels.size()> detected_at{};  ///< with thresholds times kLevels
+  std::array<int, kLevels.size()> alarms_at{};    ///< likewise
+
+  double hours() const {
+    return static_cast<double>(quiet_samples) * 1e-3 / 3600;
+  }  ///< [h] without a touch
+  double recall() const {
+    return blows == 0 ? 0 : static_cast<double>(detected) / blows;
+  }  ///< [1] of the blows
+};
+
+/// Counts a run of that kind: what a detector said of it, against the touches that were there.
+void count(TouchKind kind, const Trace& t, const std::vector<Detection>& d,
+           const std::vector<Touch>& touches, Cell& cell);
+
+/// Adds a run to the sum; the names in `sum` stay.
+void add(const Cell& run, Cell& sum);
+
+}  // namespace tauext::study

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The studies that tauext-bench runs instead of its suite, by flags.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "bench/score/suite.h"
+
+namespace tauext {
+
+/// What is studied, of which robot, and where it goes.
+struct StudyFlags {
+  bool reliability = false, pareto = false;  ///< whether that study is asked for
+  std::optional<double> equal_bandwidth;     ///< [rad/s]
+  std::optional<std::string> robot;          ///< else the roster's first one that can be studied so
+  std::optional<std::string> format;  ///< of all tables, as table_format() knows it; else text
+  std::optional<std::string> out;     ///< file, else standard output
+
+  int studies() const {
+    return reliability + pareto + equal_bandwidth.has_value();
+  }  ///< how many are asked for
+};
+
+/// Adds --reliability, --equal-bandwidth, --pareto, --robot and --out of these, and --format of all tables.
+void add_study_flags(CLI::App& app, StudyFlags& flags);
+
+/// Whether a study was asked for.
+/// @throws std::invalid_argument for a flag of the studies without a study, a format that is none, and two
+/// studies in one file of another format than text
+bool wants_study(const StudyFlags& flags);
+
+/// Runs what was asked for, and writes it; the file appears whole or not at all.
+/// @param suite its sensors are those of --reliability; ideal ones stand for a good and a poor encoder
+/// @returns an ExitCode
+/// @throws std::invalid_argument for sensors and model errors that a study would not use
+int run_study(const StudyFlags& flags, const SuiteOptions& suite);
+
+}  // namespace tauext

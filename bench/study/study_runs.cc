@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/study_runs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bench/roster/baselines.h"
+#include "bench/roster/robots.h"
+#include "mjcf/plant/model_error.h"
+#include "mjcf/record.h"
+#include "mjcf/scenario_testbed1.h"
+#include "mjcf/trace/known.h"
+
+namespace tauext::study {
+namespace {
+
+Degradation noisy(double velocity_noise) {
+  Degradation d;
+  d.sensors.velocity_noise = velocity_noise;
+  return d;
+}
+
+Degradation hysteresis() {
+  Degradation d = noisy(1e-4);
+  d.sensors.loadcell.hysteresis = 0.002;  // of 3000 N m
+  return d;
+}
+
+Degradation dry_friction() {
+  Degradation d = noisy(1e-4);
+  d.model_error.friction = 5;  // [N m]
+  return d;
+}
+
+StudyRuns runs_of_wallmobot3() {
+  StudyRuns r{.robot = "wallmobot3"};
+  r.conditions = {
+      {"known_0", "no panel, and the estimators know", 0, 0, noisy(1e-4)},
+      {"known_50", "a panel of 50 kg, known", 50, 50, noisy(1e-4)},
+      {"known_150", "a panel of 150 kg, known", 150, 150, noisy(1e-4)},
+      {"unknown_50", "50 kg, and the estimators believe in none", 50, 0, noisy(1e-4)},
+      {"unknown_150", "150 kg, and the estimators believe in none", 150, 0, noisy(1e-4)},
+      {"noise_known_0", "no panel, known; velocity noise 1e-3 rad/s", 0, 0, noisy(1e-3)},
+      {"noise_known_150", "150 kg, known; velocity noise 1e-3 rad/s", 150, 150, noisy(1e-3)},
+      {"noise_unknown_150", "150 kg, unknown; velocity noise 1e-3 rad/s", 150, 0, noisy(1e-3)},
+      {"hysteresis", "150 kg, known; torque sensors with 6 N m of hysteresis", 150, 150,
+       hysteresis()},
+      {"dry_friction", "150 kg, known; 5 N m of dry friction that the estimators do not know", 150,
+       150, dry_friction()},
+  };
+  // the paper's range, 0 to 150 kg, known and unknown
+  r.training = {"known_0", "known_50", "known_150", "unknown_50", "unknown_150"};
+  r.model = [](const PlantKey& p) {
+    return with_errors(wallmobot3_with_panel(p.panel), {.friction = p.friction});
+  };
+  r.believer = wallmobot3_believing;
+  r.touched = touched_wallmobot3;
+  r.touches = touches_of_wallmobot3;
+  return r;
+}
+
+StudyRuns runs_of_testbed1() {
+  StudyRuns r{.robot = "testbed1"};
+  r.blow = blow_on_testbed1;
+  r.manual = manual_of_testbed1;
+  return r;
+}
+
+// the runs of a robot for which has(runs) holds; of the first one for ""
+const StudyRuns& find(const char* study, const std::string& name, bool (*has)(const StudyRuns&)) {
+  static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
+  if (!name.empty()) robot(name);  // an unknown one is no robot without runs
+  std::vector<std::string> with;
+  for (const StudyRuns& r : all) {
+    if (!has(r)) continue;
+    if (name.empty() || r.robot == name) return r;
+    with.push_back(r.robot);
+  }
+  throw std::invalid_argument(fmt::format("the {} study has runs for {} alone; {} has none", study,
+                                          fmt::join(with, ", "), name));
+}
+
+// what has the name of a known one; its keys are checked by building it
+template <class Build>
+std::vector<std::string> chosen(const char* what, const std::vector<std::string>& asked,
+                                const std::vector<std::string>& known, Build&& build) {
+  for (const std::string& specification : asked) {
+    const std::string name(name_of_specification(specification));
+    if (std::count(known.begin(), known.end(), name) == 0) throw unknown(what, name, known);
+    if (std::count(asked.begin(), asked.end(), specification) > 1) {
+      throw std::invalid_argument(fmt::format("{} '{}' is named twice", what, specification));
+    }
+    build(specification);
+  }
+  return asked.empty() ? known : asked;
+}
+
+std::vector<std::string> competitors(const Robot& r) {
+  std::vector<std::string> names = r.estimators();
+  std::erase_if(names, [](const std::string& n) { return is_baseline(n); });
+  return names;
+}
+
+}  // namespace
+
+PlantKey plant_of(const Condition& c) {
+  return {c.panel, c.degradation.model_error.friction};
+}
+
+const StudyRuns& touched_runs(const std::string& robot) {
+  return find("detection", robot, [](const StudyRuns& r) { return bool(r.touched); });
+}
+
+const StudyRuns& drawn_runs(const std::string& robot) {
+  return find("reliability", robot, [](const StudyRuns& r) { return bool(r.blow); });
+}
+
+const Condition& condition(const StudyRuns& runs, const std::string& name) {
+  return find_known(runs.conditions, "condition", name, [](const auto& c) { return c.name; });
+}
+
+Trace simulated(const StudyRuns& runs, const Job& job, const Model& model) {
+  return simulate(model, runs.touched(job.kind, job.seed));
+}
+
+Trace measured(const Trace& truth, Sensors sensors, const Job& job) {
+  sensors.seed = 4 * job.seed + static_cast<std::uint64_t>(job.kind);
+  return measure(truth, sensors);
+}
+
+std::vector<std::string> condition_names(const StudyRuns& runs) {
+  std::vector<std::string> names;
+  for (const Condition& c : runs.conditions) names.push_back(c.name);
+  return names;
+}
+
+std::vector<std::string> chosen_conditions(const StudyRuns& runs,
+                                           const std::vector<std::string>& asked,
+                                           const std::vector<std::string>& otherwise) {
+  for (const std::string& name : asked) condition(runs, name);
+  return asked.empty() ? otherwise : asked;
+}
+
+std::vector<std::string> chosen_estimators(const Robot& r, const std::vector<std::string>& asked) {
+  return chosen("estimator", asked, competitors(r),
+                [&](const std::string& e) { r.stepper(e, "", Trace()); });
+}
+
+std::vector<std::string> chosen_detectors(const Robot& r, const std::vector<std::string>& asked) {
+  const std::string any = competitors(r).front();
+  return chosen("detector", asked, r.detectors(),
+                [&](const std::string& d) { r.stepper(any, d, Trace()); });
+}
+
+}  // namespace tauext::study

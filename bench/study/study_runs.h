@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All that belongs
+/// to one robot stands in study_runs.cc; the studies themselves know no robot by name. Not installed.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/roster/degradation.h"
+#include "bench/roster/robot.h"
+#include "mjcf/plant/model.h"
+#include "mjcf/touch.h"
+
+namespace tauext::study {
+
+inline constexpr double kScoreFrom = 4;  ///< [s] an estimator has found an unknown panel by then
+inline constexpr double kStartUp = 3;    ///< [s] detectors stay silent
+
+/// What the robot carries, what its estimators believe it does, and how well it measures.
+struct Condition {
+  std::string name, description;  ///< a word, and a line
+  double panel = 0;               ///< [kg] carried
+  double believed = 0;            ///< [kg] in the estimators' model
+  Degradation degradation{};      ///< sensors' faults and model errors
+};
+
+/// Conditions that differ in the sensors alone share their simulated runs.
+struct PlantKey {
+  double panel, friction;                             ///< [kg], [N m]
+  auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
+};
+
+/// What of a condition changes the simulation.
+PlantKey plant_of(const Condition& c);
+
+/// The runs of one robot. A function that is empty stands for runs that the robot does not have.
+struct StudyRuns {
+  std::string robot;  ///< its name
+
+  // of the detection study and of calibration
+  std::vector<Condition> conditions;  ///< all that there are
+  std::vector<std::string> training;  ///< conditions for calibration unless others are named
+  std::function<Model(const PlantKey&)> model;                         ///< the simulated robot
+  std::function<std::unique_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it
+  std::function<Scenario(TouchKind, std::uint64_t seed)> touched;      ///< a run with touches
+  std::function<std::vector<Touch>(TouchKind, std::uint64_t seed)> touches;  ///< those in that run
+
+  // of the reliability study
+  std::function<Scenario(std::uint64_t seed)> blow;    ///< a run with one blow
+  std::function<Scenario(std::uint64_t seed)> manual;  ///< a human's hand moves the arm
+};
+
+/// The runs of a robot for the detection study; "" stands for the first robot that has some.
+/// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those with
+const StudyRuns& touched_runs(const std::string& robot);
+
+/// The runs of a robot for the reliability study; as above.
+const StudyRuns& drawn_runs(const std::string& robot);
+
+/// @throws std::invalid_argument for an unknown name, listing the known ones
+const Condition& condition(const StudyRuns& runs, const std::string& name);
+
+/// One run to simulate.
+struct Job {
+  PlantKey plant;      ///< the robot
+  TouchKind kind;      ///< what touches it
+  std::uint64_t seed;  ///< of the touches
+};
+
+/// The true trace of a run.
+Trace simulated(const StudyRuns& runs, const Job& job, const Model& model);
+
+/// What the sensors make of a run, with a seed of their own.
+Trace measured(const Trace& truth, Sensors sensors, const Job& job);
+
+/// The names asked for, or those that stand for none.
+/// @throws std::invalid_argument for an unknown name, listing the known ones
+std::vector<std::string> chosen_conditions(const StudyRuns& runs,
+                                           const std::vector<std::string>& asked,
+                                           const std::vector<std::string>& otherwise);
+/// All names.
+std::vector<std::string> condition_names(const StudyRuns& runs);
+
+/// The specifications asked for, or every estimator but the baselines; every detector.
+/// @throws std::invalid_argument for an unknown name or key and for a value out of range
+std::vector<std::string> chosen_estimators(const Robot& r, const std::vector<std::string>& asked);
+/// The specifications asked for, or every detector.
+/// @throws std::invalid_argument as chosen_estimators does
+std::vector<std::string> chosen_detectors(const Robot& r, const std::vector<std::string>& asked);
+
+}  // namespace tauext::study

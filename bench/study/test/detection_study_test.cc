@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/detection_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/study/calibration.h"
+#include "bench/study/detection_report.h"
+#include "mjcf/test/error_of.h"
+#include "mjcf/touch.h"
+
+namespace tauext::study::test {
+namespace {
+
+using tauext::test::error_of;
+
+StudyOptions small() {
+  StudyOptions o;
+  o.conditions = {"known_150"};
+  o.estimators = {"mo1"};
+  o.detectors = {"pan_tompkins", "high_pass"};
+  o.blows = 16;
+  o.brisk_pushes = 8;
+  o.clampings = 3;
+  o.hours = 0.01;
+  return o;
+}
+
+const std::vector<Cell>& cells() {
+  static const std::vector<Cell> all = detection_study(small(), {});
+  return all;
+}
+
+TEST(DetectionStudy, TriesAtLeastWhatItWasAskedFor) {
+  ASSERT_EQ(cells().size(), 2u);
+  for (const Cell& c : cells()) {
+    EXPECT_EQ(c.estimator, "mo1");
+    EXPECT_GE(c.blows, 16);
+    EXPECT_GE(c.brisk, 8);
+    EXPECT_GE(c.clampings, 3);
+    EXPECT_GE(c.hours(), 0.01);
+    EXPECT_EQ(c.failed_runs, 0);
+  }
+}
+
+TEST(DetectionStudy, DoesNotDependOnTheNumberOfThreads) {
+  StudyOptions o = small();
+  o.threads = 3;
+  const std::vector<Cell> other = detection_study(o, {});
+  ASSERT_EQ(other.size(), cells().size());
+  EXPECT_EQ(study_json("", other, {}), study_json("", cells(), {}));
+  for (std::size_t i = 0; i < other.size(); ++i) EXPECT_EQ(other[i].delays, cells()[i].delays);
+}
+
+TEST(DetectionStudy, FindsEveryBlowWithAnExactModelAndGoodSensors) {
+  const Cell& c = cells()[0];
+  ASSERT_EQ(c.detector, "pan_tompkins");
+  EXPECT_EQ(c.detected, c.blows);
+  EXPECT_EQ(c.stray, 0);
+  ASSERT_EQ(static_cast<int>(c.delays.size()), c.blows);
+  EXPECT_GT(c.delays.front(), 0);
+  EXPECT_LT(c.delays.back(), 0.03);
+}
+
+TEST(DetectionStudy, HigherThresholdsMarkLess) {
+  const Cell& c = cells()[1];
+  ASSERT_EQ(c.detector, "high_pass");
+  // below some level pushes and blows run into one another
+  for (std::size_t i = 4; i < kLevels.size(); ++i) {
+    EXPECT_LE(c.detected_at[i], c.detected_at[i - 1]);
+    EXPECT_LE(c.alarms_at[i], c.alarms_at[i - 1]);
+  }
+  EXPECT_EQ(c.detected_at[4], c.detected) << "level 1 is the detector itself";
+  EXPECT_EQ(c.detected_at.back(), 0);
+}
+
+TEST(DetectionStudy, ShowsADetectorThatIsInAlarmAllTheTime) {
+  // it marks once, before anything is scored, and never again: no false alarm, and blind
+  ThresholdSet set{.robot = "wallmobot3", .velocity_noise = 1e-4, .by_estimator = {}};
+  set.by_estimator["mo1"]["threshold"] = {Eigen::VectorXd::Constant(3, 1e-9), {}};
+  StudyOptions o = small();
+  o.detectors = {"threshold"};
+  o.brisk_pushes = o.clampings = 0;
+  const Cell c = detection_study(o, {.trained_on = "", .margin = 1, .sets = {set}}).front();
+  EXPECT_EQ(c.alarms, 0);
+  EXPECT_EQ(c.detected, 0);
+  EXPECT_EQ(c.alarmed_samples, c.quiet_samples);
+  EXPECT_EQ(cells()[0].alarmed_samples, 0) << "and one that is not";
+}
+
+TEST(DetectionStudy, ASpecificationOfTheRostersOwnValueIsTheSameEstimator) {
+  StudyOptions o = small();
+  o.estimators = {"mo1", "mo1:bandwidth=30"};  // the roster's bandwidth
+  o.detectors = {"high_pass"};
+  o.brisk_pushes = o.clampings = 0;
+  const std::vector<Cell> both = detection_study(o, {});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[1].estimator, "mo1:bandwidth=30");
+  EXPECT_EQ(both[1].delays, both[0].delays);
+  EXPECT_EQ(both[1].detected_at, both[0].detected_at);
+}
+
+TEST(Calibration, TrainsASpecificationForItself) {
+  CalibrationOptions o;
+  o.conditions = {"known_0"};
+  o.estimators = {"mo1", "mo1:bandwidth=30"};
+  o.detectors = {"high_pass:w=100"};
+  o.runs = 1;
+  const ThresholdSet set = calibrate(o).sets.front();
+  const DetectorThresholds& named = set.by_estimator.at("mo1");
+  EXPECT_EQ(named.at("high_pass").threshold,
+            set.by_estimator.at("mo1:bandwidth=30").at("high_pass").threshold)
+      << "the roster's own bandwidth";
+  // a filter that lets less pass has less to be above
+  const Eigen::VectorXd difference =
+      named.at("high_pass").threshold - named.at("high_pass:w=100").threshold;
+  EXPECT_GT(difference.minCoeff(), 0);
+}
+
+TEST(DetectionStudy, TestsOnSeedsThatNoTrainingKnows) {
+  StudyOptions o = small();
+  o.first_seed = kTrainingSeed - 1;
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("a test would know its training"),
+            std::string::npos);
+}
+
+TEST(DetectionStudy, UnknownNamesListTheKnownOnes) {
+  StudyOptions o = small();
+  o.conditions = {"underwater"};
+  EXPECT_NE(error_of([&] { detection_study(o, {}); })
+                .find("unknown condition 'underwater'; known: "
+                      "known_0, known_50"),
+            std::string::npos);
+  o = small();
+  o.robot = "testbed1";
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("testbed1 has none"), std::string::npos);
+  o = small();
+  o.estimators = {"oracle"};
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("unknown estimator 'oracle'"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { calibrate({.margin = 0.9}); }).find("a margin of 0.9 is below 1"),
+            std::string::npos);
+}
+
+TEST(DetectionReport, HoldsEveryCellAsJsonAndAsALine) {
+  const auto json = nlohmann::json::parse(study_json("", cells(), {}));
+  ASSERT_EQ(json["cells"].size(), cells().size());
+  EXPECT_EQ(json["cells"][0]["collisions"], cells()[0].blows);
+  EXPECT_EQ(json["cells"][0]["roc"].size(), kLevels.size());
+  EXPECT_EQ(json["conditions"]["known_150"]["panel_kg"], 150);
+  const std::string text = format_study("", cells());
+  for (const char* row : {"\nmo1+pan_tompkins ", "\nmo1+high_pass "}) {
+    EXPECT_NE(text.find(row), std::string::npos) << text;
+  }
+  const auto table = nlohmann::json::parse(format_study("", cells(), TableFormat::kJson));
+  ASSERT_EQ(table.size(), cells().size());
+  EXPECT_EQ(table[0]["condition"], "known_150");
+  EXPECT_EQ(table[0]["recall_percent"], 100);
+}
+
+}  // namespace
+}  // namespace tauext::study::test

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/study_runs.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/study/calibration.h"
+#include "mjcf/test/error_of.h"
+
+namespace tauext::study::test {
+namespace {
+
+using tauext::test::error_of;
+using Names = std::vector<std::string>;
+
+TEST(StudyRuns, ARobotWithoutRunsIsToldWhichHaveThem) {
+  EXPECT_EQ(error_of([] { touched_runs("testbed1"); }),
+            "the detection study has runs for wallmobot3 alone; testbed1 has none");
+  EXPECT_EQ(error_of([] { drawn_runs("wallmobot3"); }),
+            "the reliability study has runs for testbed1 alone; wallmobot3 has none");
+  EXPECT_EQ(error_of([] { touched_runs("r2d2"); }).find("unknown robot 'r2d2'; known: "), 0u);
+  EXPECT_EQ(touched_runs("").robot, "wallmobot3");
+  EXPECT_EQ(drawn_runs("").robot, "testbed1");
+}
+
+TEST(StudyRuns, TakeSpecificationsAndRefuseWhatCannotBeBuilt) {
+  const Robot& r = robot(touched_runs("").robot);
+  const Names tuned = {"mo2:bandwidth=50", "ekf"}, detectors = {"high_pass:w=60"};
+  EXPECT_EQ(chosen_estimators(r, tuned), tuned);
+  EXPECT_EQ(chosen_detectors(r, detectors), detectors);
+  EXPECT_EQ(chosen_detectors(r, {}), r.detectors());
+  const auto error = [&](const char* e) { return error_of([&] { chosen_estimators(r, {e}); }); };
+  EXPECT_EQ(error("truth").find("unknown estimator 'truth'; known: inverse_dynamics"), 0u)
+      << "a baseline would win every study";
+  EXPECT_NE(error("mo2:width=50").find("there is no key 'width'; known: bandwidth"),
+            std::string::npos);
+  EXPECT_NE(error("mo2:bandwidth=-1").find("it must be"), std::string::npos);
+  EXPECT_NE(error_of([&] { chosen_detectors(r, {"high_pass:w=x"}); }).find("not a number"),
+            std::string::npos);
+}
+
+TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
+  const auto trained = [](double x) { return Trained{Eigen::VectorXd::Constant(3, x), {}}; };
+  ThresholdSet set;
+  set.by_estimator["mo1"] = {{"high_pass", trained(1)}, {"high_pass:w=60", trained(2)}};
+  EXPECT_EQ(trained_for(set, "mo1", "high_pass").at("high_pass").threshold[0], 1);
+  EXPECT_EQ(trained_for(set, "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
+  EXPECT_EQ(trained_for(set, "mo1", "high_pass:w=90").at("high_pass").threshold[0], 1);
+  EXPECT_TRUE(trained_for(set, "mo1:bandwidth=60", "high_pass").empty());
+}
+
+}  // namespace
+}  // namespace tauext::study::test

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/suite_run.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "bench/live/entry_tap.h"
+#include "bench/program.h"
+#include "bench/reporter.h"
+#include "bench/roster/degradation.h"
+#include "bench/score/table.h"
+#include "bench/study/table3.h"
+#include "mjcf/trace/atomic_file.h"
+
+namespace tauext {
+namespace {
+
+using Rows = std::vector<Row>;
+
+// the metrics that were asked for and have no value, for the JSON, in which NaN cannot stand
+std::string never_label(const Score& score) {
+  std::vector<std::string> never;
+  for (const auto& [key, value] : score.by_key()) {
+    if (std::isnan(value)) never.push_back(key);
+  }
+  return never.empty() ? "" : fmt::format("never: {}", fmt::join(never, " "));
+}
+
+// score first; a wrong answer is an error and is not timed
+void run_entry(benchmark::State& state, Suite& suite, Row& row, const EntryTap& tap) {
+  if (row.score.empty()) {
+    row.score = suite.score(row.entry);
+    try {
+      if (tap.logs()) tap.log(row.entry, suite.run(row.entry), row.score);
+    } catch (const std::exception& e) {  // a full disk costs this entry, not the run
+      row.score.error = e.what();
+    }
+  }
+  if (!row.score.error.empty()) {
+    state.SkipWithError(row.score.error.c_str());
+    return;
+  }
+  const auto runner = suite.runner(row.entry);
+  for (auto _ : state) {
+    runner->batch();
+    benchmark::ClobberMemory();
+  }
+  for (const auto& [key, value] : row.score.by_key()) state.counters[key] = value;
+  state.SetLabel(never_label(row.score));
+  using C = benchmark::Counter;
+  state.counters[key_of(Metric::kCpu)] =
+      C(Runner::kBatch * 1e-9, C::kIsIterationInvariantRate | C::kInvert);
+}
+
+std::unique_ptr<benchmark::BenchmarkReporter> make_display(
+    const std::optional<std::string>& format) {
+  if (!format) return nullptr;
+  if (*format == "console")
+    return std::make_unique<benchmark::ConsoleReporter>(benchmark::ConsoleReporter::OO_Tabular);
+  if (*format == "json") return std::make_unique<benchmark::JSONReporter>();
+  throw std::invalid_argument(fmt::format("--benchmark_format={}: console or json", *format));
+}
+
+std::string build_line(const SuiteOptions& o) {
+  std::string line = fmt::format("tauext {}, {}, {}, MuJoCo {}, seed {}", TAUEXT_VERSION,
+                                 TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(), o.sensors.seed);
+  if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
+  if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
+  const std::string degraded = describe({o.sensors, o.model_error});
+  if (!degraded.empty()) line += "\ndegraded: " + degraded;
+  return line;
+}
+
+void add_time(const Reporter& reporter, Row& row) {
+  const auto time = reporter.cpu_ns().find(row.entry.name());
+  if (time != reporter.cpu_ns().end()) row.score.set(Metric::kCpu, time->second);
+}
+
+// the entry that is through, with its time
+void publish(const std::string& name, const Rows& rows, const Reporter& reporter, EntryTap& tap) {
+  const auto it =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.entry.name() == name; });
+  if (it == rows.end()) return;
+  Row row = *it;
+  add_time(reporter, row);
+  tap.publish(row.entry, row.score);
+}
+
+void register_benchmarks(Suite& suite, Rows& rows, const EntryTap& tap) {
+  for (Row& row : rows) {
+    benchmark::RegisterBenchmark(
+        row.entry.name().c_str(),
+        [&suite, &row, &tap](benchmark::State& s) { run_entry(s, suite, row, tap); });
+  }
+}
+
+// for people a table for each robot and scenario, for programs one
+void print_tables(const Rows& rows, TableFormat format, std::FILE* to) {
+  if (format == TableFormat::kCsv || format == TableFormat::kJson) {
+    fmt::print(to, "{}", format_table(rows, format));
+    return;
+  }
+  for (auto first = rows.begin(); first != rows.end();) {
+    const auto last = std::find_if(
+        first, rows.end(), [&](const Row& r) { return r.entry.group() != first->entry.group(); });
+    fmt::print(to, "{}\n", format_table({first, last}, format));
+    first = last;
+  }
+}
+
+void print_results(const SuiteRun& run, const Rows& rows) {
+  std::FILE* const to = run.display == "json" ? stderr : stdout;
+  std::FILE* const words = run.format == TableFormat::kText ? to : stderr;
+  fmt::print(words, "{}\n\n", build_line(run.suite));
+  print_tables(rows, run.format, to);
+  fmt::print(words, "{}", table_legend(rows));
+  const bool step = std::any_of(rows.begin(), rows.end(), [](const Row& r) {
+    return r.entry.group() == "wallmobot3/step";  // what Table III is about
+  });
+  if (run.paper && step) fmt::print(words, "\n{}", study::format_table3());
+  if (run.out) fmt::print(words, "\n{}: results as JSON\n", *run.out);
+}
+
+void write_json(const std::string& path, const Reporter& reporter) {
+  AtomicFile file(path);
+  file.write(reporter.json());
+  file.commit();
+}
+
+}  // namespace
+
+int run_suite(const SuiteRun& run) {
+  Rows rows;
+  for (const Entry& e : entries(run.selection)) rows.push_back({e, {}});
+  if (run.out) AtomicFile{*run.out};  // an unwritable path should not cost a run
+  const auto display = make_display(run.display);
+  Suite suite(run.suite);
+  EntryTap tap(run.lcm, run.lcm_log.value_or(""));
+  register_benchmarks(suite, rows, tap);
+  benchmark::AddCustomContext("tauext", build_line(run.suite));
+  Reporter reporter(display.get(), run.all ? static_cast<int>(rows.size()) : 0);
+  reporter.on_done = [&](const std::string& name) { publish(name, rows, reporter, tap); };
+  if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
+    throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
+  }
+
+  std::erase_if(rows, [](const Row& r) { return r.score.empty(); });
+  if (rows.empty() && run.list_tests) return kGood;
+  if (rows.empty()) throw std::invalid_argument("no benchmark ran: check --benchmark_repetitions");
+  for (Row& row : rows) add_time(reporter, row);
+  if (run.out) write_json(*run.out, reporter);
+  print_results(run, rows);
+  if (!tap.heard()) fmt::print(stderr, "no summary could be published\n");
+  return reporter.any_error() || !tap.heard() ? kAnswerIsNo : kGood;
+}
+
+}  // namespace tauext

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+# How every room makes its library and its tests.
+include_guard(GLOBAL)
+
+# parsed once for all libraries and programs, and with GoogleTest for all tests; sources include what they use all the same
+set(precompiled <array> <algorithm> <cmath> <functional> <map> <memory> <stdexcept> <string> <vector> <Eigen/LU> <fmt/format.h>
+                <fmt/ranges.h> <nlohmann/json.hpp>)
+function(tauext_precompile target position_independent)
+  add_library(${target} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/empty.cc)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent})
+  target_link_libraries(${target} PRIVATE tauext_flags tauext_estimators fmt::fmt nlohmann_json::nlohmann_json)
+  target_precompile_headers(${target} PRIVATE ${precompiled} ${ARGN})
+endfunction()
+
+# tauext_headers(h...): installed below the folder's own path; ci/check_docs and ci/check_headers look at those of
+# the tree
+function(tauext_headers)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  install(FILES ${ARGN} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tauext/${folder})
+  foreach(header IN LISTS ARGN)
+    if(NOT IS_ABSOLUTE ${header})
+      set_property(GLOBAL APPEND_STRING PROPERTY TAUEXT_HEADERS "${folder}/${header}\n")
+    endif()
+  endforeach()
+endfunction()
+
+# tauext_library(NAME [SOURCES s...] [HEADERS h...] [PUBLIC lib...] [PRIVATE lib...] [OPTIONS o...]): static, as
+# tauext_NAME and tauext::NAME; installed and exported with its headers, below the folder's own path.
+function(tauext_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
+  set(target tauext_${name})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(tauext::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:tauext_flags>)
+  # g++ 12 takes Eigen's half-register loads for reads beyond the vector
+  target_compile_options(${target} PRIVATE -Wno-array-bounds ${ARG_OPTIONS})
+  if(fmt::fmt IN_LIST ARG_PRIVATE)
+    target_precompile_headers(${target} REUSE_FROM tauext_precompiled)
+  endif()
+  install(TARGETS ${target} EXPORT tauext-${name})
+  install(EXPORT tauext-${name} NAMESPACE tauext:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tauext)
+  tauext_headers(${ARG_HEADERS})
+endfunction()
+
+# tauext_program(NAME SOURCE LIBRARIES lib...): a program of ours in bin/, which links what it uses
+function(tauext_program name source)
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${ARGN} tauext_program tauext_flags tauext_estimators fmt::fmt)
+  target_compile_options(${name} PRIVATE -fPIC)  # as libraries are, to share what is precompiled
+  target_precompile_headers(${name} REUSE_FROM tauext_precompiled)
+  target_link_options(${name} PRIVATE -Wl,--as-needed)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${name} OPTIONAL)  # ci/bench does not build them all
+  if(CMAKE_CXX_FLAGS MATCHES "fsanitize")  # minutes for what no test runs there
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+endfunction()
+
+# tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [OPTIONS o...] [PROPERTIES p v...] [LONG f]): a
+# GoogleTest program.
+# RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; LONG (a filter of
+# GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
+function(tauext_test name)
+  cmake_parse_arguments(ARG "" "LONG" "SOURCES;RELEASE;LIBRARIES;OPTIONS;PROPERTIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_sources(${name} PRIVATE ${ARG_RELEASE})
+  endif()
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} tauext_flags tauext_estimators fmt::fmt GTest::gtest_main)
+  target_precompile_headers(${name} REUSE_FROM tauext_precompiled_test)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_options(${name} PRIVATE -Wno-array-bounds ${ARG_OPTIONS})
+  # asked when ctest runs, not within 5 s of a busy build; tests with a parameter name it themselves, in a word
+  set(how DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES)
+  if(ARG_LONG)
+    gtest_discover_tests(${name} TEST_FILTER "${ARG_LONG}" ${how} PROPERTIES LABELS long)
+    set(ARG_LONG "-${ARG_LONG}")
+  endif()
+  if(ARG_PROPERTIES)
+    list(APPEND how PROPERTIES ${ARG_PROPERTIES})
+  endif()
+  gtest_discover_tests(${name} TEST_FILTER "${ARG_LONG}" ${how})
+endfunction()

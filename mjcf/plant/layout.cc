@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/plant/layout.h"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tauext {
+namespace {
+
+using Eigen::Vector3d;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::Map<const Vector3d> view3(const mjtNum* p) {
+  return Eigen::Map<const Vector3d>(p);
+}
+
+bool is_motor(const mjModel& m, int i) {
+  return m.actuator_dyntype[i] == mjDYN_NONE && m.actuator_gaintype[i] == mjGAIN_FIXED &&
+         m.actuator_biastype[i] == mjBIAS_NONE && m.actuator_gainprm[i * mjNGAIN] == 1;
+}
+
+bool on_spatial_tendon(const mjModel& m, int i) {
+  return m.actuator_trntype[i] == mjTRN_TENDON &&
+         m.wrap_type[m.tendon_adr[m.actuator_trnid[2 * i]]] != mjWRAP_JOINT;
+}
+
+bool is_coordinate(const mjModel& m, int i) {
+  const bool on_joint = m.actuator_trntype[i] == mjTRN_JOINT;
+  const bool on_fixed_tendon = m.actuator_trntype[i] == mjTRN_TENDON && !on_spatial_tendon(m, i);
+  return (on_joint || on_fixed_tendon) && is_motor(m, i);
+}
+
+bool is_screw(const mjModel& m, int i) {
+  return on_spatial_tendon(m, i) && is_motor(m, i);
+}
+
+std::string name_of(const mjModel& m, mjtObj type, int id) {
+  const char* const name = mj_id2name(&m, type, id);
+  return name == nullptr ? "" : name;
+}
+
+// the triangle of a spatial tendon between two sites that spans one hinge
+Screw triangle(const mjModel& m, const mjData& d, int actuator, int dof) {
+  const int tendon = m.actuator_trnid[2 * actuator], first = m.tendon_adr[tendon];
+  const int joint = m.dof_jntid[dof];
+  if (m.tendon_num[tendon] != 2 || m.wrap_type[first] != mjWRAP_SITE ||
+      m.wrap_type[first + 1] != mjWRAP_SITE || m.jnt_type[joint] != mjJNT_HINGE) {
+    throw std::invalid_argument(
+        fmt::format("tendon '{}': a screw runs between two sites across one hinge",
+                    name_of(m, mjOBJ_TENDON, tendon)));
+  }
+  const Vector3d hinge = view3(d.xanchor + 3 * joint), axis = view3(d.xaxis + 3 * joint);
+  const auto in_plane = [&](int wrap) -> Vector3d {
+    const Vector3d r = view3(d.site_xpos + 3 * m.wrap_objid[wrap]) - hinge;
+    return r - r.dot(axis) * axis;
+  };
+  const Vector3d base = in_plane(first), arm = in_plane(first + 1);
+  Screw s;
+  s.c = base.norm();
+  s.a = arm.norm();
+  s.sense = axis.dot(base.cross(arm)) >= 0 ? 1 : -1;
+  s.gamma0 = std::atan2(base.cross(arm).norm(), base.dot(arm)) - s.sense * d.qpos[joint];
+  return s;
+}
+
+// the joint coordinates, from the actuators at the head of the list
+void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
+  while (l.dof < m.nu && is_coordinate(m, l.dof)) ++l.dof;
+  const Eigen::Map<const RowMajor> moment(d.actuator_moment, m.nu, m.nv);
+  for (int j = 0; j < m.nv; ++j) {
+    if (!moment.topRows(l.dof).col(j).isZero(0)) l.arm.push_back(j);
+  }
+  if (l.dof == 0 || static_cast<int>(l.arm.size()) != l.dof) {
+    throw std::invalid_argument(fmt::format(
+        "the first {} actuators move {} degrees of freedom; every joint coordinate needs its own "
+        "<motor> of gain 1 on a joint or a fixed tendon{}",
+        l.dof, l.arm.size(),
+        l.dof < m.nu ? fmt::format(", and '{}' is none", name_of(m, mjOBJ_ACTUATOR, l.dof)) : ""));
+  }
+  l.S = moment.topRows(l.dof)(Eigen::all, l.arm);
+  if (Eigen::FullPivLU<Eigen::MatrixXd>(l.S).rank() < l.dof) {
+    throw std::invalid_argument("the actuators' lengths do not determine every joint's position");
+  }
+}
+
+// what follows them
+void find_scene(const mjModel& m, const mjData& d, Layout& l) {
+  int i = l.dof;
+  for (; i < m.nu && is_screw(m, i); ++i) {
+    if (i >= 2 * l.dof) break;
+    l.screws.push_back(triangle(m, d, i, l.arm[i - l.dof]));
+  }
+  if (!l.screws.empty() && static_cast<int>(l.screws.size()) != l.dof) {
+    throw std::invalid_argument(fmt::format(
+        "{} screws for {} joints: every joint needs one, or none", l.screws.size(), l.dof));
+  }
+  const int load = mj_name2id(&m, mjOBJ_BODY, "load");
+  if (load >= 0) {
+    l.tether = mj_name2id(&m, mjOBJ_ACTUATOR, "tether");
+    l.load_dof = m.body_dofadr[load];
+    if (l.tether != i || m.body_dofnum[load] != 3) {
+      throw std::invalid_argument("a load needs three slides and the actuator 'tether'");
+    }
+    ++i;
+  }
+  if (i < m.nu) {
+    throw std::invalid_argument(fmt::format(
+        "actuator {} ('{}') must be a <motor> of gain 1 on a joint or a fixed tendon: its "
+        "length is a joint coordinate and its force that joint's torque",
+        i, name_of(m, mjOBJ_ACTUATOR, i)));
+  }
+  // bodies of the scene must not hang in the arm's tree: B is the arm's alone
+  for (int j = 0; j < m.nv; ++j) {
+    for (int parent = m.dof_parentid[j]; parent >= 0; parent = m.dof_parentid[parent]) {
+      if (std::count(l.arm.begin(), l.arm.end(), j) ==
+          std::count(l.arm.begin(), l.arm.end(), parent))
+        continue;
+      throw std::invalid_argument(
+          fmt::format("joint '{}' has no motor of its own, or hangs on one that has none",
+                      name_of(m, mjOBJ_JOINT, m.dof_jntid[j])));
+    }
+  }
+}
+
+}  // namespace
+
+Layout layout_of(const mjModel& m, const mjData& d) {
+  if (m.nq != m.nv || m.nv == 0) {
+    throw std::invalid_argument("the model has free or ball joints, which are not supported");
+  }
+  Layout l;
+  find_coordinates(m, d, l);
+  find_scene(m, d, l);
+  return l;
+}
+
+}  // namespace tauext

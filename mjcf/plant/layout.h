@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Which parts of a MuJoCo model are the arm, its screws and its load.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjcf/plant/model.h"
+#include "mjcf/trace/screw.h"
+
+namespace tauext {
+
+/// Actuators, in this order:
+///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its force
+///    tau_i. So q = S rho + const, rho the positions of the arm's degrees of freedom.
+///  - none, or one motor of unit gain on a spatial tendon for each joint: a linear screw, which is
+///    never driven here but says what a loadcell at its end feels.
+///  - with the scene "load", the switch of the tether.
+/// Further degrees of freedom are the scene's: bodies that meet the arm by contacts and tethers only.
+struct Layout {
+  int dof = 0;                ///< joints
+  std::vector<int> arm;       ///< the arm's degrees of freedom in the model
+  Eigen::MatrixXd S;          ///< [1] by joints and degrees of freedom of the arm
+  std::vector<Screw> screws;  ///< of the joints; empty if the robot has none
+  int load_dof = -1;          ///< first of the load's three; -1: no load
+  int tether = -1;            ///< its actuator
+};
+
+/// @param d at any state of m, after mj_forward
+/// @throws std::invalid_argument if the model is not laid out like that, naming what is not
+Layout layout_of(const mjModel& m, const mjData& d);
+
+}  // namespace tauext

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/plant/model.h"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/plant/robots.h"
+#include "mjcf/trace/known.h"
+
+namespace tauext {
+namespace {
+
+// MuJoCo's own handler writes a log file, waits for a key and exits; its callbacks are global
+[[noreturn]] void throw_error(const char* message) {
+  throw std::runtime_error(fmt::format("MuJoCo: {}", message));
+}
+
+// warnings are counted in mjData, where Plant::step looks for them
+void ignore_warning(const char*) {}
+
+void install_handlers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = throw_error;
+    mju_user_warning = ignore_warning;
+  });
+}
+
+Model own(mjModel* m) {
+  return Model(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
+}
+
+// the virtual file system of mj_loadXML, which holds a fixed table and so lives on the heap
+struct Vfs {
+  Vfs() { mj_defaultVFS(vfs.get()); }
+  ~Vfs() { mj_deleteVFS(vfs.get()); }
+  Vfs(const Vfs&) = delete;
+  Vfs& operator=(const Vfs&) = delete;
+  std::unique_ptr<mjVFS> vfs = std::make_unique<mjVFS>();
+};
+
+// the text of an embedded file
+template <class Files>
+std::string_view embedded(const Files& files, const char* what, std::string_view name) {
+  return find_known(files, what, name, [](const EmbeddedFile& f) { return f.name; }).xml;
+}
+
+void add(Vfs& files, const std::string& name, std::string_view text) {
+  if (mj_makeEmptyFileVFS(files.vfs.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
+    throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", name));
+  }
+  std::copy(text.begin(), text.end(),
+            static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
+}
+
+// robots that came from files
+std::map<std::string, Model, std::less<>>& registered() {
+  static std::map<std::string, Model, std::less<>> all;
+  return all;
+}
+
+}  // namespace
+
+void DeleteState::operator()(mjData* d) const {
+  mj_deleteData(d);
+}
+
+State initial_state(const mjModel& m) {
+  State d(mj_makeData(&m));
+  mj_forward(&m, d.get());
+  return d;
+}
+
+std::string mujoco_version() {
+  return mj_versionString();
+}
+
+std::vector<std::string> robot_names() {
+  std::vector<std::string> names;
+  for (const EmbeddedFile& r : kEmbeddedRobots) names.emplace_back(r.name);
+  for (const auto& [name, model] : registered()) names.push_back(name);
+  return names;
+}
+
+Model load_robot(std::string_view name, std::string_view scene) {
+  install_handlers();
+  if (const auto own = registered().find(name); own != registered().end()) {
+    if (scene.empty()) return own->second;
+    throw std::invalid_argument(
+        fmt::format("robot '{}' is registered from a file and stands in no scene; '{}' was asked "
+                    "for",
+                    name, scene));
+  }
+  const std::string_view robot = embedded(kEmbeddedRobots, "robot", name);
+  Vfs files;
+  add(files, fmt::format("{}.xml", name), robot);
+  std::string include = fmt::format("<include file=\"{}.xml\"/>", name);
+  if (!scene.empty()) {
+    add(files, "scene.xml", embedded(kEmbeddedScenes, "scene", scene));
+    include += "<include file=\"scene.xml\"/>";
+  }
+  const std::string main = "main.xml";
+  add(files, main, fmt::format("<mujoco>{}</mujoco>", include));
+  char error[1000] = "";
+  mjModel* m = mj_loadXML(main.c_str(), files.vfs.get(), error, sizeof error);
+  if (m == nullptr) throw std::runtime_error(fmt::format("{} {}: {}", name, scene, error));
+  return own(m);
+}
+
+Model load_mjcf(const std::string& path) {
+  install_handlers();
+  char error[1000] = "";
+  mjModel* const m = mj_loadXML(path.c_str(), nullptr, error, sizeof error);
+  if (m == nullptr) throw std::runtime_error(fmt::format("{}: {}", path, error));
+  return own(m);
+}
+
+void register_mjcf(const std::string& name, const std::string& path) {
+  const std::vector<std::string> taken = robot_names();
+  if (name.empty() || std::count(taken.begin(), taken.end(), name) > 0) {
+    throw std::invalid_argument(fmt::format("the name '{}' of a robot is taken, or empty", name));
+  }
+  registered().emplace(name, load_mjcf(path));
+}
+
+Model changed(const Model& model, const std::function<void(mjModel&)>& change) {
+  mjModel* const m = mj_copyModel(nullptr, model.get());
+  Model copy = own(m);
+  change(*m);
+  const State d(mj_makeData(m));
+  mj_setConst(m, d.get());
+  return copy;
+}
+
+Model with_scaled_body(const Model& model, const std::string& body, double factor) {
+  const int id = mj_name2id(model.get(), mjOBJ_BODY, body.c_str());
+  if (id < 0) throw std::invalid_argument(fmt::format("the robot has no body '{}'", body));
+  if (!(factor > 0) || !std::isfinite(factor)) {
+    throw std::invalid_argument(
+        fmt::format("body '{}': a mass factor must be positive, not {}", body, factor));
+  }
+  return changed(model, [&](mjModel& m) {
+    m.body_mass[id] *= factor;
+    for (int i = 0; i < 3; ++i) m.body_inertia[3 * id + i] *= factor;
+  });
+}
+
+Model without_dry_friction(const Model& model) {
+  return changed(model, [](mjModel& m) {
+    std::fill_n(m.dof_frictionloss, m.nv, 0.);
+    std::fill_n(m.tendon_frictionloss, m.ntendon, 0.);
+  });
+}
+
+Model testbed1_absorbed(std::string_view scene) {
+  return changed(load_robot("testbed1", scene), [](mjModel& m) {
+    const int arm = mj_name2id(&m, mjOBJ_BODY, "arm");
+    const double g = -m.opt.gravity[2];
+    const double mass = m.body_mass[arm] / g;
+    // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
+    const double* const r = m.body_ipos + 3 * arm;
+    m.body_inertia[3 * arm + 1] += (m.body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
+    m.body_mass[arm] = mass;
+  });
+}
+
+Model wallmobot3_with_panel(double panel) {
+  constexpr double kLink5 = 177, kPanel = 150;  // [kg] Table II
+  return with_scaled_body(load_robot("wallmobot3"), "link5", (kLink5 - kPanel + panel) / kLink5);
+}
+
+}  // namespace tauext

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Loading MuJoCo models, with every failure an exception that says what and where.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// MuJoCo's own names; its header is included in the sources of mjcf/plant/ alone
+struct mjModel_;
+struct mjData_;
+using mjModel = mjModel_;  ///< MuJoCo's model
+using mjData = mjData_;    ///< MuJoCo's state of a model
+
+namespace tauext {
+
+/// A loaded model, shared and read-only: safe to use from many threads, one Plant each.
+using Model = std::shared_ptr<const mjModel>;
+
+/// Calls mj_deleteData.
+struct DeleteState {
+  void operator()(mjData* d) const;  ///< the deleter's operator
+};
+/// A state of a model, with all that MuJoCo computes from it.
+using State = std::unique_ptr<mjData, DeleteState>;
+
+/// The model at its initial state, after mj_forward.
+State initial_state(const mjModel& m);
+
+/// MuJoCo's version, like "2.2.2".
+std::string mujoco_version();
+
+/// The names of the robots that come with tauext, sorted; then the registered ones.
+std::vector<std::string> robot_names();
+
+/// One of these robots. Its MJCF is built into the library, so no file has to be found.
+/// @param scene what stands around it: "" for nothing, "load" (a mass on a tether) or "obstacle"
+/// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
+Model load_robot(std::string_view name, std::string_view scene = "");
+
+/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says.
+/// @throws std::runtime_error naming the path, with MuJoCo's own message
+Model load_mjcf(const std::string& path);
+
+/// From now on load_robot(name) gives the robot of this MJCF file; it stands in no scene.
+/// @throws std::invalid_argument if the name is taken; std::runtime_error as load_mjcf does
+void register_mjcf(const std::string& name, const std::string& path);
+
+/// A copy of the model with the changes that `change` makes, and what MuJoCo derives from them.
+Model changed(const Model& model, const std::function<void(mjModel&)>& change);
+
+/// A copy of the model whose body has `factor` times its mass and its inertia.
+/// @throws std::invalid_argument for an unknown body or a factor that is not positive and finite
+Model with_scaled_body(const Model& model, const std::string& body, double factor);
+
+/// A copy of the model without dry friction.
+Model without_dry_friction(const Model& model);
+
+/// testbed1 with g inside theta_2 and theta_3, Testbed1::Parameters::absorbed(): its first moments
+/// divided by 9.81, its inertia and friction as they are.
+Model testbed1_absorbed(std::string_view scene = "");
+
+/// wallmobot3 with another panel [kg] than the 150 kg of Table II: link 5 weighs 27 kg + panel and
+/// its inertia scales with its mass, as WallMoBot3::Parameters::with_panel has it.
+Model wallmobot3_with_panel(double panel);
+
+}  // namespace tauext

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/plant/model_error.h"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+
+#include "mjcf/plant/layout.h"
+
+namespace tauext {
+namespace {
+
+void check(const char* name, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  throw std::invalid_argument(
+      fmt::format("model error {} must be {:g} to {:g}, not {}", name, least, most, value));
+}
+
+void check(const ModelError& e) {
+  check("mass [1]", e.mass, 0.01, 100);
+  check("com [m]", e.com, -10, 10);
+  check("friction [N m]", e.friction, 0, 1e4);
+  check("viscous [N m s/rad]", e.viscous, 0, 1e4);
+  check("armature [kg m^2]", e.armature, 0, 1e4);
+}
+
+// the degrees of freedom of the arm, from the base to the tip
+std::vector<int> arm_of(const Model& m) {
+  return layout_of(*m, *initial_state(*m)).arm;
+}
+
+// along the line from the last joint to the centre of mass of what it moves; that line has to lie in
+// the plane in which the joint turns
+void move_com(mjModel& m, int dof, double by) {
+  const int body = m.dof_bodyid[dof], joint = m.dof_jntid[dof];
+  using Vector3d = Eigen::Vector3d;
+  Eigen::Map<Vector3d> com(m.body_ipos + 3 * body);
+  const Eigen::Map<const Vector3d> axis(m.jnt_axis + 3 * joint), anchor(m.jnt_pos + 3 * joint);
+  const Vector3d way = com - anchor, in_plane = way - way.dot(axis) * axis;
+  if (!(in_plane.norm() > 1e-9)) {
+    throw std::invalid_argument("model error com: the last link's centre of mass lies on its axis");
+  }
+  com += by * in_plane.normalized();
+}
+
+}  // namespace
+
+Model with_errors(const Model& robot, const ModelError& e) {
+  if (e.none()) return robot;
+  check(e);
+  const std::vector<int> arm = arm_of(robot);
+  const int last = robot->dof_bodyid[arm.back()];
+  const Model heavy = with_scaled_body(robot, mj_id2name(robot.get(), mjOBJ_BODY, last), e.mass);
+  return changed(heavy, [&](mjModel& m) {
+    if (e.com != 0) move_com(m, arm.back(), e.com);
+    for (const int dof : arm) {
+      m.dof_damping[dof] += e.viscous;
+      m.dof_armature[dof] += e.armature;
+      if (e.friction == 0) continue;
+      // as stiff as the testbed's: full friction above some mrad/s
+      m.dof_frictionloss[dof] += e.friction;
+      m.dof_solref[mjNREF * dof] = 0.002;
+      m.dof_solimp[mjNIMP * dof] = m.dof_solimp[mjNIMP * dof + 1] = 0.9999;
+    }
+  });
+}
+
+}  // namespace tauext

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/sensors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace tauext {
+namespace {
+
+constexpr double kSameTime = 1e-9;  // [s] what a sum of steps may be off
+
+void check(const char* name, double value, double largest) {
+  if (value >= 0 && value <= largest) return;
+  throw std::invalid_argument(fmt::format("{} must be 0 to {:g}, not {}", name, largest, value));
+}
+
+void check(const Loadcell& l) {
+  constexpr double kLargest = 1e6;
+  check("loadcell scale [1]", l.scale, 1e3);
+  check("loadcell |offset| [N]", std::abs(l.offset), kLargest);
+  check("loadcell hysteresis [of full scale]", l.hysteresis, 1);
+  check("loadcell |nonlinearity| [of full scale]", std::abs(l.nonlinearity), 1);
+  check("loadcell noise [N]", l.noise, kLargest);
+  check("loadcell step [N]", l.step, kLargest);
+  check("loadcell full_scale [N]", l.full_scale, kLargest);
+}
+
+double rounded(double x, double step) {
+  return step > 0 ? std::round(x / step) * step : x;
+}
+
+std::vector<Random> generators(int dof, std::uint64_t seed, std::uint64_t channel) {
+  std::vector<Random> all;
+  for (int j = 0; j < dof; ++j) all.emplace_back(seed, channel + j);
+  return all;
+}
+
+}  // namespace
+
+SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws)
+    : s_(s),
+      screws_(screws),
+      velocity_(generators(dof, s.seed, 100)),
+      torque_(generators(dof, s.seed, 200)),
+      force_(generators(dof, s.seed, 300)),
+      clock_(s.seed, 400),
+      line_(s.seed, 500),
+      play_(dof, std::nan("")),
+      stamp_(-std::numeric_limits<double>::infinity()) {
+  // beyond these no arm is left to be seen
+  check("velocity noise [rad/s]", s.velocity_noise, 1e9);
+  check("encoder step [rad]", s.encoder_step, 1);
+  check("loadcell noise [N m]", s.loadcell_noise, 1e5);
+  check("latency [s]", s.latency, 1);
+  check("tau_latency [s]", s.tau_latency, 1);
+  check("jitter [s]", s.jitter, 1);
+  check("dropped [1]", s.dropped, 0.99);
+  check("repeated [1]", s.repeated, 0.99);
+  check(s.loadcell);
+  if (s_.loadcell.full_scale == 0) s_.loadcell.full_scale = screws.empty() ? 3000 : 1000;
+}
+
+double SensorStream::lever(int j, double q) const {
+  return screws_.empty() ? 1 : screws_[j].lever(q);
+}
+
+double SensorStream::force(int j, double true_force) {
+  const Loadcell& l = s_.loadcell;
+  double f = l.scale * true_force + l.offset;
+  // the reading is dragged along behind the force, half the loop's width away
+  const double half = l.hysteresis * l.full_scale / 2;
+  play_[j] = std::isnan(play_[j]) ? f : std::clamp(play_[j], f - half, f + half);
+  f = play_[j];
+  const double x = f / l.full_scale;
+  f += l.nonlinearity * l.full_scale * 4 * x * (1 - std::abs(x));
+  if (l.noise > 0) f += l.noise * force_[j].normal();
+  return rounded(f, l.step);
+}
+
+void SensorStream::keep_past(const Sample& truth) {
+  past_.push_back(truth);
+  const double oldest = truth.t - s_.latency - s_.tau_latency;
+  while (past_.size() > 1 && past_[1].t <= oldest + kSameTime) past_.pop_front();
+}
+
+// the last sample that is at least this old, or the oldest there is
+const Sample& SensorStream::delayed(double by) const {
+  const double until = past_.back().t - by + kSameTime;
+  auto it = past_.rbegin();
+  while (it + 1 != past_.rend() && it->t > until) ++it;
+  return *it;
+}
+
+// the reading without its time stamp
+Sample SensorStream::values(const Sample& truth) {
+  const bool late_at_all = s_.latency > 0 || s_.tau_latency > 0;
+  if (late_at_all) keep_past(truth);
+  Sample y = late_at_all ? delayed(s_.latency) : truth;
+  const Sample& late = late_at_all ? delayed(s_.latency + s_.tau_latency) : truth;
+  for (int j = 0; j < y.q.size(); ++j) {
+    y.tau[j] = late.tau[j];
+    y.q[j] = rounded(y.q[j], s_.encoder_step);
+    if (s_.velocity_noise > 0) y.qd[j] += s_.velocity_noise * velocity_[j].normal();
+    if (!(s_.loadcell.ideal() && s_.encoder_step == 0)) {
+      y.tau[j] = force(j, y.tau[j] / lever(j, late.q[j])) * lever(j, y.q[j]);
+    }
+    if (s_.loadcell_noise > 0) y.tau[j] += s_.loadcell_noise * torque_[j].normal();
+  }
+  return y;
+}
+
+std::optional<Sample> SensorStream::read(const Sample& truth) {
+  Sample y = values(truth);
+  y.t = truth.t;
+  if (s_.jitter > 0) {
+    y.t += clock_.uniform(-s_.jitter, s_.jitter);
+    y.t = std::max(y.t, std::nextafter(stamp_, truth.t));  // never back in time
+  }
+  if (s_.repeated > 0 && line_.uniform() <= s_.repeated && last_) {
+    y.q = last_->q, y.qd = last_->qd, y.tau = last_->tau;
+  }
+  if (s_.dropped > 0 && line_.uniform() <= s_.dropped) return std::nullopt;
+  stamp_ = y.t;
+  last_ = y;
+  return y;
+}
+
+Trace measure(const Trace& truth, const Sensors& s) {
+  SensorStream stream(s, truth.dof(), truth.screws);
+  Trace m = truth;
+  std::vector<int> kept;
+  for (int k = 0; k < truth.size(); ++k) {
+    const auto y = stream.read({truth.t[k], truth.q.col(k), truth.qd.col(k), truth.tau.col(k)});
+    if (!y) continue;
+    m.t[k] = y->t;
+    m.q.col(k) = y->q;
+    m.qd.col(k) = y->qd;
+    m.tau.col(k) = y->tau;
+    kept.push_back(k);
+  }
+  return static_cast<int>(kept.size()) == truth.size() ? m : select_samples(m, kept);
+}
+
+}  // namespace tauext

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the sensors make of the truth. All faults default to none.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "mjcf/trace/random.h"
+#include "mjcf/trace/screw.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// A loadcell at the end of each screw. Its faults act on the force along the screw, and reach tau
+/// through (33)-(34), pose by pose: the true force is tau / (a sin Theta) at the true q, and the
+/// measured tau is the measured force times a sin Theta at the measured q. On a robot without screws it
+/// is a torque sensor in each joint, and N below stands for N m. In this order:
+struct Loadcell {
+  double scale = 1;         ///< [1] gain error: the true force times this
+  double offset = 0;        ///< [N]
+  double hysteresis = 0;    ///< [1] of full scale: width of the loop (play)
+  double nonlinearity = 0;  ///< [1] of full scale: largest deviation, at half scale; 0 at its ends
+  double noise = 0;         ///< [N] standard deviation, white
+  double step = 0;          ///< [N] the reading is rounded to whole steps
+  double full_scale = 0;    ///< [N] of either sign; 0: 1000 N of a screw, 3000 N m of a joint
+
+  bool operator==(const Loadcell&) const = default;
+
+  /// Whether it reads the true force, of whatever full scale.
+  bool ideal() const {
+    Loadcell perfect;
+    perfect.full_scale = full_scale;
+    return *this == perfect;
+  }
+};
+
+/// Sensor imperfections; the noise is white, Gaussian and independent for every joint.
+struct Sensors {
+  double velocity_noise = 0;  ///< [rad/s] standard deviation, on qd
+  double encoder_step = 0;    ///< [rad] q is rounded to whole steps
+  double loadcell_noise = 0;  ///< [N m] standard deviation, on tau itself, with or without screws
+  Loadcell loadcell;          ///< its faults
+  double latency = 0;         ///< [s] how old q, qd and tau are at their time stamp
+  double tau_latency = 0;     ///< [s] how much older tau is than q and qd
+  double jitter = 0;          ///< [s] time stamps are wrong by up to this, uniformly; order is kept
+  double dropped = 0;         ///< [1] share of the samples that never arrive
+  double repeated = 0;     ///< [1] share that repeats the values before it, with a new time stamp
+  std::uint64_t seed = 1;  ///< same seed, same bits; every channel has a generator of its own
+
+  bool operator==(const Sensors&) const = default;
+
+  /// Nothing between truth and reading, whatever the seed and the loadcells' full scale.
+  bool ideal() const {
+    Sensors perfect;
+    perfect.seed = seed;
+    perfect.loadcell.full_scale = loadcell.full_scale;
+    return *this == perfect;
+  }
+};
+
+/// Sensors at work, sample by sample.
+class SensorStream {
+ public:
+  /// @throws std::invalid_argument for an imperfection out of range
+  SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws);
+
+  /// What they read of the next true sample; nothing if it is lost.
+  std::optional<Sample> read(const Sample& truth);
+
+ private:
+  const Sample& delayed(double by) const;
+  double lever(int joint, double q) const;
+  double force(int joint, double true_force);
+  void keep_past(const Sample& truth);
+  Sample values(const Sample& truth);
+
+  Sensors s_;
+  std::vector<Screw> screws_;
+  std::vector<Random> velocity_, torque_, force_;
+  Random clock_, line_;
+  std::vector<double> play_;    // [N] of each loadcell's hysteresis
+  std::deque<Sample> past_;     // as far back as the latencies reach, the newest last
+  std::optional<Sample> last_;  // values of the last reading
+  double stamp_;                // [s] its time stamp
+};
+
+/// The trace as these sensors would have recorded it; the truth in it stays the truth, sample by sample:
+/// a dropped sample is missing in both.
+/// @throws std::invalid_argument as SensorStream does
+Trace measure(const Trace& truth, const Sensors& sensors);
+
+}  // namespace tauext

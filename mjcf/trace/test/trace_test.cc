@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/trace.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "mjcf/record.h"
+#include "mjcf/test/error_of.h"
+#include "mjcf/trace/atomic_file.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TraceFile : public testing::Test {
+ protected:
+  TraceFile()
+      : folder_(fs::temp_directory_path() / ("tauext_trace_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~TraceFile() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name = "t.csv") const { return (folder_ / name).string(); }
+  std::string written(const std::string& text) const {
+    std::ofstream(path()) << text;
+    return path();
+  }
+  std::string error_of_reading(const std::string& text) const {
+    SkippedRows skipped;
+    const std::string file = written(text);
+    return error_of([&] { read_csv(file, &skipped); });
+  }
+  fs::path folder_;
+};
+
+constexpr const char* kHead = "t,q1,q2,qd1,qd2,tau1,tau2\n";
+
+TEST_F(TraceFile, ComesBackBitForBit) {
+  Scenario s = scenario("wallmobot3", "collision");
+  s.duration = 5.1;
+  const Trace t =
+      record(load_robot("wallmobot3"), s, {.velocity_noise = 1e-3, .loadcell_noise = 1});
+  write_csv(t, path());
+  SkippedRows skipped;
+  const Trace r = read_csv(path(), &skipped);
+  EXPECT_EQ(skipped.total(), 0);
+  EXPECT_EQ(r.t, t.t);
+  EXPECT_EQ(r.q, t.q);
+  EXPECT_EQ(r.qd, t.qd);
+  EXPECT_EQ(r.tau, t.tau);
+  EXPECT_EQ(r.tau_ext, t.tau_ext);
+  EXPECT_EQ(r.contact, t.contact);
+}
+
+TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
+  Scenario s = scenario("wallmobot3", "free");
+  s.duration = 0.01;
+  write_csv(record(load_robot("wallmobot3"), s), path());
+  std::ifstream in(path());
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3,tau_ext1,tau_ext2,tau_ext3,contact");
+}
+
+TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
+  SkippedRows skipped;
+  const Trace t = read_csv(
+      written(std::string(kHead) + "0,1,2,3,4,5,6\n"          // good
+                                   "0.001,1,2,3,nan,5,6\n"    // not finite
+                                   "0.002,1,2,3,1e999,5,6\n"  // not finite either
+                                   "0.003,1,2,3,4,5\n"        // a field too few
+                                   "0.004,1,2,3,4,5,6,7\n"    // a field too many
+                                   "0.005,1,2,x,4,5,6\n"      // no number
+                                   "0.006,1,2,,4,5,6\n"       // no number
+                                   "0,1,2,3,4,5,6\n"          // time stands still
+                                   "\n"                       // nothing, and no row
+                                   "0.007, 7 ,2,3,4,5,6\r\n"  // good: blanks and CR do not matter
+                                   "0.008,1,2,3"),            // cut off
+      &skipped);
+  EXPECT_EQ(t.size(), 2);
+  EXPECT_EQ(t.q(0, 1), 7);
+  EXPECT_EQ(skipped.not_finite, 2);
+  EXPECT_EQ(skipped.wrong_field_count, 3);
+  EXPECT_EQ(skipped.not_a_number, 2);
+  EXPECT_EQ(skipped.time_order, 1);
+  ASSERT_FALSE(skipped.first.empty());
+  EXPECT_EQ(skipped.first[0], "line 3: a field is not finite");
+  EXPECT_FALSE(t.has_truth());
+  EXPECT_TRUE(t.contact.empty());
+}
+
+TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {
+  SkippedRows skipped;
+  const Trace t =
+      read_csv(written(std::string(kHead) + "0,1,2,3,4,5,6\n0.001,1,2,3,4,5,-5"), &skipped);
+  EXPECT_EQ(t.size(), 1);
+  EXPECT_EQ(skipped.first.at(0), "line 3: the last line is incomplete");
+}
+
+TEST_F(TraceFile, HalfATruthIsRefused) {
+  EXPECT_EQ(error_of_reading("t,q1,q2,qd1,qd2,tau1,tau2,tau_ext1\n0,1,2,3,4,5,6,7\n"),
+            path() + ": has some of tau_ext1..2 but not all");
+}
+
+TEST_F(TraceFile, ColumnsAreFoundByNameInAnyOrder) {
+  SkippedRows skipped;
+  const Trace t = read_csv(written("temperature,tau1,qd1,q1,t\n20,3,2,1,0\n"), &skipped);
+  EXPECT_EQ(t.dof(), 1);
+  EXPECT_EQ(t.q(0, 0), 1);
+  EXPECT_EQ(t.tau(0, 0), 3);
+}
+
+TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
+  EXPECT_EQ(error_of_reading(std::string(kHead) + "0,1,2\n"),
+            path() + ": no usable row (1 skipped; line 2: wrong number of fields)");
+  EXPECT_EQ(error_of_reading(kHead), path() + ": no usable row (0 skipped)");
+  EXPECT_EQ(error_of_reading(""), path() + ": is empty");
+  EXPECT_EQ(error_of_reading("t,q1,qd1\n0,1,2\n"), path() + ": has q1 but no column 'tau1'");
+  EXPECT_EQ(error_of_reading("t,q1,q1,qd1,tau1\n"), path() + ": column 'q1' appears twice");
+  EXPECT_NE(error_of_reading("0,1,2,3\n").find("the first line must name the columns"),
+            std::string::npos);
+  SkippedRows skipped;
+  EXPECT_EQ(error_of([&] { read_csv("/nowhere/x.csv", &skipped); }),
+            "/nowhere/x.csv: No such file or directory");
+  EXPECT_EQ(error_of([&] { read_csv(folder_.string(), &skipped); }),
+            folder_.string() + ": Is a directory");
+  EXPECT_NE(error_of_reading("\x01\xff").find("it is '?\?'"), std::string::npos);
+}
+
+TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
+  written("old");
+  { AtomicFile(path()).write("new"); }
+  std::ifstream in(path());
+  std::string text;
+  std::getline(in, text);
+  EXPECT_EQ(text, "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+      << "nothing left beside it";
+}
+
+TEST_F(TraceFile, AFullDiskAndAMissingFolderAreErrors) {
+  Scenario s = scenario("wallmobot3", "free");
+  s.duration = 1;
+  const Trace t = record(load_robot("wallmobot3"), s);
+  EXPECT_EQ(error_of([&] { write_csv(t, "/dev/full"); }),
+            "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(error_of([&] { write_csv(t, "/nowhere/t.csv"); }),
+            "/nowhere/t.csv: cannot open for writing: No such file or directory");
+}
+
+}  // namespace
+}  // namespace tauext::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A recorded run: what the sensors said, and what was true.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "estimators/types.h"
+#include "mjcf/trace/screw.h"
+
+namespace tauext {
+
+/// What the sensors read at one time.
+struct Sample {
+  double t = 0;         ///< [s]
+  Eigen::VectorXd q;    ///< [rad]
+  Eigen::VectorXd qd;   ///< [rad/s]
+  Eigen::VectorXd tau;  ///< [N m]
+};
+
+/// Samples of an arm with n joints; column k of a matrix is sample k. Signs and sampling convention:
+/// estimators/types.h.
+struct Trace {
+  std::vector<double> t;              ///< [s]
+  Eigen::MatrixXd q;                  ///< [rad] measured
+  Eigen::MatrixXd qd;                 ///< [rad/s] measured
+  Eigen::MatrixXd tau;                ///< [N m] measured
+  Eigen::MatrixXd tau_ext;            ///< [N m] true; no columns if unknown
+  std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
+
+  // known to the simulation alone, never written to a file
+  Eigen::MatrixXd qdd;                ///< [rad/s^2] MuJoCo's acceleration at t_k
+  Eigen::MatrixXd friction;           ///< [N m] F of (3) at t_k
+  std::vector<double> contact_force;  ///< [N] sum of the normal forces on the arm at t_k
+  std::vector<Screw> screws;          ///< of the joints; empty if the robot has none
+  int stopped_at = -1;                ///< sample at which a supervisor stopped the motor; -1: never
+
+  int dof() const { return static_cast<int>(q.rows()); }   ///< joints
+  int size() const { return static_cast<int>(t.size()); }  ///< samples
+  bool has_truth() const { return tau_ext.cols() > 0; }    ///< whether tau_ext is known
+
+  /// What an estimator sees of sample k. N must be dof().
+  template <int N>
+  Measurement<N> measurement(int k) const {
+    return {t[k], q.col(k), qd.col(k), tau.col(k)};
+  }
+};
+
+/// The samples of these indices alone, in increasing order.
+Trace select_samples(const Trace& trace, const std::vector<int>& samples);
+
+/// Rows that read_csv left out, by the reason.
+struct SkippedRows {
+  int not_finite = 0;              ///< a field was NaN or infinite
+  int wrong_field_count = 0;       ///< too few or too many fields
+  int not_a_number = 0;            ///< a field could not be read as a number
+  int time_order = 0;              ///< t did not increase
+  std::vector<std::string> first;  ///< "line 7: ...", of the first few
+
+  /// All of them.
+  int total() const { return not_finite + wrong_field_count + not_a_number + time_order; }
+};
+
+/// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to
+/// standard output if the path is "-". The file appears whole or not at all.
+/// @throws std::runtime_error naming the path
+void write_csv(const Trace& trace, const std::string& path);
+
+/// Reads such a file; columns are found by name, tau_ext* and contact may be missing, other columns
+/// are ignored. Bad rows are skipped and counted.
+/// @throws std::runtime_error naming path and reason: unreadable, no usable header, no usable row
+Trace read_csv(const std::string& path, SkippedRows* skipped);
+
+}  // namespace tauext

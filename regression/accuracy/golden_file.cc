@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/accuracy/golden_file.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "regression/host/files.h"
+
+namespace tauext::gate {
+namespace {
+
+constexpr const char* kHeader = "# tauext golden metrics 1";
+constexpr const char* kEnd = "# end";
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == '\t') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+// fails with what is wrong with a line
+struct At {
+  const std::string& path;
+  int line;
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error(fmt::format("{}: line {}: {}", path, line, what));
+  }
+  double number(const std::string& text) const {
+    double x = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x)) {
+      fail(fmt::format("'{}' is no number", text));
+    }
+    return x;
+  }
+};
+
+void read_columns(const std::string& line, const At& at, Golden& g) {
+  const std::vector<std::string> f = fields_of(line);
+  if (f.size() < 4 || f[0] != "entry") at.fail("the names of the columns were expected");
+  g.seeds.assign(f.begin() + 3, f.end());
+}
+
+void read_metric(const std::string& line, const At& at, Golden& g) {
+  const std::vector<std::string> f = fields_of(line);
+  if (f.size() != g.seeds.size() + 3) {
+    at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 3));
+  }
+  GoldenLine l{at.number(f[2]), {}};
+  for (std::size_t i = 3; i < f.size(); ++i) {
+    l.values.push_back(f[i] == "never" ? kNever : at.number(f[i]));
+  }
+  if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");
+}
+
+}  // namespace
+
+Golden parse_golden(const std::string& text, const std::string& path) {
+  Golden g;
+  std::istringstream in(text);
+  std::string line;
+  int number = 0;
+  bool end = false;
+  while (!end && std::getline(in, line)) {
+    const At at{path, ++number};
+    const auto colon = line.find(": ");
+    if (number == 1) {
+      if (line != kHeader) at.fail(fmt::format("no golden metrics: it must be '{}'", kHeader));
+    } else if (line == kEnd) {
+      end = true;
+    } else if (line.starts_with("# ") && colon != std::string::npos) {
+      g.header[line.substr(2, colon - 2)] = line.substr(colon + 2);
+    } else if (g.seeds.empty()) {
+      read_columns(line, at, g);
+    } else {
+      read_metric(line, at, g);
+    }
+  }
+  if (number == 0) throw std::runtime_error(path + ": is empty");
+  if (!end) {
+    throw std::runtime_error(fmt::format("{}: cut off, its last line is not '{}'", path, kEnd));
+  }
+  if (g.lines.empty()) throw std::runtime_error(path + ": holds no metric");
+  return g;
+}
+
+Golden read_golden(const std::string& path) {
+  return parse_golden(read_file(path), path);
+}
+
+}  // namespace tauext::gate

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Reads golden metrics; bench/score/golden.h writes them and says what they are.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tauext::gate {
+
+/// One line: a metric of an entry, seed by seed; NaN is "never".
+struct GoldenLine {
+  double tolerance = 1e-9;  ///< absolute or relative, whichever is larger
+  std::vector<double> values;
+};
+
+/// A file of golden metrics.
+struct Golden {
+  std::map<std::string, std::string> header;  ///< mujoco, sensors, built
+  std::vector<std::string> seeds;
+  std::map<std::pair<std::string, std::string>, GoldenLine> lines;  ///< by entry and metric
+};
+
+/// @param path to be named in errors
+/// @throws std::runtime_error naming the path and the line: cut off, foreign, a value that is no number
+Golden parse_golden(const std::string& text, const std::string& path);
+
+/// @throws std::runtime_error as parse_golden does, and for an unreadable file
+Golden read_golden(const std::string& path);
+
+}  // namespace tauext::gate

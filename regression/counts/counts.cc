@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/counts/counts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "regression/host/files.h"
+
+namespace tauext::gate {
+namespace {
+
+constexpr const char* kHeader = "# tauext instruction counts 1";
+constexpr const char* kEnd = "# end";
+
+// the functions that execute most more than before, the most first
+std::vector<std::string> gains(const std::map<std::string, std::uint64_t>& was,
+                               const std::map<std::string, std::uint64_t>& is) {
+  std::vector<std::pair<double, std::string>> all;
+  for (const auto& [function, n] : is) {
+    const auto f = was.find(function);
+    const double gain =
+        static_cast<double>(n) - (f == was.end() ? 0 : static_cast<double>(f->second));
+    if (gain > 0) all.emplace_back(gain / kCountedSteps, function);
+  }
+  std::sort(all.rbegin(), all.rend());
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 3); ++i) {
+    lines.push_back(
+        fmt::format("{:+.1f} a step in {:.100}", all[i].first, short_name(all[i].second)));
+  }
+  return lines;
+}
+
+// a line of the key, of the columns' names or of a kernel
+void read_line(const std::string& line, const std::string& path, Counts& counts) {
+  const auto tab = line.find('\t'), colon = line.find(": ");
+  if (line.starts_with("# ") && colon != std::string::npos) {
+    counts.key[line.substr(2, colon - 2)] = line.substr(colon + 2);
+    return;
+  }
+  if (line.starts_with("kernel\t")) return;
+  if (tab == std::string::npos || tab == 0) {
+    throw std::runtime_error(fmt::format("{}: '{}' is no line of counts", path, line));
+  }
+  const std::string kernel = line.substr(0, tab);
+  if (!counts.kernels.emplace(kernel, whole_count(line.substr(tab + 1), path)).second) {
+    throw std::runtime_error(fmt::format("{}: {} is there twice", path, kernel));
+  }
+}
+
+}  // namespace
+
+std::uint64_t whole_count(const std::string& text, const std::string& path) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw std::runtime_error(fmt::format("{}: '{}' is no count", path, text));
+  }
+  return value;
+}
+
+std::string counts_path(const std::string& folder, const Key& key) {
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const auto& [name, value] : key) {
+    for (const char c : fmt::format("{}={}\n", name, value)) {
+      hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+    }
+  }
+  return fmt::format("{}/instructions-{:08x}.tsv", folder, hash);
+}
+
+std::string format_counts(const Counts& counts) {
+  std::string text = fmt::format("{}\n", kHeader);
+  for (const auto& [name, value] : counts.key) text += fmt::format("# {}: {}\n", name, value);
+  text += "kernel\tinstructions of 1000 steps\n";
+  for (const auto& [kernel, count] : counts.kernels) text += fmt::format("{}\t{}\n", kernel, count);
+  return text + kEnd + "\n";
+}
+
+Counts read_counts(const std::string& path) {
+  std::istringstream in(read_file(path));
+  Counts counts;
+  std::string line;
+  if (!std::getline(in, line) || line != kHeader) {
+    throw std::runtime_error(
+        fmt::format("{}: no instruction counts: it must begin with '{}'", path, kHeader));
+  }
+  bool end = false;
+  while (!end && std::getline(in, line)) {
+    if (line == kEnd) {
+      end = true;
+    } else {
+      read_line(line, path, counts);
+    }
+  }
+  if (!end)
+    throw std::runtime_error(fmt::format("{}: cut off, its last line is not '{}'", path, kEnd));
+  if (counts.kernels.empty()) throw std::runtime_error(path + ": holds no count");
+  return counts;
+}
+
+std::optional<Counts> committed_counts(const std::string& folder, const Key& key) {
+  const std::string path = counts_path(folder, key);
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  Counts counts = read_counts(path);
+  if (counts.key != key) {
+    throw std::runtime_error(path + ": its key is not the one that its name was made from");
+  }
+  return counts;
+}
+
+std::vector<CountChange> compare_counts(const Counts& before, const Counts& after) {
+  if (before.key != after.key) {
+    throw std::invalid_argument("counts of different keys: " +
+                                key_difference(before.key, after.key));
+  }
+  std::vector<CountChange> changes;
+  for (const auto& [kernel, count] : after.kernels) {
+    const auto old = before.kernels.find(kernel);
+    if (old == before.kernels.end() || old->second == count) continue;
+    CountChange c{.kernel = kernel, .before = old->second, .after = count};
+    const auto was = before.functions.find(kernel), is = after.functions.find(kernel);
+    if (was != before.functions.end() && is != after.functions.end()) {
+      c.gained = gains(was->second, is->second);
+    }
+    changes.push_back(std::move(c));
+  }
+  return changes;
+}
+
+bool too_many(const CountChange& c) {
+  return c.change() > kCountLimit;
+}
+
+std::string short_name(const std::string& name) {
+  std::string out;
+  int depth = 0;
+  for (const char c : name) {
+    if (c == '<' || c == '(') ++depth;
+    if (depth == 0) out += c;
+    if ((c == '>' || c == ')') && depth > 0) --depth;
+  }
+  return out;
+}
+
+std::string key_difference(const Key& there, const Key& here) {
+  std::vector<std::string> parts;
+  Key all = there;
+  all.insert(here.begin(), here.end());
+  const auto value = [](const Key& k, const std::string& name) {
+    const auto it = k.find(name);
+    return it == k.end() ? std::string("none") : it->second;
+  };
+  for (const auto& [name, ignored] : all) {
+    if (value(there, name) == value(here, name)) continue;
+    parts.push_back(
+        fmt::format("{}: '{}' there, '{}' here", name, value(there, name), value(here, name)));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+}  // namespace tauext::gate

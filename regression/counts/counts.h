@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Counted instructions of a step: as a file, and beside others. A count means something beside one of the
+/// same compiler, flags and libraries alone: its key.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tauext::gate {
+
+/// What a count depends on beside the source, by name: arch, compiler, flags, eigen, glibc, libm, valgrind.
+using Key = std::map<std::string, std::string>;
+
+inline constexpr int kCountedSteps = 1000;
+
+/// Instructions of so many steps of each kernel.
+struct Counts {
+  Key key;
+  std::map<std::string, std::uint64_t> kernels;
+  /// own instructions by kernel and function; empty if read from a file
+  std::map<std::string, std::map<std::string, std::uint64_t>> functions;
+};
+
+/// <folder>/instructions-<hash of the key>.tsv
+std::string counts_path(const std::string& folder, const Key& key);
+
+/// The text of that file: header, key, then one line a kernel, sorted.
+std::string format_counts(const Counts& counts);
+
+/// @throws std::runtime_error naming the path: unreadable, empty, cut off, of another kind
+Counts read_counts(const std::string& path);
+
+/// The counts that a folder holds for a key, if it holds any.
+/// @throws std::runtime_error as read_counts does, and if the file's key is not the one of its name
+std::optional<Counts> committed_counts(const std::string& folder, const Key& key);
+
+/// A kernel whose count differs.
+struct CountChange {
+  std::string kernel;
+  std::uint64_t before = 0, after = 0;  ///< [1] instructions of kCountedSteps
+  double change() const {
+    return before == 0 ? (after == 0 ? 0 : 1)
+                       : static_cast<double>(after) / static_cast<double>(before) - 1;
+  }
+  std::vector<std::string> gained;  ///< "function: +n a step", the most first
+};
+
+/// More than that fails; more than the note is said.
+inline constexpr double kCountLimit = 0.01, kCountNote = 0.002;
+
+/// Kernels of both whose count changed by any amount; `gained` where both know their functions.
+/// @throws std::invalid_argument if the keys differ: such counts are never compared
+std::vector<CountChange> compare_counts(const Counts& before, const Counts& after);
+
+/// Whether a count grew beyond the limit.
+bool too_many(const CountChange& change);
+
+/// A function's name without template arguments and parameters, which fill the screen.
+std::string short_name(const std::string& name);
+
+/// A count as it stands in a file. @throws std::runtime_error naming the path: no whole number
+std::uint64_t whole_count(const std::string& text, const std::string& path);
+
+/// "glibc: 2.36 there, 2.37 here; .." of two keys.
+std::string key_difference(const Key& there, const Key& here);
+
+}  // namespace tauext::gate

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/report/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/trace/table_writer.h"
+#include "regression/accuracy/accuracy_layer.h"
+#include "regression/host/child.h"
+#include "regression/report/findings.h"
+#include "regression/report/report.h"
+
+namespace tauext::gate {
+namespace {
+
+std::string functions_of(const Counts& head, const Counts* base, const std::string& kernel) {
+  std::vector<std::pair<std::uint64_t, std::string>> sorted;
+  for (const auto& [function, n] : head.functions.at(kernel)) sorted.emplace_back(n, function);
+  std::sort(sorted.rbegin(), sorted.rend());
+  const auto a_step = [](std::uint64_t n) {
+    return fmt::format("{:.1f}", static_cast<double>(n) / kCountedSteps);
+  };
+  TableWriter table({{"head", "instr/step"}, {"base", "instr/step"}, {"function", "", true}});
+  for (const auto& [n, function] : sorted) {
+    std::string before = "-";
+    if (base) {
+      const auto& functions = base->functions.at(kernel);
+      const auto it = functions.find(function);
+      if (it != functions.end()) before = a_step(it->second);
+    }
+    table.add({a_step(n), before, short_name(function)});
+  }
+  return table.format();
+}
+
+std::string explain_kernel(GateOptions o, const std::string& kernel) {
+  o.kernels = exactly(kernel);
+  o.accuracy = false;
+  o.even_if_identical = true;
+  const GateResult r = run_layers(o);
+  const auto& counts = *r.instructions;
+  const bool both = counts.base && counts.base->kernels.contains(kernel);
+  return format_terminal(r, true) + "\n" +
+         functions_of(*counts.head, both ? &*counts.base : nullptr, kernel);
+}
+
+// every metric, seed by seed, and below it what was committed, if that is another
+std::string metrics_of(const Golden& head, const Golden& committed) {
+  std::vector<TableWriter::Column> columns = {{"metric", "", true}};
+  for (const std::string& seed : head.seeds) columns.push_back({seed});
+  TableWriter table(columns);
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    std::vector<std::string> cells = {name};
+    for (const double v : values)
+      cells.push_back(std::isnan(v) ? "never" : fmt::format("{:.9g}", v));
+    table.add(std::move(cells));
+  };
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (const auto& [key, line] : head.lines) {
+    add(key.second, line.values);
+    const auto before = committed.lines.find(key);
+    if (before == committed.lines.end()) continue;
+    const std::vector<double>& was = before->second.values;
+    if (was.size() != line.values.size()) continue;
+    if (!std::equal(was.begin(), was.end(), line.values.begin(), same)) add("  committed", was);
+  }
+  return table.format();
+}
+
+// the gate knows no scenario: what a run needs is said by the program that has it
+std::string commands_of(const std::string& bench, const std::string& entry, const Golden& head) {
+  const std::string seed = head.seeds.front().substr(head.seeds.front().rfind(' ') + 1);
+  std::string sensors = head.header.at("sensors");
+  std::replace(sensors.begin(), sensors.end(), ' ', ',');
+  std::vector<std::string> argv = {bench, "--commands", entry, "--seed", seed};
+  if (!sensors.empty()) argv.insert(argv.end(), {"--sensors", sensors});
+  std::string out = fmt::format("The metrics of one seed:\n  {}\nIts run, and its estimates:\n{}",
+                                score_command(bench, entry, seed), run_child(argv));
+  if (std::filesystem::path(bench).filename() != "tauext-bench") {
+    out +=
+        "tauext-record and tauext-replay know tauext's own estimators alone. For an estimator of "
+        "yours "
+        "use the first command.\n";
+  }
+  return out;
+}
+
+std::string explain_entry(const GateOptions& o, const std::string& entry) {
+  const Golden head =
+      parse_golden(run_bench(o.bench, exactly(entry)), "what " + o.bench + " wrote");
+  const std::string path = golden_path(o.baselines);
+  const Golden committed = std::filesystem::exists(path) ? read_golden(path) : Golden{};
+  return fmt::format("{}, sensors {}\n{}\n{}", entry, head.header.at("sensors"),
+                     metrics_of(head, committed), commands_of(o.bench, entry, head));
+}
+
+}  // namespace
+
+std::string explain(const GateOptions& o, const std::string& subject) {
+  const auto slashes = std::count(subject.begin(), subject.end(), '/');
+  if (slashes == 1) return explain_kernel(o, subject);
+  if (slashes >= 2) return explain_entry(o, subject);
+  throw std::invalid_argument(
+      fmt::format("'{}' is neither <robot>/<kernel> nor <robot>/<scenario>/<estimator>", subject));
+}
+
+}  // namespace tauext::gate

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/report/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "regression/report/kernel_table.h"
+
+namespace tauext::gate {
+namespace {
+
+std::string value(double x) {
+  return std::isnan(x) ? "never" : fmt::format("{:.6g}", x);
+}
+
+std::vector<Finding> time_findings(const GateResult& r) {
+  std::vector<Finding> all;
+  if (!r.time) return all;
+  std::vector<std::string> rows = kernel_table(r).rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const KernelTime& k = r.time->kernels[i];
+    Finding f{"time", k.kernel, k.verdict.verdict, std::move(rows[i]), {}};
+    f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
+    if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
+    if (k.over_budget) {
+      f.verdict = Verdict::kFail;
+      f.more.emplace_back("a step takes more than a tenth of the control period");
+    }
+    if (std::string reason = why(r, k); !reason.empty()) f.more.push_back(std::move(reason));
+    if (f.verdict == Verdict::kFail) {
+      const CountChange* count = change_of(r, k.kernel);
+      if (count) f.more.insert(f.more.end(), count->gained.begin(), count->gained.end());
+      f.more.push_back(fmt::format("again: tauext-gate time --base {} --head {} --kernels '{}'",
+                                   r.base, r.head, exactly(k.kernel)));
+    }
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+std::vector<Finding> count_findings(const std::vector<CountChange>& changes, const char* layer) {
+  std::vector<Finding> all;
+  for (const CountChange& c : changes) {
+    const Verdict v = too_many(c)                         ? Verdict::kFail
+                      : std::abs(c.change()) > kCountNote ? Verdict::kNote
+                                                          : Verdict::kPass;
+    Finding f{layer, c.kernel, v,
+              fmt::format(
+                  "{:<34} {:.1f} -> {:.1f} instructions a step, {:+.2f} % (limit +{:.0f} %)  {}",
+                  c.kernel, static_cast<double>(c.before) / 1e3, static_cast<double>(c.after) / 1e3,
+                  100 * c.change(), 100 * kCountLimit, name_of(v)),
+              c.gained};
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+std::vector<Finding> instruction_findings(const InstructionReport& r) {
+  constexpr const char *kBase = "instructions beside base",
+                       *kCommitted = "instructions beside the committed";
+  std::vector<Finding> all;
+  if (!r.other_key.empty()) {
+    all.push_back(
+        {kBase, "key", Verdict::kInconclusive,
+         "base and head cannot be compared, neither their times nor their instructions: " +
+             r.other_key});
+  }
+  for (const auto& [layer, changes] :
+       {std::pair(kBase, &r.beside_base), std::pair(kCommitted, &r.beside_committed)}) {
+    for (Finding& f : count_findings(*changes, layer)) all.push_back(std::move(f));
+  }
+  const auto note = [&](const std::string& subject, const std::string& text) {
+    all.push_back({kCommitted, subject, Verdict::kNoBaseline, text});
+  };
+  if (!r.no_baseline.empty()) note("key", r.no_baseline);
+  for (const std::string& k : r.added)
+    note(k, k + " is not in the committed counts: update needed");
+  for (const std::string& k : r.gone) {
+    note(k, k + " is gone and still in the committed counts: update needed");
+  }
+  return all;
+}
+
+Verdict verdict_of(Change c) {
+  return c == Change::kWorse ? Verdict::kFail : Verdict::kNoBaseline;
+}
+
+const char* words_for(Change c) {
+  const std::map<Change, const char*> words = {{Change::kWorse, "LESS ACCURATE"},
+                                               {Change::kBetter, "better: update needed"},
+                                               {Change::kChanged, "changed: update needed"},
+                                               {Change::kNew, "new: update needed"},
+                                               {Change::kGone, "gone: update needed"}};
+  return words.at(c);
+}
+
+// how sure that is, and where to look
+std::string worst_of(const MetricChange& c) {
+  const std::string off = c.standard_errors < 1000
+                              ? fmt::format("{:.1f} standard errors off", c.standard_errors)
+                              : "1000 standard errors off or more";
+  const std::string at = c.largest_error_at.empty()
+                             ? ""
+                             : ", whose largest error is at t = " + c.largest_error_at + " s";
+  return fmt::format("{}; worst: {}{}", off, c.worst_seed, at);
+}
+
+// @param command whether the entry's command has not been shown yet
+Finding metric_finding(const MetricChange& c, const std::string& bench, bool command) {
+  const double percent = 100 * (c.after / c.before - 1);
+  Finding f{"accuracy",
+            c.entry + " " + c.metric,
+            verdict_of(c.change),
+            fmt::format("{} {}  {} -> {}{}  {}", c.entry, c.metric, value(c.before), value(c.after),
+                        std::isfinite(percent) ? fmt::format(" ({:+.3g} %)", percent) : "",
+                        words_for(c.change)),
+            {}};
+  if (!c.note.empty()) f.more.push_back(c.note);
+  if (c.change != Change::kWorse) return f;
+  f.more.push_back(worst_of(c));
+  if (command) f.more.push_back("again: " + score_command(bench, c.entry, c.worst_seed));
+  return f;
+}
+
+std::vector<Finding> accuracy_findings(const GateResult& r) {
+  std::vector<Finding> all;
+  if (!r.accuracy) return all;
+  for (const std::string& line : r.accuracy->not_repeated) {
+    all.push_back({"accuracy", "repeat", Verdict::kFail, "not the same twice: " + line, {}, true});
+  }
+  if (!r.accuracy->no_baseline.empty()) {
+    all.push_back({"accuracy", "baseline", Verdict::kNoBaseline, r.accuracy->no_baseline, {}});
+  }
+  std::set<std::string> shown;
+  for (const MetricChange& c : r.accuracy->changes) {
+    const bool first = c.change == Change::kWorse && shown.insert(c.entry).second;
+    all.push_back(metric_finding(c, r.bench, first));
+  }
+  return all;
+}
+
+// the kernel that changed most, with its interval
+void add_compared(const std::vector<KernelTime>& kernels, std::vector<std::string>& lines) {
+  const auto by_median = [](const KernelTime& a, const KernelTime& b) {
+    return a.verdict.median < b.verdict.median;
+  };
+  const KernelTime& most = *std::max_element(kernels.begin(), kernels.end(), by_median);
+  lines.push_back(fmt::format(
+      "time          {} kernels, {} ok; the most: {} {:+.2f} % ({:+.2f} to {:+.2f}), limit {:+.0f} "
+      "%",
+      kernels.size(),
+      std::count_if(kernels.begin(), kernels.end(),
+                    [](const KernelTime& k) { return k.verdict.verdict == Verdict::kPass; }),
+      most.kernel, 100 * (most.verdict.median - 1), 100 * (most.verdict.low - 1),
+      100 * (most.verdict.high - 1), 100 * TimeLimits().limit));
+}
+
+// the slowest of those that nothing can be compared with; it comes last
+void add_alone(std::vector<KernelTime> kernels, std::vector<std::string>& lines) {
+  std::sort(kernels.begin(), kernels.end(),
+            [](const KernelTime& a, const KernelTime& b) { return a.head_ns < b.head_ns; });
+  const KernelTime& slowest = kernels.back();
+  lines.push_back(fmt::format(
+      "time          {} kernels with nothing to compare with; the slowest: {}, {:.1f} ns a step{}",
+      kernels.size(), slowest.kernel, slowest.head_ns,
+      slowest.over_budget ? ", MORE THAN A TENTH OF THE CONTROL PERIOD" : ""));
+}
+
+void add_summary(const TimeReport& t, std::vector<std::string>& lines) {
+  if (t.identical) {
+    lines.push_back(fmt::format(
+        "time          identical: {} kernels, the same code to the last byte", t.kernels.size()));
+  }
+  if (!t.kernels.empty() && t.kernels[0].verdict.verdict != Verdict::kIdentical) {
+    add_compared(t.kernels, lines);
+  }
+  if (!t.alone.empty()) add_alone(t.alone, lines);
+  for (const std::string& k : t.gone) lines.push_back("time          gone from head: " + k);
+}
+
+void add_summary(const InstructionReport& r, std::vector<std::string>& lines) {
+  const auto add = [&](const char* name, const std::vector<CountChange>& changes) {
+    lines.push_back(
+        fmt::format("instructions  {} kernels beside {}: {} differ, {} by more than +{:.0f} %",
+                    r.kernels, name, changes.size(),
+                    std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
+  };
+  if (r.base && r.other_key.empty()) add("base", r.beside_base);
+  if (r.no_baseline.empty()) add("the committed", r.beside_committed);
+}
+
+}  // namespace
+
+std::vector<Finding> findings(const GateResult& r) {
+  std::vector<Finding> all = time_findings(r);
+  const auto add = [&](const std::vector<Finding>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  if (r.instructions) add(instruction_findings(*r.instructions));
+  add(accuracy_findings(r));
+  return all;
+}
+
+std::vector<std::string> summary(const GateResult& r) {
+  std::vector<std::string> lines = r.notes;
+  if (r.time) add_summary(*r.time, lines);
+  if (r.instructions) add_summary(*r.instructions, lines);
+  if (r.accuracy && r.accuracy->no_baseline.empty()) {
+    lines.push_back(fmt::format(
+        "accuracy      {} metrics: {} changed, {} of them worse by more than {:.1f} %",
+        r.accuracy->lines, r.accuracy->changes.size(), r.accuracy->worse(), 100 * kWorseBy));
+  }
+  return lines;
+}
+
+std::string exactly(const std::string& name) {
+  std::string out = "^";
+  for (const char c : name)
+    out += c == '+' || c == '.' ? fmt::format("[{}]", c) : std::string(1, c);
+  return out + "$";
+}
+
+std::string score_command(const std::string& bench, const std::string& entry,
+                          const std::string& seed) {
+  return fmt::format("{} --golden - --seeds {} --benchmark_filter='{}'", bench,
+                     seed.substr(seed.rfind(' ') + 1), exactly(entry));
+}
+
+}  // namespace tauext::gate

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The layers together: what is asked, what they found, and the exit code that follows.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/exit_code.h"
+#include "regression/accuracy/accuracy.h"
+#include "regression/counts/count_layer.h"
+#include "regression/time/time_layer.h"
+
+namespace tauext::gate {
+
+/// Where everything is.
+struct GateOptions {
+  std::string base, head;        ///< plug-ins; an empty base: there is nothing to compare with
+  std::string bench;             ///< program with --golden; empty: no accuracy
+  std::string baselines;         ///< folder
+  std::string kernels, entries;  ///< regular expressions; empty: all
+  bool time = true, instructions = true, accuracy = true;
+  bool even_if_identical = false;
+  TimeLimits limits;
+  double period = 1e-3;  ///< [s]
+  std::function<void(const std::string&)> progress;
+};
+
+/// What was found; what was not asked for is empty.
+struct GateResult {
+  std::optional<TimeReport> time;
+  std::optional<InstructionReport> instructions;
+  std::optional<AccuracyReport> accuracy;
+  std::vector<std::string> notes;  ///< what could not be compared, and why
+  std::string base, head, bench;   ///< to be named in commands
+};
+
+/// Runs the layers that were asked for.
+/// @throws std::invalid_argument for filters that match nothing, std::runtime_error for files and programs
+GateResult run_layers(const GateOptions& options);
+
+/// A harness that is broken (kCouldNotRun) counts before kSlower, that before kLessAccurate, kUpdateNeeded and
+/// kInconclusive.
+ExitCode exit_code(const GateResult& result);
+
+}  // namespace tauext::gate

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/time/identity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "mjcf/test/error_of.h"
+#include "regression/host/child.h"
+#include "regression/host/files.h"
+
+namespace tauext::gate {
+namespace {
+
+using tauext::test::error_of;
+
+std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// lies in .rodata
+[[gnu::used]] const char kNeedle[] = "a needle that stands in this program alone";
+
+TEST(Identity, OfAProgramWithItselfAndWithOneByteChanged) {
+  const TemporaryFolder folder;
+  const std::string copy = folder.copy(this_program(), "copy");
+  EXPECT_TRUE(identical(this_program(), copy));
+  EXPECT_EQ(code_hash(this_program()), code_hash(copy));
+  std::string bytes = content(copy);
+  const auto at = bytes.find(kNeedle);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'A';
+  std::ofstream(copy, std::ios::binary) << bytes;
+  EXPECT_FALSE(identical(this_program(), copy));
+}
+
+TEST(Identity, NamesTheLibrariesThatAProgramNeeds) {
+  const std::vector<std::string> needed = needed_libraries(this_program());
+  EXPECT_NE(std::find(needed.begin(), needed.end(), "libc.so.6"), needed.end());
+}
+
+TEST(Identity, RefusesWhatIsNoProgramByName) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/x.so", whole = content(this_program());
+  const auto error = [&](const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+    return error_of([&] { code_hash(path); });
+  };
+  EXPECT_EQ(error(""), path + ": no ELF file of 64 bit");
+  EXPECT_EQ(error("#!/bin/sh"), path + ": no ELF file of 64 bit");
+  EXPECT_EQ(error(whole.substr(0, whole.size() / 2)), path + ": an ELF file that is cut off");
+  EXPECT_EQ(error_of([] { code_hash("/nowhere"); }), "/nowhere: cannot be read");
+}
+
+}  // namespace
+}  // namespace tauext::gate

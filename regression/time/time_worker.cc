@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/time/time_worker.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+#include "regression/host/child.h"
+#include "regression/host/files.h"
+#include "regression/host/plugin_host.h"
+
+namespace tauext::gate {
+namespace {
+
+using nlohmann::json;
+
+double seconds(Work& w, int steps) {
+  const auto begin = std::chrono::steady_clock::now();
+  w.run(steps);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// steps that take about `block` seconds
+int steps_for(Work& w, double block) {
+  constexpr int kTry = 200;
+  std::vector<double> tries;
+  for (int i = 0; i < 25; ++i) tries.push_back(seconds(w, kTry));
+  return std::clamp(static_cast<int>(kTry * block / std::max(median(tries), 1e-9)), 40, 1'000'000);
+}
+
+// Base, head, base's copy and base with more steps: each a library and a state of its own, else the one that
+// follows another of the same library would find its caches and branch predictors warm.
+struct Lane {
+  std::unique_ptr<Work> work;
+  int steps;
+  std::vector<double> times;  // [s] of `steps`, pair by pair
+};
+
+std::vector<Lane> lanes_of(const WorkerOptions& o, const std::vector<Plugin>& plugins,
+                           const std::string& kernel) {
+  std::vector<Lane> lanes;
+  std::vector<double> samples;
+  for (const Plugin& plugin : plugins) {
+    const int i = plugin.find(kernel);
+    if (i < 0) throw std::runtime_error(kernel + ": not in both plug-ins");
+    if (lanes.empty()) samples = example(plugin, i);
+    lanes.push_back({std::make_unique<Work>(plugin, i, samples), 0, {}});
+  }
+  const int steps = steps_for(*lanes[0].work, o.block);
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    const double more = i < 3 ? 0 : o.injected[i - 3];
+    lanes[i].steps = static_cast<int>(std::lround(steps * (1 + more)));
+    lanes[i].work->run(kExampleSamples);  // caches and predictors
+  }
+  return lanes;
+}
+
+double median_ratio(const Lane& of, const Lane& to) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < of.times.size(); ++i) ratios.push_back(of.times[i] / to.times[i]);
+  return median(ratios);
+}
+
+void run_pairs(benchmark::State& state, const std::vector<double>& injected,
+               std::vector<Lane>& lanes) {
+  std::vector<std::size_t> order(lanes.size());
+  std::iota(order.begin(), order.end(), 0);
+  // an order that never changed would favour somebody, in all processes alike
+  std::minstd_rand random(static_cast<unsigned>(::getpid()));
+  for (auto _ : state) {
+    std::shuffle(order.begin(), order.end(), random);
+    for (const std::size_t i : order) {
+      lanes[i].work->run(lanes[i].steps / 4);  // predictors and caches were another's until now
+      lanes[i].times.push_back(seconds(*lanes[i].work, lanes[i].steps));
+    }
+    state.SetIterationTime(lanes[1].times.back());
+  }
+  const double steps = lanes[0].steps;
+  state.counters["base_ns"] = 1e9 * median(lanes[0].times) / steps;
+  state.counters["head_ns"] = 1e9 * median(lanes[1].times) / steps;
+  state.counters["head"] = median_ratio(lanes[1], lanes[0]);
+  state.counters["aa"] = median_ratio(lanes[2], lanes[0]);
+  for (std::size_t i = 3; i < lanes.size(); ++i) {
+    // steps are whole: as if exactly so many more had been injected
+    const double wanted = 1 + injected[i - 3], really = lanes[i].steps / steps;
+    state.counters[fmt::format("canary{}", i - 3)] =
+        median_ratio(lanes[i], lanes[0]) * wanted / really;
+  }
+}
+
+}  // namespace
+
+std::vector<WorkerResult> run_worker(const WorkerOptions& o) {
+  const json options = {{"base", o.base},   {"head", o.head},   {"kernels", o.kernels},
+                        {"pairs", o.pairs}, {"block", o.block}, {"injected", o.injected}};
+  const std::string out = run_child({this_program(), "worker", options.dump()});
+  std::vector<WorkerResult> results;
+  try {
+    const json document = json::parse(out);
+    for (const json& b : document.at("benchmarks")) {
+      // its name ends in what Google Benchmark thinks of it: /iterations:75/manual_time
+      WorkerResult r{.kernel = b.value("label", b.at("name").get<std::string>())};
+      if (b.value("error_occurred", false)) {
+        throw std::runtime_error(r.kernel + ": " + b.value("error_message", "?"));
+      }
+      r.base_ns = b.at("base_ns");
+      r.head_ns = b.at("head_ns");
+      r.head = b.at("head");
+      r.aa = b.at("aa");
+      for (std::size_t i = 0; i < o.injected.size(); ++i) {
+        r.canaries.push_back(b.at(fmt::format("canary{}", i)));
+      }
+      results.push_back(std::move(r));
+    }
+  } catch (const json::exception& e) {
+    throw std::runtime_error(fmt::format("a timing process said something else: {}", e.what()));
+  }
+  if (results.size() != o.kernels.size()) {
+    throw std::runtime_error(
+        fmt::format("a timing process ran {} kernels of {}", results.size(), o.kernels.size()));
+  }
+  return results;
+}
+
+int worker_main(const std::string& text) {
+  const json j = json::parse(text);
+  WorkerOptions o;
+  j.at("base").get_to(o.base);
+  j.at("head").get_to(o.head);
+  j.at("kernels").get_to(o.kernels);
+  j.at("pairs").get_to(o.pairs);
+  j.at("block").get_to(o.block);
+  j.at("injected").get_to(o.injected);
+  const TemporaryFolder folder;
+  std::vector<Plugin> plugins;
+  for (std::size_t i = 0; i < 3 + o.injected.size(); ++i) {
+    plugins.emplace_back(folder.copy(i == 1 ? o.head : o.base, fmt::format("{}.so", i)));
+  }
+  for (const std::string& kernel : o.kernels) {
+    benchmark::RegisterBenchmark(kernel.c_str(),
+                                 [&, kernel](benchmark::State& state) {
+                                   std::vector<Lane> lanes = lanes_of(o, plugins, kernel);
+                                   run_pairs(state, o.injected, lanes);
+                                   state.SetLabel(kernel);
+                                 })
+        ->UseManualTime()
+        ->Iterations(o.pairs);
+  }
+  benchmark::JSONReporter reporter;
+  reporter.SetOutputStream(&std::cout);
+  reporter.SetErrorStream(&std::cerr);
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return 0;
+}
+
+}  // namespace tauext::gate
