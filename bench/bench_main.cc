@@ -4,21 +4,22 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "bench/commands.h"
-#include "bench/program.h"
-#include "bench/recording_flags.h"
+#include "bench/program/program.h"
 #include "bench/roster/threshold_file.h"
+#include "bench/run/commands.h"
+#include "bench/run/recording_flags.h"
+#include "bench/run/study_flags.h"
+#include "bench/run/suite_run.h"
 #include "bench/score/entry.h"
 #include "bench/score/golden.h"
 #include "bench/score/suite.h"
 #include "bench/score/table.h"
-#include "bench/study/study_flags.h"
-#include "bench/suite_run.h"
 #include "mjcf/trace/atomic_file.h"
 
 namespace tauext {
@@ -54,7 +55,7 @@ struct Flags {
 int run_golden(const Flags& f, const std::string& filter) {
   AtomicFile file(*f.golden);
   GoldenOptions o{.suite = f.suite, .selection = f.selection, .seeds = f.seeds, .filter = filter};
-  o.built = fmt::format("tauext {}, {}, {}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS);
+  o.built = build();
   Progress progress("scoring");
   o.progress = progress.callback();
   file.write(golden_metrics(o));
@@ -62,29 +63,44 @@ int run_golden(const Flags& f, const std::string& filter) {
   return kGood;
 }
 
-int run(const Flags& flags) {
-  if (flags.list_metrics) {
-    fmt::print("{}", list_of_metrics());
-    return kGood;
+// a flag that the asked-for mode would not read is refused
+void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool all) {
+  const bool listing = f.list || f.list_metrics;
+  const bool golden = f.golden.has_value(), commands = f.commands.has_value();
+  if (study + f.list + f.list_metrics + golden + commands > 1) {
+    throw std::invalid_argument(
+        "one at a time: --list, --list-metrics, --golden, --commands, or a study (--reliability, "
+        "--equal-bandwidth, --pareto)");
   }
+  const bool suite = !study && !listing && !golden && !commands;
+  require_mode(app, suite, "the suite alone", {"--paper", "--lcm", "--lcm-log"});
+  require_mode(app, suite || study, "the suite and the studies", {"--format"});
+  require_mode(app, suite || golden || f.list, "the suite, --golden and --list",
+               {"--estimator", "--detector"});
+  require_mode(app, golden, "--golden", {"--seeds"});
+  require_mode(app, !golden, "the suite; --golden takes --seeds", {"--seed"});
+  if (!suite && (f.out || f.format)) {
+    throw std::invalid_argument(
+        "--benchmark_out and --benchmark_format go with the suite alone; a study has --out and "
+        "--format");
+  }
+  if (!all && !suite && !golden) {
+    throw std::invalid_argument(
+        "--benchmark_filter goes with the suite and --golden; --benchmark_list_tests lists what it "
+        "selects");
+  }
+}
+
+int run(const CLI::App& app, const Flags& flags) {
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
   const bool study = wants_study(flags.studies);
-  if (flags.commands && (study || flags.golden)) {
-    throw std::invalid_argument("--commands goes with neither a study nor --golden");
-  }
-  if (study && (flags.out || flags.format || flags.list || flags.golden || flags.paper || !all)) {
-    throw std::invalid_argument(
-        "--reliability, --equal-bandwidth and --pareto run instead of the suite: no --paper, "
-        "--golden, --list or --benchmark_...; they have --format and --out");
-  }
-  if (study && !flags.selection.empty()) {
-    throw std::invalid_argument("--estimator and --detector go with the suite and --golden alone");
-  }
+  require_mode_of_flags(app, flags, study, all);
   if (flags.lcm_log == "")
     throw std::invalid_argument("--lcm-log: the name of a folder is missing");
-  if ((study || flags.golden) && (flags.lcm || flags.lcm_log)) {
-    throw std::invalid_argument("--lcm and --lcm-log go with the suite alone");
+  if (flags.list_metrics) {
+    fmt::print("{}", list_of_metrics());
+    return kGood;
   }
   if (study) return run_study(flags.studies, flags.suite);
   if (flags.golden) return run_golden(flags, all ? "" : filter);
@@ -94,6 +110,7 @@ int run(const Flags& flags) {
   }
   if (flags.list) {
     for (const Entry& e : entries(flags.selection)) fmt::print("{}\n", e.name());
+    fmt::print("\n{}", list_fields());
     return kGood;
   }
   return run_suite({.suite = flags.suite,
@@ -134,11 +151,11 @@ Arguments take_benchmark_flags(int argc, char** argv, Flags& flags) {
 
 void add_selection_flags(CLI::App& app, Flags& flags) {
   app.add_option("--estimator", flags.selection.estimators,
-                 "these alone, as NAME[:KEY=VALUE].., like mo2:bandwidth=50")
+                 "run only these, as NAME[:KEY=VALUE].., like mo2:bandwidth=50")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SPEC,..");
-  app.add_option("--detector", flags.selection.detectors, "these alone, like high_pass:w=60")
+  app.add_option("--detector", flags.selection.detectors, "run only these, like high_pass:w=60")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SPEC,..");
@@ -146,9 +163,9 @@ void add_selection_flags(CLI::App& app, Flags& flags) {
 
 void add_output_flags(CLI::App& app, Flags& flags) {
   app.add_option("--golden", flags.golden,
-                 "instead: every metric for --seeds 1,2,.., as tauext-gate wants it")
+                 "write every metric of --seeds 1,2,.. for tauext-gate, and stop")
       ->type_name("FILE");
-  app.add_option("--seeds", flags.seeds)->delimiter(',')->group("");
+  app.add_option("--seeds", flags.seeds)->delimiter(',')->check(whole_number)->group("");
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
       ->type_name("[URL]")
@@ -158,7 +175,7 @@ void add_output_flags(CLI::App& app, Flags& flags) {
 }
 
 void add_flags(CLI::App& app, Flags& flags) {
-  app.add_flag("--list", flags.list, "list the entries <robot>/<scenario>/<estimator>, and stop");
+  app.add_flag("--list", flags.list, "list the entries and the keys of specifications, and stop");
   app.add_flag("--list-metrics", flags.list_metrics, "say what each metric means, and stop");
   add_selection_flags(app, flags);
   app.add_flag("--paper", flags.paper,
@@ -198,7 +215,7 @@ int bench_main(int argc, char** argv) {
       throw std::invalid_argument(
           "--benchmark_out_format: json is the only format; rows have different counters");
     }
-    return run(flags);
+    return run(app, flags);
   });
 }
 

@@ -23,7 +23,8 @@ namespace tauext {
 
 /// An estimator for every robot of model M; make(model) builds one. With a constructor E(model, parameters)
 /// and E::Parameters::fields() (estimators/parameters.h) it is set by specifications, `name:key=value`; with
-/// E::Parameters::for_bandwidth(model, w), too, it takes part in --equal-bandwidth and --pareto. A name that
+/// E::Parameters::for_bandwidth(model, w), too, it takes part in --equal-bandwidth and --pareto. Keys change
+/// E::Parameters{}, whatever parameters make gives it: where they are others, register a specification instead. A name that
 /// is taken is refused when the robots are first asked for (std::invalid_argument).
 template <RobotModel M, class Make>
 void register_estimator(Make make) {

@@ -2,18 +2,21 @@
 // tauext-detect: calibrates the detectors, and studies every one behind every estimator.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "bench/program.h"
+#include "bench/program/program.h"
+#include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/study/calibration.h"
 #include "bench/study/detection_report.h"
 #include "bench/study/detection_study.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/table_writer.h"
 
 namespace {
 
@@ -28,10 +31,12 @@ struct Flags {
 
 void list_conditions(const std::string& robot) {
   const study::StudyRuns& runs = study::touched_runs(robot);
+  TableWriter table({{"condition", "", true}, {"what is so", "", true}});
   for (const study::Condition& c : runs.conditions) {
     const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
-    fmt::print("{:<18} {}{}\n", c.name, c.description, trained ? " (trained on)" : "");
+    table.add({c.name, c.description + (trained ? " (trained on)" : "")});
   }
+  fmt::print("{}\n{}", table.format(), list_fields());
 }
 
 Thresholds calibrated(const Flags& f) {
@@ -58,9 +63,10 @@ void require_writable(const std::string& path) {
 
 // thresholds of another tuning would be wrong in silence
 void tell_untrained(const Flags& f, const Thresholds& t) {
-  for (const std::string& e : f.study.estimators) {
+  const Robot& r = robot(study::touched_runs(f.study.robot).robot);
+  for (const std::string& e : study::chosen_estimators(r, f.study.estimators)) {
     const bool trained = std::any_of(t.sets.begin(), t.sets.end(), [&](const ThresholdSet& s) {
-      return s.by_estimator.contains(e);
+      return s.robot == r.name() && s.by_estimator.contains(e);
     });
     if (trained) continue;
     fmt::print(stderr, "{}: nothing was trained behind {}; its detectors keep their defaults\n",
@@ -99,12 +105,18 @@ int run_study(const Flags& f) {
   return kGood;
 }
 
-int run(const Flags& f) {
+int run(const CLI::App& app, const Flags& f) {
   if (f.list) {
     list_conditions(f.study.robot);
     return kGood;
   }
-  return f.calibrate_to.empty() ? run_study(f) : run_calibration(f);
+  const bool studies = f.calibrate_to.empty();
+  require_mode(app, studies, "a study, not with --calibrate",
+               {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
+                "--clampings", "--hours", "--seed"});
+  require_mode(app, f.thresholds.empty(), "training, not with --thresholds",
+               {"--margin", "--train", "--runs"});
+  return studies ? run_study(f) : run_calibration(f);
 }
 
 template <class T>
@@ -130,22 +142,23 @@ void add_flags(CLI::App& app, Flags& f) {
       ->type_name("FILE");
   app.add_option("--format", f.format, "of the printed table: text, csv, json, md or latex")
       ->type_name("NAME");
-  app.add_option("--robot", f.study.robot, "else the first that has runs for it")
+  app.add_option("--robot", f.study.robot, "robot to study; by default the first that has runs")
       ->type_name("NAME");
   add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
-  add_count(app, "--runs", f.calibration.runs, 1, 10000, "of 30 s, for each of them");
-  add_names(app, "--conditions", f.study.conditions, "only these (see --list)");
-  add_names(app, "--estimators", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
-  add_names(app, "--detectors", f.study.detectors, "only these, like high_pass:w=60");
+  add_count(app, "--runs", f.calibration.runs, 1, 10000,
+            "training runs of 30 s for each condition");
+  add_names(app, "--conditions", f.study.conditions, "study only these (see --list)");
+  add_names(app, "--estimator", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
+  add_names(app, "--detector", f.study.detectors, "only these, like high_pass:w=60");
   add_count(app, "--collisions", f.study.blows, 0, 100000, "blows, at least, for each condition");
   add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "brisk pushes, at least");
   add_count(app, "--clampings", f.study.clampings, 0, 100000, "soft clampings, at least");
   app.add_option("--hours", f.study.hours, "of free motion and slow pushes, at least")
       ->capture_default_str();
   add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
-            "of the first run; the next ones follow");
+            "seed of the first run; the next runs count up from it");
   add_count(app, "--jobs", f.study.threads, 0, 1024, "threads; 0: one a core");
-  app.add_flag("--list", f.list, "list the conditions, and stop");
+  app.add_flag("--list", f.list, "list the conditions and the keys of specifications, and stop");
 }
 
 }  // namespace
@@ -160,5 +173,5 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   Flags f;
   add_flags(app, f);
-  return run_program(app, argc, argv, [&] { return run(f); });
+  return run_program(app, argc, argv, [&] { return run(app, f); });
 }

@@ -2,9 +2,11 @@
 // tauext-identify: the parameters of a one-joint model from a recorded motion.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "bench/logs/identify.h"
 #include "bench/logs/read_log.h"
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/table_writer.h"
 

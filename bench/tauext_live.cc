@@ -3,27 +3,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <vector>
 
 #include "bench/live/live_listen.h"
 #include "bench/live/live_modes.h"
-#include "bench/program.h"
-#include "bench/recording_flags.h"
+#include "bench/program/program.h"
 #include "bench/roster/robots.h"
+#include "bench/run/recording_flags.h"
 
 namespace {
 
 using namespace tauext;
-
-// a flag that would be ignored is one that was misunderstood
-void require_mode(const CLI::App& app, bool fits, const char* mode,
-                  const std::vector<const char*>& flags) {
-  for (const char* flag : flags) {
-    if (fits || app.count(flag) == 0) continue;
-    throw std::invalid_argument(fmt::format("{} goes with {}; see tauext-live --help", flag, mode));
-  }
-}
 
 // where samples come from
 void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {

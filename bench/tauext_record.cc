@@ -2,12 +2,13 @@
 // tauext-record: writes a ground-truth trace.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cctype>
 
 #include "bench/logs/lcm_trace.h"
-#include "bench/program.h"
-#include "bench/recording_flags.h"
+#include "bench/program/program.h"
 #include "bench/roster/robots.h"
+#include "bench/run/recording_flags.h"
 #include "mjcf/trace/atomic_file.h"
 
 namespace {

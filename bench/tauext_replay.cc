@@ -2,6 +2,7 @@
 // tauext-replay: runs estimators over a recorded log.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,11 +10,12 @@
 
 #include "bench/logs/lcm_trace.h"
 #include "bench/logs/read_log.h"
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/known.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace {
@@ -93,26 +95,27 @@ std::string verdict(const Score& s) {
                                                         *s.get(Metric::kRecall), *delay));
 }
 
-void print_metrics(const Trace& trace, const std::vector<Column>& columns, std::FILE* to) {
+void print_metrics(const Trace& trace, const std::vector<Column>& columns, double score_from,
+                   std::FILE* to) {
   constexpr Metric kShown[] = {Metric::kRmse, Metric::kBias, Metric::kMax};
   std::vector<TableWriter::Column> titles = {{.title = "estimator", .left = true},
                                              {.title = "joint"}};
   for (const Metric m : kShown) {
-    titles.push_back({std::string(row_of(m).title), std::string(row_of(m).unit)});
+    titles.push_back({title_of(m), std::string(row_of(m).unit)});
   }
   TableWriter table(std::move(titles));
   for (const Column& c : columns) {
     Score s;
-    add_error_metrics(trace, c.output, trace.t.front(), s);
+    if (trace.has_truth()) add_error_metrics(trace, c.output, score_from, s);
     add_detection_metrics(trace, c.output, s);
-    for (int j = 0; j < trace.dof(); ++j) {
+    for (int j = 0; trace.has_truth() && j < trace.dof(); ++j) {
       std::vector<std::string> cells = {j == 0 ? c.estimator : "", std::to_string(j + 1)};
       for (const Metric m : kShown) cells.push_back(fmt::format("{:.6g}", s.joint(m, j)));
       table.add(std::move(cells));
     }
     if (const std::string v = verdict(s); !v.empty()) table.add_note("  " + c.detector + ": " + v);
   }
-  fmt::print(to, "{}", table.format());
+  if (!table.empty()) fmt::print(to, "{}", table.format());
 }
 
 }  // namespace
@@ -128,6 +131,7 @@ int main(int argc, char** argv) {
       "tauext-replay");
   std::string log, channel, robot_name, detector, out;
   std::vector<std::string> estimators;
+  double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
   app.add_option("log", log, "log to read: CSV or LCM");
   app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
@@ -138,6 +142,9 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--detector", detector, "NAME[:KEY=VALUE].. behind each estimator");
   app.add_option("--out", out, "file to write; - is standard output");
+  app.add_option("--score_from", score_from,
+                 "errors count from this time on [s]; else from the begin")
+      ->type_name("S");
   app.add_flag("--list", list, "list robots, estimators and detectors, and stop");
   return run_program(app, argc, argv, [&] {
     if (list) {
@@ -152,20 +159,18 @@ int main(int argc, char** argv) {
     if (is_lcm_log(out)) {
       throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", out));
     }
+    refuse_twice("estimator", estimators);
     const Robot& r = robot(robot_name);
     for (const std::string& e : estimators) r.check(e, detector);
     const Trace trace = read_log_or_csv(log, channel);
     std::vector<Column> columns;
     for (const std::string& e : estimators) {
-      if (std::count(estimators.begin(), estimators.end(), e) > 1) {
-        throw std::invalid_argument(fmt::format("estimator '{}' is named twice", e));
-      }
       columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
     }
     bool good = true;
     for (const Column& c : columns) good = report_status(trace, c) && good;
     write_estimates(trace, columns, out);
-    if (trace.has_truth()) print_metrics(trace, columns, out == "-" ? stderr : stdout);
+    print_metrics(trace, columns, score_from, out == "-" ? stderr : stdout);
     return good ? kGood : kAnswerIsNo;
   });
 }

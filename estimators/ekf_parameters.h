@@ -42,9 +42,9 @@ struct EkfParameters {
   static constexpr auto fields() {
     using P = EkfParameters;
     return std::tuple(
-        Field{"P0", &P::P0, "SI^2", 0, 1e20, "variances of q, qd, tau_ext at the start"},
-        Field{"Q", &P::Q, "SI^2", 0, 1e20, "theirs per step; larger is faster and noisier"},
-        Field{"R", &P::R, "SI^2", 1e-30, 1e12, "of the measured q, qd; larger is slower"},
+        Field{"P0", &P::P0, "SI^2", 0, 1e20, "3N variances of q, qd, tau_ext at the start"},
+        Field{"Q", &P::Q, "SI^2", 0, 1e20, "3N likewise, per step; larger is faster"},
+        Field{"R", &P::R, "SI^2", 1e-30, 1e12, "2N of measured q and qd; larger is slower"},
         Field{"Ts", &P::Ts, "s", 0, 1, "the step that Q and R are meant for; 0: any"},
         integration_field<P>(),
         Field{"alignment", &P::alignment, "", 0, 0, "paper errs by a sample of tau"},

@@ -19,8 +19,8 @@
 
 namespace tauext {
 
-/// A number, a vector with a value for each joint, a whole number or a choice (an enum) in P. Limits include
-/// their ends; a choice has none.
+/// A number, a vector, a whole number or a choice (an enum) in P. A vector has a value for each joint, unless
+/// `effect` says otherwise (covariances of the EKF). Limits include their ends; a choice has none.
 template <class P, class T>
 struct Field {
   const char* key;     ///< as a specification names it

@@ -24,6 +24,19 @@ Lists& lists() {
 
 bool in_use = false;  // whether references into the lists have been given away
 
+// the lists, from the first use on, when every robot should be there
+const Lists& final_lists() {
+  static const Lists& all = []() -> const Lists& {
+    in_use = true;
+    const std::vector<std::string> robots = robot_names();
+    for (const auto& [robot, list] : lists()) {
+      find_known(robots, "robot", robot, [](const std::string& name) { return name; });
+    }
+    return lists();
+  }();
+  return all;
+}
+
 }  // namespace
 
 void register_scenario(const std::string& robot, const Scenario& s) {
@@ -41,10 +54,9 @@ void register_scenario(const std::string& robot, const Scenario& s) {
 }
 
 const std::vector<Scenario>& scenarios(std::string_view robot) {
-  in_use = true;
-  const auto it = lists().find(robot);
-  if (it != lists().end()) return it->second;
-  throw std::invalid_argument(fmt::format("no scenarios for robot '{}'", robot));
+  return find_known(final_lists(), "robot with scenarios", robot,
+                    [](const auto& list) -> const std::string& { return list.first; })
+      .second;
 }
 
 const Scenario& scenario(std::string_view robot, std::string_view name) {

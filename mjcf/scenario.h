@@ -14,14 +14,16 @@
 namespace tauext {
 
 /// All scenarios of a robot, in the order in which they are listed.
-/// @throws std::invalid_argument for a robot without scenarios
+/// @throws std::invalid_argument for a robot without scenarios, listing those that have some; and if scenarios
+/// were registered for a robot that does not exist
 const std::vector<Scenario>& scenarios(std::string_view robot);
 
 /// The scenario of that name.
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Scenario& scenario(std::string_view robot, std::string_view name);
 
-/// Adds a scenario to a robot's list; before the list is first asked for, else std::logic_error.
+/// Adds a scenario to a robot's list; before a list is first asked for, else std::logic_error. The robot may be
+/// registered later; one that does not exist then is refused when the lists are first asked for.
 /// @throws std::invalid_argument if the name is empty or taken
 void register_scenario(const std::string& robot, const Scenario& scenario);
 

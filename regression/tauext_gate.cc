@@ -3,12 +3,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <ctime>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
 
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
 #include "regression/counts/instructions.h"
@@ -75,10 +76,14 @@ int update(Flags& f) {
   f.update.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   const UpdateResult r = update_baselines(f.update);
   fmt::print("{}", r.text);
-  return r.refused ? kLessAccurate : kGood;
+  return r.code;
 }
 
-int calibrate(Flags& f) {
+int calibrate(const CLI::App& sub, Flags& f) {
+  if (!f.calibrate.head.empty() && sub.count("--slowdowns") > 0) {
+    throw std::invalid_argument(
+        "--slowdowns: nothing is injected where --head says what is slower");
+  }
   if (f.calibrate.trials < 1) throw std::invalid_argument("--trials: at least 1");
   Progress progress("trying");
   f.calibrate.progress = progress.callback();
@@ -205,9 +210,10 @@ void add_flags(CLI::App& app, Flags& f) {
 }
 
 int run(const CLI::App& app, Flags& f) {
-  const std::string name = app.get_subcommands().front()->get_name();
+  const CLI::App& sub = *app.get_subcommands().front();
+  const std::string name = sub.get_name();
   if (name == "update") return update(f);
-  if (name == "calibrate") return calibrate(f);
+  if (name == "calibrate") return calibrate(sub, f);
   if (name != "explain") return check(f);
   fmt::print("{}", explain(f.gate, f.subject));
   return kGood;

@@ -53,24 +53,31 @@ class Files {
   std::vector<std::string> names_;
 };
 
-void update_counts(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
+// one line for each number that is not as it was
+struct Changes {
+  std::string worse, other;
+};
+
+Changes update_counts(const UpdateOptions& o, Files& files) {
+  Changes changes;
   Counts head = count_instructions(o.head, o.kernels);
   if (const std::optional<Counts> before = committed_counts(o.baselines, head.key)) {
     for (const CountChange& c : compare_counts(*before, head)) {
       const std::string line =
           fmt::format("  {}: {:+.2f} % instructions\n", c.kernel, 100 * c.change());
-      (too_many(c) ? worse : changed) += line;
+      (too_many(c) ? changes.worse : changes.other) += line;
     }
     const std::regex wanted(o.kernels);
     for (const auto& [kernel, count] : before->kernels) {
       if (!std::regex_search(kernel, wanted)) {
         head.kernels[kernel] = count;
       } else if (!head.kernels.contains(kernel)) {
-        worse += "  " + kernel + ": gone\n";
+        changes.worse += "  " + kernel + ": gone\n";
       }
     }
   }
   files.add(counts_path(o.baselines, head.key), format_counts(head));
+  return changes;
 }
 
 // the new text, with the old lines of entries that do not match
@@ -98,7 +105,8 @@ std::string merged(const std::string& before, const std::string& now, const std:
   return head + "# end\n";
 }
 
-void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std::string& changed) {
+Changes update_golden(const UpdateOptions& o, Files& files) {
+  Changes changes;
   const std::string path = golden_path(o.baselines);
   std::string text = run_bench(o.bench, o.entries);
   const Golden head = parse_golden(text, "what " + o.bench + " wrote");
@@ -108,14 +116,14 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
       throw std::invalid_argument(
           fmt::format("{}: {}; update it without --entries", path, r.no_baseline));
     }
-    if (!r.no_baseline.empty()) worse += "  not to be compared: " + r.no_baseline + "\n";
+    if (!r.no_baseline.empty()) changes.worse += "  cannot be compared: " + r.no_baseline + "\n";
     for (const MetricChange& c : r.changes) {
       const std::string line =
           fmt::format("  {} {}: {:.6g} -> {:.6g}\n", c.entry, c.metric, c.before, c.after);
       const bool failed =
           c.change == Change::kNew && c.metric == row_of(Metric::kFailed).key && c.after > 0;
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
-      (bad ? worse : changed) += line;
+      (bad ? changes.worse : changes.other) += line;
     }
     if (!o.entries.empty()) text = merged(read_file(path), text, o.entries);
   }
@@ -123,11 +131,12 @@ void update_golden(const UpdateOptions& o, Files& files, std::string& worse, std
     for (const auto& [key, line] : head.lines) {
       if (key.second == row_of(Metric::kFailed).key &&
           line.values != std::vector<double>(line.values.size(), 0)) {
-        worse += "  " + key.first + ": fails\n";
+        changes.worse += "  " + key.first + ": fails\n";
       }
     }
   }
   files.add(path, text);
+  return changes;
 }
 
 std::string first_lines(const std::string& text, int most) {
@@ -150,22 +159,24 @@ UpdateResult update_baselines(const UpdateOptions& o) {
   std::string log =
       fs::exists(o.changelog) ? read_file(o.changelog) : "# Baselines\nEach line moved them.\n\n";
   Files files;
-  std::string worse, changed;
-  if (!o.head.empty()) update_counts(o, files, worse, changed);
-  if (!o.bench.empty()) update_golden(o, files, worse, changed);
+  const Changes counts = o.head.empty() ? Changes() : update_counts(o, files);
+  const Changes metrics = o.bench.empty() ? Changes() : update_golden(o, files);
+  const std::string worse = counts.worse + metrics.worse;
   if (!worse.empty() && o.accept_worse.empty()) {
-    return {true, "refused, for these would be worse, or nobody could tell:\n" +
-                      first_lines(worse, 20) + "If that is right: --accept-worse 'the reason'\n"};
+    return {counts.worse.empty() ? kLessAccurate : kSlower,
+            "refused: these would be worse, or cannot be compared:\n" + first_lines(worse, 20) +
+                "If that is right: --accept-worse 'the reason'\n"};
   }
   if (files.names().empty())
-    return {false, "the baselines are as they should be; nothing was written\n"};
+    return {kGood, "the baselines are as they should be; nothing was written\n"};
   UpdateResult result;
   for (const std::string& name : files.names()) result.text += "wrote " + name + "\n";
   log += fmt::format("- {}: {}{}\n", o.date, o.reason,
                      worse.empty() ? "" : fmt::format(" (worse, accepted: {})", o.accept_worse));
   files.add(o.changelog, log);
   files.commit();
-  result.text += first_lines(worse + changed, 20) + "The reason is in " + o.changelog + "\n";
+  result.text += first_lines(worse + counts.other + metrics.other, 20) + "The reason is in " +
+                 o.changelog + "\n";
   return result;
 }
 

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "bench/program/exit_code.h"
+
 namespace tauext::gate {
 
 /// What to write, and why.
@@ -20,8 +22,10 @@ struct UpdateOptions {
 
 /// What was done.
 struct UpdateResult {
-  bool refused = false;  ///< something is worse, and nobody said that it may be
-  std::string text;      ///< for people: what changed, or what is worse
+  /// refused, as something is worse and nobody said that it may be: kSlower if a kernel's count is, else
+  /// kLessAccurate
+  ExitCode code = kGood;
+  std::string text;  ///< for people: what changed, or what is worse
 };
 
 /// Writes the baselines of head and a line in the changelog. Baselines of other keys stay.

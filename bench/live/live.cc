@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "bench/roster/threshold_file.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext::live {
 namespace {
@@ -81,10 +82,8 @@ LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string
     throw std::invalid_argument(
         fmt::format("{} has {} joints: a message holds {}", robot.name(), robot.dof(), kMaxJoints));
   }
+  refuse_twice("estimator", estimators);
   for (const std::string& e : estimators) {
-    if (std::count(estimators.begin(), estimators.end(), e) > 1) {
-      throw std::invalid_argument(fmt::format("estimator '{}' is named twice", e));
-    }
     const DetectorSettings settings{.thresholds = trained_for(thresholds, e, detector)};
     pairs_.push_back(std::make_unique<Pair>());
     pairs_.back()->name = e;

@@ -11,7 +11,7 @@
 
 #include "bench/live/interrupt.h"
 #include "bench/live/stream_table.h"
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "lcmtypes/listener.h"
 
 namespace tauext::live {

@@ -17,7 +17,7 @@
 #include "bench/live/live_report.h"
 #include "bench/logs/lcm_trace.h"
 #include "bench/logs/read_log.h"
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
@@ -40,11 +40,14 @@ ThresholdSet thresholds_of(const Options& o) {
 }
 
 // the samples to play: simulated with everything that reacts in it, or read
-Trace recorded_trace(const Options& o, const Robot& r) {
+Trace recorded_trace(const Options& o, const Robot& r, const ThresholdSet& thresholds) {
   if (!o.from.empty()) return read_log_or_csv(o.from, o.channel);
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
-  if (s.reacts && !o.detector.empty()) supervisor = r.supervisor(o.estimators[0], o.detector);
+  if (s.reacts && !o.detector.empty()) {
+    supervisor = r.supervisor(o.estimators[0], o.detector,
+                              {.thresholds = trained_for(thresholds, o.estimators[0], o.detector)});
+  }
   fmt::print(stderr, "simulating {} s of {}\n", s.duration, s.name);
   return measure(
       simulate(load_for(r.name(), s, o.model_error), s, o.recording, o.sensors, supervisor),
@@ -106,10 +109,11 @@ class Loop {
 
 int run_recorded(const Options& o) {
   const Robot& r = checked_robot(o);
-  const Trace trace = recorded_trace(o, r);
+  const ThresholdSet thresholds = thresholds_of(o);
+  const Trace trace = recorded_trace(o, r, thresholds);
   const std::vector<Reading> readings = readings_of(trace);
   Outlet outlet(o, o.rate / o.pace.speed);  // a rate of the clock's seconds
-  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), trace, outlet.stream());
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream());
   const Interrupt interrupt;
   fmt::print(stderr, "playing {}{}; Ctrl-C ends\n", title_of(o), outlet.where());
   const auto begin = Clock::now();

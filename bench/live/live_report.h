@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/live/live.h"
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "lcmtypes/arrivals.h"
 
 namespace tauext::live {

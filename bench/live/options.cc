@@ -21,13 +21,14 @@ void check(const Options& o, bool listen) {
   const bool receives = listen || !o.subscribe.empty();
   require(!receives || !lcm_url(o.url).starts_with("memq://"),
           "memq:// does not leave a process: nothing can arrive");
+  const int sources = listen + !o.scenario.empty() + !o.from.empty() + !o.subscribe.empty();
+  require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
+  require(o.thresholds.empty() || !o.detector.empty(), "--thresholds goes with --detector");
   if (listen) {
-    require(o.robot.empty() && o.estimators.empty(),
+    require(o.robot.empty() && o.estimators.empty() && o.detector.empty(),
             "--listen shows streams and estimates nothing");
     return;
   }
-  const int sources = !o.scenario.empty() + !o.from.empty() + !o.subscribe.empty();
-  require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
   require(!o.robot.empty() && !o.estimators.empty(), "--robot and --estimator are required");
   require(o.pace.speed >= 1e-3 && o.pace.speed <= 1e3,
           fmt::format("--speed {}: 0.001 to 1000", o.pace.speed));

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "estimators/types.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext {
 namespace {
@@ -101,19 +102,10 @@ const std::vector<Term>& terms() {
 }
 
 std::vector<Term> find_terms(const std::vector<std::string>& names) {
+  refuse_twice("term", names);
   std::vector<Term> found;
-  std::vector<std::string> known;
-  for (const Term& t : terms()) known.push_back(t.name);
   for (const std::string& name : names) {
-    const auto it = std::find(known.begin(), known.end(), name);
-    if (it == known.end()) {
-      throw std::invalid_argument(
-          fmt::format("unknown term '{}'; known: {}", name, fmt::join(known, ", ")));
-    }
-    if (std::count(names.begin(), names.end(), name) > 1) {
-      throw std::invalid_argument(fmt::format("term '{}' is named twice", name));
-    }
-    found.push_back(terms()[it - known.begin()]);
+    found.push_back(find_known(terms(), "term", name, [](const Term& t) { return t.name; }));
   }
   return found;
 }

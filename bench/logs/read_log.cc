@@ -24,6 +24,9 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
 
 Trace read_log_or_csv(const std::string& path, const std::string& channel) {
   if (!is_lcm_log(path)) {
+    if (!channel.empty()) {
+      throw std::invalid_argument(fmt::format("{}: CSV has no channel '{}'", path, channel));
+    }
     SkippedRows skipped;
     Trace trace = read_csv(path, &skipped);
     report_skipped(skipped, path);

@@ -10,7 +10,10 @@
 namespace tauext {
 
 void Robot::check(std::string_view estimator, std::string_view detector) const {
-  stepper(needs_truth(estimator) ? Zero<1>::kName : estimator, detector, Trace(), {});
+  Trace one;  // copies of the truth need a sample of it
+  one.t = {0};
+  one.q = one.qd = one.tau = one.tau_ext = Eigen::MatrixXd::Zero(dof_, 1);
+  stepper(estimator, detector, one, {});
 }
 
 Supervisor Robot::supervisor(std::string_view estimator, std::string_view detector,

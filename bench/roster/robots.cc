@@ -6,11 +6,13 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 
 #include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
 #include "mjcf/scenario.h"
+#include "mjcf/trace/table_writer.h"
 
 namespace tauext {
 namespace {
@@ -102,36 +104,34 @@ std::string list_known() {
   for (const auto& r : robots()) {
     out += fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n", r->name(),
                        r->dof(), fmt::join(r->estimators(), ", "), fmt::join(r->detectors(), ", "));
-    out += "  scenarios\n";
-    for (const Scenario& s : scenarios(r->name()))
-      out += fmt::format("    {:<12} {}\n", s.name, s.description);
+    TableWriter table({{"  scenario", "", true}, {"what happens", "", true}});
+    for (const Scenario& s : scenarios(r->name())) table.add({"  " + s.name, s.description});
+    out += table.format();
   }
   return out +
-         "\nrobot FILE.xml: any MJCF arm of hinges and slides\n\n"
-         "what can be set, as name:key=value:key=value (a value for each joint: 1/2/3), and what "
-         "larger "
-         "does\n" +
-         list_fields(*robots().front());
+         "\nrobot FILE.xml: any MJCF arm of 1 to 7 joints, hinges and slides; tauext-replay and "
+         "tauext-live take it\n\n" +
+         list_fields();
 }
 
-std::string list_fields(const Robot& r) {
-  std::string out;
+std::string list_fields() {
+  TableWriter table(
+      {{"what can be set", "", true}, {"limits", "", true}, {"what larger does", "", true}});
+  std::set<std::string> told;
   const auto add = [&](const std::string& name, const std::vector<FieldHelp>& fields) {
-    if (!fields.empty()) out += name + "\n";
-    std::size_t key = 0, unit = 0, range = 0;
+    if (fields.empty() || !told.insert(name).second) return;
+    table.add_note(name);
     for (const FieldHelp& f : fields) {
-      key = std::max(key, f.key.size());
-      unit = std::max(unit, f.unit.size());
-      range = std::max(range, f.range.size());
-    }
-    for (const FieldHelp& f : fields) {
-      out += fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", f.key, key, f.unit, unit, f.range, range,
-                         f.effect);
+      table.add({"  :" + f.key, f.range + (f.unit.empty() ? "" : " " + f.unit), f.effect});
     }
   };
-  for (const std::string& e : r.estimators()) add(e, r.estimator_fields(e));
-  for (const std::string& d : r.detectors()) add(d, r.detector_fields(d));
-  return out;
+  for (const auto& r : robots()) {
+    for (const std::string& e : r->estimators())
+      add(std::string(name_of_specification(e)), r->estimator_fields(e));
+    for (const std::string& d : r->detectors()) add(d, r->detector_fields(d));
+  }
+  return "keys of specifications, NAME:KEY=VALUE:KEY=VALUE; a value for each joint is 1/2/3\n" +
+         table.format();
 }
 
 }  // namespace tauext

@@ -47,8 +47,7 @@ const Scenario& scenario_of(const Robot& robot, std::string_view name);
 /// What --list prints: everything the roster and the scenarios hold, and the keys of specifications.
 std::string list_known();
 
-/// A line for each key that an estimator or detector of the robot has: key, unit, limits, what larger does.
-/// @throws std::invalid_argument for an unknown name
-std::string list_fields(const Robot& robot);
+/// A line for each key that an estimator or a detector of any robot has: unit, limits, what larger does.
+std::string list_fields();
 
 }  // namespace tauext

@@ -81,9 +81,8 @@ template <class E, RobotModel M>
 struct Make {
   M model;                            ///< of the robot
   typename E::Parameters parameters;  ///< unless a specification changes them
-  E operator()(const Trace&) const {
-    return E(model, parameters);
-  }  ///< no estimator of the roster looks at it
+  /// Builds one. The trace is for baselines, which copy its truth.
+  E operator()(const Trace&) const { return E(model, parameters); }
 };
 /// Builds E with these parameters.
 template <class E, RobotModel M>

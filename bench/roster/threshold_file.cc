@@ -57,9 +57,8 @@ ThresholdSet set_of(const Json& j) {
   set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
   const Robot& r = robot(set.robot);
   for (const auto& [estimator, detectors] : j.at("thresholds").items()) {
-    r.estimator_fields(estimator);  // throws if it is unknown
     for (const auto& [detector, values] : detectors.items()) {
-      r.detector_fields(detector);
+      r.check(estimator, detector);
       set.by_estimator[estimator][detector] =
           trained_of(values, r.dof(), fmt::format("{}/{}+{}", set.robot, estimator, detector));
     }

@@ -9,17 +9,10 @@
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext {
 namespace {
-
-// building the pair tells what is wrong with it; copies of the truth need a sample of one
-void require_known(const Robot& r, std::string_view estimator, std::string_view detector) {
-  Trace one;
-  one.t = {0};
-  one.q = one.qd = one.tau = one.tau_ext = Eigen::MatrixXd::Zero(r.dof(), 1);
-  r.stepper(estimator, detector, one);
-}
 
 // what is selected of the estimators or of the detectors
 class Selected {
@@ -28,12 +21,8 @@ class Selected {
 
   Selected(Kind kind, const std::vector<std::string>& specifications)
       : kind_(kind), specifications_(specifications) {
-    for (const std::string& s : specifications_) {
-      if (std::count(specifications_.begin(), specifications_.end(), s) > 1) {
-        throw std::invalid_argument(fmt::format("'{}' is named twice", s));
-      }
-      require_on_some_robot(s);
-    }
+    refuse_twice(kind == Kind::kEstimators ? "estimator" : "detector", specifications_);
+    for (const std::string& s : specifications_) require_on_some_robot(s);
   }
 
   std::vector<std::string> of(const Robot& r) const {
@@ -54,9 +43,9 @@ class Selected {
   std::string error(const Robot& r, const std::string& specification) const {
     try {
       if (kind_ == Kind::kEstimators) {
-        require_known(r, specification, "");
+        r.check(specification, "");
       } else {
-        require_known(r, r.estimators().front(), specification);
+        r.check(r.estimators().front(), specification);
       }
       return "";
     } catch (const std::invalid_argument& e) {
@@ -91,7 +80,7 @@ Entry::Entry(std::string_view robot, std::string_view scenario, std::string_view
       scenario_(&scenario_of(*robot_, scenario)),
       estimator_(estimator),
       detector_(detector) {
-  require_known(*robot_, estimator_, detector_);
+  robot_->check(estimator_, detector_);
 }
 
 std::string Entry::group() const {

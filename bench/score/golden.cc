@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/roster/degradation.h"
+#include "bench/score/degradation.h"
 #include "bench/score/parallel.h"
 
 namespace tauext {

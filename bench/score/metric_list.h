@@ -141,7 +141,11 @@ constexpr const MetricRow* find_metric(std::string_view key) {
   return nullptr;
 }
 
-/// The key of a metric.
+/// The title of a metric's column.
+inline std::string title_of(Metric m) {
+  return std::string(row_of(m).title);
+}
+/// Its key.
 inline std::string key_of(Metric m) {
   return std::string(row_of(m).key);
 }

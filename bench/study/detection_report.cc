@@ -19,7 +19,7 @@ using metrics::quantile;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLegend = R"(
-recall: share of the blows that were marked until 0.2 s after their end. p50, p95: half, and 95 %
+recall: share of the blows that were marked until {:g} s after their end. p50, p95: half, and 95 %
 of these marks come within this time from the blow's begin. stray: other marks in the same runs.
 alarms: marks in free motion and slow pushes, where nothing is hit; with 95 % confidence there are
 fewer of them per hour than `fewer than`. on: share of that time in which the detector is in
@@ -82,7 +82,7 @@ std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
     for (; first != last; ++first) table.add(cells_of(*first));
     out += table.format();
   }
-  return out + kLegend;
+  return out + fmt::format(kLegend, metrics::kGrace);
 }
 
 Json number(double x) {
@@ -94,7 +94,8 @@ Json roc_of(const Cell& c) {
   for (std::size_t i = 0; i < kLevels.size(); ++i) {
     Json point;
     point["threshold_factor"] = kLevels[i];
-    point["recall"] = c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
+    point[key_of(Metric::kRecall)] =
+        c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
     if (c.quiet_samples > 0)
       point[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms_at[i] / c.hours();
     roc.push_back(point);
@@ -111,7 +112,7 @@ Json to_json(const Cell& c) {
   j["failed_runs"] = c.failed_runs;
   j["collisions"] = c.blows;
   j["detected"] = c.detected;
-  j["recall"] = c.recall();
+  j[key_of(Metric::kRecall)] = c.recall();
   j["delay_p50_s"] = number(quantile(c.delays, 0.5));
   j["delay_p95_s"] = number(quantile(c.delays, 0.95));
   j["stray_marks"] = c.stray;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "bench/roster/robots.h"
+#include "bench/score/metric_list.h"
 #include "bench/score/metrics.h"
 #include "bench/score/parallel.h"
 #include "bench/score/suite.h"
@@ -26,7 +27,7 @@ constexpr double kSettled = 3;  // [s] the start is over
 constexpr const char* kLegend =
     R"(bandwidth: where the gain of the slowest joint falls to -3 dB in `chirp`; design: the parameter
 `bandwidth` that gives it. noise: what a velocity noise of 1e-3 rad/s and an encoder of 17 bits
-add. lag: how far the estimate is behind `sine`. to 90 %, overshoot: the answer to `step`. mass:
+add. lag: how far the estimate is behind `sine`. rise 0-90 %, overshoot: the answer to `step`. mass:
 mean error if the last link is 5 % heavier than the model says. friction: rms error under a dry
 friction of 5 N m that the model does not know. step: CPU time. Every figure is that of the worst
 joint.
@@ -207,11 +208,11 @@ std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<A
                                    TableFormat format) {
   TableWriter table({{"estimator", "", true},
                      {"design", "rad/s"},
-                     {"bandwidth", "rad/s"},
-                     {"noise", "N m"},
-                     {"lag", "ms"},
-                     {"to 90 %", "ms"},
-                     {"overshoot", "%"},
+                     {title_of(Metric::kBandwidth), "rad/s"},
+                     {title_of(Metric::kNoise), "N m"},
+                     {title_of(Metric::kLag), "ms"},
+                     {title_of(Metric::kRise0To90), "ms"},
+                     {title_of(Metric::kOvershoot), "%"},
                      {"mass", "N m"},
                      {"friction", "N m"},
                      {"step", "ns"}});

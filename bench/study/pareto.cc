@@ -9,6 +9,7 @@
 #include <map>
 
 #include "bench/roster/baselines.h"
+#include "bench/score/metric_list.h"
 #include "bench/score/parallel.h"
 #include "bench/study/detection_report.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double kMargin = 1.02;  // less than this factor of noise is no difference
 
 constexpr const char* kLegend =
-    R"(settling: until the estimate of `step` stays within 2 %. to 90 %, overshoot: its way there. noise:
+    R"(settling: until the estimate of `step` stays within 2 %. rise 0-90 %, overshoot: its way there. noise:
 what a velocity noise of 1e-3 rad/s and an encoder of 17 bits add. A point is behind the front if
 another one settles as quickly and is at least 2 % quieter; the quietest of these is named. An
 estimate that never settles is not compared. Every figure is that of the worst joint.
@@ -127,10 +128,10 @@ std::string format_pareto(const Robot& r, const std::vector<ParetoPoint>& points
                           TableFormat format) {
   TableWriter table({{"estimator", "", true},
                      {"design", "rad/s"},
-                     {"to 90 %", "ms"},
-                     {"overshoot", "%"},
-                     {"settling", "ms"},
-                     {"noise", "N m"},
+                     {title_of(Metric::kRise0To90), "ms"},
+                     {title_of(Metric::kOvershoot), "%"},
+                     {title_of(Metric::kSettling), "ms"},
+                     {title_of(Metric::kNoise), "N m"},
                      {"verdict", "", true}});
   const ParetoPoint* before = nullptr;
   for (const ParetoPoint& p : points) {

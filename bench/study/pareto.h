@@ -22,9 +22,8 @@ struct ParetoPoint {
 
   /// Whether it has a place at all: an estimate that never settles, or whose noise has no value, has none.
   bool has_value() const;
-  bool on_front() const {
-    return has_value() && dominated_by.empty();
-  }  ///< nobody is better in both
+  /// Whether nobody is better in both.
+  bool on_front() const { return has_value() && dominated_by.empty(); }
 };
 
 /// Sweeps every tunable estimator of the robot, and adds all as the roster has them, one point each.

@@ -7,6 +7,7 @@
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
+#include "bench/score/degradation.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/suite.h"
 #include "bench/study/detection_report.h"
@@ -21,7 +22,7 @@ using metrics::DetectionScore;
 using metrics::quantile;
 
 constexpr const char* kLegend =
-    R"(missed: blows without a mark until 0.2 s after their end. stray: other marks in these runs. p50,
+    R"(missed: blows without a mark until {:g} s after their end. stray: other marks in these runs. p50,
 p95: half, and 95 % of the marks come within this time from the blow's begin. manual: marks while
 the hand moves the arm.
 )";
@@ -54,7 +55,7 @@ void add_blow(const Robot& r, const Trace& t, Reliability& row, std::vector<doub
 void add_hand(const Robot& r, const Trace& t, Reliability& row) {
   const Output out = r.runner(row.estimator, row.detector, t)->run();
   row.alarms += static_cast<int>(std::count(out.marks.begin(), out.marks.end(), 1));
-  row.hours += t.size() * 1e-3 / 3600;
+  row.hours += (t.t.back() - t.t.front()) / 3600;
 }
 
 std::vector<TableWriter::Column> columns() {
@@ -75,12 +76,12 @@ std::string text(const Tried& tried) {
   TableWriter table(columns());
   for (const Reliability& r : tried.rows) table.add(cells_of(r));
   return fmt::format(
-      R"({}, velocity noise {:g} rad/s: {} blows of 100 to 300 N and 10 to 50 ms, up or down, while it
+      R"({}, sensors with {}: {} blows of 100 to 300 N and 10 to 50 ms, up or down, while it
 moves or rests, and {:.2g} h of a hand that moves the arm
 {}
 )",
-      drawn_runs(tried.trials.robot).robot, tried.trials.sensors.velocity_noise, tried.trials.blows,
-      tried.rows.empty() ? 0 : tried.rows[0].hours, table.format());
+      drawn_runs(tried.trials.robot).robot, describe({tried.trials.sensors, {}}),
+      tried.trials.blows, tried.rows.empty() ? 0 : tried.rows[0].hours, table.format());
 }
 
 }  // namespace
@@ -116,7 +117,7 @@ std::string format_reliability(const std::vector<Tried>& all, TableFormat format
   if (format == TableFormat::kText) {
     std::string out;
     for (const Tried& tried : all) out += text(tried);
-    return out + kLegend;
+    return out + fmt::format(kLegend, metrics::kGrace);
   }
   std::vector<TableWriter::Column> all_columns = columns();
   all_columns.insert(all_columns.begin(), {"velocity noise", "rad/s"});

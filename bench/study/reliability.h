@@ -17,7 +17,7 @@ namespace tauext::study {
 struct Reliability {
   std::string estimator, detector;  ///< specifications
   int blows = 0;                    ///< drawn by seeds 1, 2, ...
-  int missed = 0;                   ///< without a mark until 0.2 s after the blow
+  int missed = 0;                   ///< without a mark until metrics::kGrace after the blow
   int stray = 0;                    ///< marks in these runs outside that window
   double delay_p50 = 0;             ///< [s] median delay of the marked ones; NaN without
   double delay_p95 = 0;             ///< [s] their 95th percentile

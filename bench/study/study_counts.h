@@ -20,7 +20,7 @@ inline constexpr std::array kLevels = {0.125, 0.25, 0.5, 0.71, 1.0, 1.41, 2.0, 4
 struct Cell {
   std::string condition, estimator, detector;  ///< what was counted
   int runs = 0, failed_runs = 0;     ///< failed: an estimate was missing (any status but ok)
-  int blows = 0, detected = 0;       ///< by a mark until 0.2 s after the blow
+  int blows = 0, detected = 0;       ///< by a mark until metrics::kGrace after the blow
   int stray = 0;                     ///< marks in these runs outside such windows
   std::vector<double> delays;        ///< [s] from a detected blow's begin to its mark, sorted
   long quiet_samples = 0;            ///< of slow pushes and free motion, at 1 kHz
@@ -33,12 +33,10 @@ struct Cell {
   std::array<int, kLevels.size()> detected_at{};  ///< with thresholds times kLevels
   std::array<int, kLevels.size()> alarms_at{};    ///< likewise
 
-  double hours() const {
-    return static_cast<double>(quiet_samples) * 1e-3 / 3600;
-  }  ///< [h] without a touch
-  double recall() const {
-    return blows == 0 ? 0 : static_cast<double>(detected) / blows;
-  }  ///< [1] of the blows
+  /// [h] without a touch.
+  double hours() const { return static_cast<double>(quiet_samples) * 1e-3 / 3600; }
+  /// [1] of the blows.
+  double recall() const { return blows == 0 ? 0 : static_cast<double>(detected) / blows; }
 };
 
 /// Counts a run of that kind: what a detector said of it, against the touches that were there.

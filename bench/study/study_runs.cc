@@ -87,12 +87,10 @@ const StudyRuns& find(const char* study, const std::string& name, bool (*has)(co
 template <class Build>
 std::vector<std::string> chosen(const char* what, const std::vector<std::string>& asked,
                                 const std::vector<std::string>& known, Build&& build) {
+  refuse_twice(what, asked);
   for (const std::string& specification : asked) {
     const std::string name(name_of_specification(specification));
     if (std::count(known.begin(), known.end(), name) == 0) throw unknown(what, name, known);
-    if (std::count(asked.begin(), asked.end(), specification) > 1) {
-      throw std::invalid_argument(fmt::format("{} '{}' is named twice", what, specification));
-    }
     build(specification);
   }
   return asked.empty() ? known : asked;
@@ -145,14 +143,12 @@ std::vector<std::string> chosen_conditions(const StudyRuns& runs,
 }
 
 std::vector<std::string> chosen_estimators(const Robot& r, const std::vector<std::string>& asked) {
-  return chosen("estimator", asked, competitors(r),
-                [&](const std::string& e) { r.stepper(e, "", Trace()); });
+  return chosen("estimator", asked, competitors(r), [&](const std::string& e) { r.check(e, ""); });
 }
 
 std::vector<std::string> chosen_detectors(const Robot& r, const std::vector<std::string>& asked) {
   const std::string any = competitors(r).front();
-  return chosen("detector", asked, r.detectors(),
-                [&](const std::string& d) { r.stepper(any, d, Trace()); });
+  return chosen("detector", asked, r.detectors(), [&](const std::string& d) { r.check(any, d); });
 }
 
 }  // namespace tauext::study

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All that belongs
-/// to one robot stands in study_runs.cc; the studies themselves know no robot by name. Not installed.
+/// to one robot stands in study_runs.cc; the studies themselves know no robot by name.
 #pragma once
 
 #include <compare>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/roster/degradation.h"
 #include "bench/roster/robot.h"
+#include "bench/score/degradation.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/touch.h"
 
@@ -59,7 +59,8 @@ struct StudyRuns {
 /// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those with
 const StudyRuns& touched_runs(const std::string& robot);
 
-/// The runs of a robot for the reliability study; as above.
+/// The runs of a robot for the reliability study; "" stands for the first robot that has some.
+/// @throws std::invalid_argument as touched_runs does
 const StudyRuns& drawn_runs(const std::string& robot);
 
 /// @throws std::invalid_argument for an unknown name, listing the known ones
@@ -86,7 +87,7 @@ std::vector<std::string> chosen_conditions(const StudyRuns& runs,
 /// All names.
 std::vector<std::string> condition_names(const StudyRuns& runs);
 
-/// The specifications asked for, or every estimator but the baselines; every detector.
+/// The specifications asked for, or every estimator but the baselines.
 /// @throws std::invalid_argument for an unknown name or key and for a value out of range
 std::vector<std::string> chosen_estimators(const Robot& r, const std::vector<std::string>& asked);
 /// The specifications asked for, or every detector.

@@ -48,10 +48,10 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
 
 TEST_F(Programs, WrongFlagsExitWith2) {
   for (const std::string command :
-       {"tauext-bench --nonsense", "tauext-record --seed 99999999999999999999", "tauext-identify",
+       {"tauext-bench --nonsense", "tauext-identify", "tauext-bench --help > /dev/full",
         "tauext-bench --reliability --benchmark_out=r.json", "tauext-bench --benchmark_nonsense=1",
-        "tauext-record --seed x", "tauext-record", "tauext-replay",
-        "tauext-bench --benchmark_format=csv", "tauext-bench --benchmark_out_format=csv",
+        "tauext-record", "tauext-replay", "tauext-bench --benchmark_format=csv",
+        "tauext-bench --benchmark_out_format=csv",
         "tauext-bench --benchmark_repetitions=0 --benchmark_filter=free/zero",
         "tauext-bench --list > /dev/full",
         "tauext-record --robot wallmobot3 --scenario free --velocity_noise -1 --out x.csv"}) {
@@ -119,10 +119,53 @@ TEST_F(Programs, GoogleBenchmarksOwnFormatsStillWork) {
   EXPECT_TRUE(nlohmann::json::accept(content("j.json"))) << content("j.json");
 }
 
-TEST_F(Programs, ListNamesEveryEntry) {
+TEST_F(Programs, ASeedIsAWholeNumberOf64Bits) {
+  const std::string record = "tauext-record --robot testbed1 --scenario hold --out x.csv --seed ";
+  EXPECT_EQ(run(record + "18446744073709551615").code, 0);
+  for (const std::string seed : {"18446744073709551616", "-1", "1.5", "x"}) {
+    const Outcome o = run(record + seed);
+    EXPECT_EQ(o.code, 2) << seed;
+    EXPECT_TRUE(o.says("is not a whole number")) << o.text;
+  }
+}
+
+TEST_F(Programs, ListNamesEntriesAndTheKeysOfSpecifications) {
   const Outcome o = run("tauext-bench --list");
   EXPECT_EQ(o.code, 0);
   EXPECT_TRUE(o.says("wallmobot3/collision/ekf+pan_tompkins\n"));
+  for (const char* program : {"bench", "detect", "live", "record", "replay"}) {
+    const Outcome list = run(std::string("tauext-") + program + " --list");
+    EXPECT_EQ(list.code, 0) << program;
+    EXPECT_TRUE(list.says("\nmo2\n")) << program;
+    EXPECT_TRUE(list.says("  :bandwidth ")) << program;
+  }
+}
+
+TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
+  write("log.csv", "t,q1,qd1,tau1\n0,0,0,0\n0.001,0,0,0\n");
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"tauext-bench --golden g.tsv --benchmark_out=r.json", "--benchmark_out and"},
+      {"tauext-bench --golden g.tsv --paper", "--paper goes with the suite"},
+      {"tauext-bench --golden g.tsv --seed 3", "--golden takes --seeds"},
+      {"tauext-bench --list --benchmark_filter=step/", "--benchmark_filter goes with"},
+      {"tauext-bench --list --list-metrics", "one at a time"},
+      {"tauext-bench --seeds 1,2", "--seeds goes with --golden"},
+      {"tauext-bench --pareto --estimator ekf", "--estimator goes with"},
+      {"tauext-detect --calibrate x.json --conditions known_0", "--conditions goes with a study"},
+      {"tauext-detect --thresholds x.json --margin 2", "--margin goes with training"},
+      {"tauext-live --listen --scenario step", "exactly one of"},
+      {"tauext-live --listen --detector cusum", "--listen shows streams"},
+      {"tauext-live --robot testbed1 --scenario hold --estimator mo1 --thresholds t.json",
+       "--thresholds goes with --detector"},
+      {"tauext-replay log.csv --robot testbed1 --estimator mo1 --channel A --out e.csv",
+       "log.csv: CSV has no channel 'A'"}};
+  for (const auto& [command, why] : refused) {
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2) << command;
+    EXPECT_TRUE(o.says(why)) << command << '\n' << o.text;
+  }
+  for (const char* file : {"g.tsv", "r.json", "x.json", "e.csv"})
+    EXPECT_FALSE(exists(file)) << file;
 }
 
 TEST_F(Programs, DetectRefusesWhatItCannotDoBeforeItWorks) {
@@ -139,7 +182,7 @@ TEST_F(Programs, DetectRefusesWhatItCannotDoBeforeItWorks) {
   EXPECT_EQ(run("tauext-bench --equal-bandwidth 1000").code, 2);
   EXPECT_EQ(run("tauext-bench --pareto --list").code, 2);
   EXPECT_TRUE(
-      run("tauext-detect --detectors high_pass:v=1").says("there is no key 'v'; known: threshold"));
+      run("tauext-detect --detector high_pass:v=1").says("there is no key 'v'; known: threshold"));
   EXPECT_TRUE(run("tauext-detect --format xml").says("unknown format 'xml'; known: text, csv"));
   EXPECT_EQ(run("tauext-bench --degrade /nowhere.json").code, 2);
 }
@@ -147,7 +190,7 @@ TEST_F(Programs, DetectRefusesWhatItCannotDoBeforeItWorks) {
 TEST_F(Programs, StudiesRefuseFlagsOfTheSuiteAndSayWhatARobotLacks) {
   const Outcome json = run("tauext-bench --pareto --benchmark_format=json");
   EXPECT_EQ(json.code, 2);
-  EXPECT_TRUE(json.says("they have --format and --out")) << json.text;
+  EXPECT_TRUE(json.says("a study has --out and --format")) << json.text;
   for (const std::string flags :
        {"--format xml", "--out x.txt", "--pareto --format xml",
         "--pareto --reliability --format json", "--pareto --out /nowhere/p.txt",

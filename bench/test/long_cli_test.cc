@@ -14,7 +14,7 @@ TEST_F(Programs, DetectCalibratesThenStudiesWithThatFile) {
   const Outcome trained = run("tauext-detect --calibrate th.json --train known_0 --runs 1");
   ASSERT_EQ(trained.code, 0) << trained.text;
   const std::string small =
-      " --conditions known_0 --estimators mo1 --detectors contact_classifier --collisions 1 "
+      " --conditions known_0 --estimator mo1 --detector contact_classifier --collisions 1 "
       "--hours 0 "
       "--pushes 0 --clampings 1";
   const Outcome study = run("tauext-detect --thresholds th.json --out study.json" + small);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -27,6 +28,7 @@ class Programs : public testing::Test {
  protected:
   Programs() : folder_(fs::temp_directory_path() / ("tauext_cli_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
+    ::unsetenv("LCM_DEFAULT_URL");  // whoever runs the tests may have one
   }
   ~Programs() override { fs::remove_all(folder_); }
 

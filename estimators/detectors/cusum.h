@@ -43,7 +43,7 @@ class Cusum {
           std::tuple(threshold_field<P>("N m s"),
                      Field{"drift", &P::drift, "N m", 0, 1e12, "larger forgets sooner"},
                      Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "of the slow mean; larger lets less of a push pass"}),
+                           "larger lets less of a push pass"}),
           marking_fields<P>());
     }
   };

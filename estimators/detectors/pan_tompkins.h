@@ -43,10 +43,10 @@ class PanTompkins {
     static constexpr auto fields() {
       using P = Parameters;
       return std::tuple_cat(
-          std::tuple(Field{"stride", &P::stride, "samples", 1, kMaxStride,
-                           "between the points; larger is later, less noisy"},
-                     threshold_field<P>("(N m/s)^2"),
-                     Field{"hold", &P::hold, "s", 0, 1e3, "how long an energy is kept"}),
+          std::tuple(
+              Field{"stride", &P::stride, "samples", 1, kMaxStride, "larger is later, less noisy"},
+              threshold_field<P>("(N m/s)^2"),
+              Field{"hold", &P::hold, "s", 0, 1e3, "how long an energy is kept"}),
           marking_fields<P>());
     }
   };

@@ -23,21 +23,12 @@
 #include "estimators/ndob_inertia.h"
 #include "estimators/sliding_mode_observer.h"
 #include "estimators/wallmobot3.h"
+#include "mjcf/test/error_of.h"
 
 namespace tauext::test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-template <class Body>
-std::string error_of(Body&& body) {
-  try {
-    body();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 // sets the field beyond its limits in every way and builds T of it; the number of ways that were refused
 template <class T, class P, class Value, class Build>

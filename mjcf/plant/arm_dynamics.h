@@ -41,6 +41,11 @@ class ArmDynamics {
   std::unique_ptr<Workspace> work_;
 };
 
+namespace detail {
+/// @throws std::invalid_argument unless they are equal
+void require_equal_joints(int have, int want);
+}  // namespace detail
+
 /// An ArmDynamics of N joints as a RobotModel.
 template <int N>
 class MjcfArm {
@@ -48,7 +53,9 @@ class MjcfArm {
   static constexpr int kDof = N;
 
   /// @throws std::invalid_argument as ArmDynamics does, and for another number of joints
-  explicit MjcfArm(const Model& model) : arm_(model) { require_joints(arm_.dof(), N); }
+  explicit MjcfArm(const Model& model) : arm_(model) {
+    detail::require_equal_joints(arm_.dof(), N);
+  }
 
   /// B [kg m^2].
   Mat<N> inertia(const Vec<N>& q) const noexcept {
@@ -82,19 +89,7 @@ class MjcfArm {
   }
 
  private:
-  static void require_joints(int have, int want);
-
   ArmDynamics arm_;
 };
-
-namespace detail {
-/// @throws std::invalid_argument unless they are equal
-void require_equal_joints(int have, int want);
-}  // namespace detail
-
-template <int N>
-void MjcfArm<N>::require_joints(int have, int want) {
-  detail::require_equal_joints(have, want);
-}
 
 }  // namespace tauext

@@ -214,7 +214,8 @@ TEST(Scenarios, AnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(error_of([] { scenario("wallmobot3", "dance"); }),
             "unknown scenario 'dance' of wallmobot3; known: free, step, ramp, sine, collision, "
             "in_motion, push, brisk_push, clamp, payload, contact, chirp");
-  EXPECT_EQ(error_of([] { scenario("r2d2", "dance"); }), "no scenarios for robot 'r2d2'");
+  EXPECT_EQ(error_of([] { scenario("r2d2", "dance"); }),
+            "unknown robot with scenarios 'r2d2'; known: testbed1, wallmobot3");
 }
 
 TEST(Scenarios, OfOneSeedAreTheSameAndOfTwoAreNot) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The one answer to a name that nobody knows.
+/// The one answer to a name that nobody knows, and to one that is there twice.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -36,6 +37,15 @@ const auto& find_known(const List& list, std::string_view what, std::string_view
     known.emplace_back(name_of(element));
   }
   throw unknown(what, name, known, owner);
+}
+
+/// @param what it is that has names, like "estimator"
+/// @throws std::invalid_argument if one is there twice
+inline void refuse_twice(std::string_view what, const std::vector<std::string>& names) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(names.begin(), name, *name) == name) continue;
+    throw std::invalid_argument(std::string(what) + " '" + *name + "' is named twice");
+  }
 }
 
 }  // namespace tauext

@@ -37,14 +37,15 @@ class TableWriter {
 
   /// @throws std::logic_error for another number of cells than columns
   void add(std::vector<std::string> cells);
-  /// A line of text across the columns, in place of a row; in JSON and CSV it is left out.
+  /// A line across the columns, in place of a row; in text alone, as the other formats have rows only.
   void add_note(std::string text);
-  /// An empty line between groups of rows; text and Markdown alone.
+  /// An empty line between groups of rows; in text alone.
   void add_gap();
 
   bool empty() const { return rows_.empty(); }  ///< whether it has no rows
 
-  /// Ends with a line end. JSON: an array of objects, `title_unit` to the cell, as a number where it is one, null for "-" and "never".
+  /// Ends with a line end. JSON: an array of objects, `title_unit` to the cell, as a number where it is one, null
+  /// for "-", "never" and an empty cell.
   std::string format(TableFormat format = TableFormat::kText) const;
 
  private:

@@ -204,6 +204,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
     last_t = values[c.t];
     rows.push_back(values);
   }
+  if (in.bad()) throw std::runtime_error(fmt::format("{}: {}", path, std::strerror(errno)));
   if (rows.empty()) {
     throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,
                                          skipped->total(), skipped->first.empty() ? "" : "; ",

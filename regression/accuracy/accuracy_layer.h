@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// L4: scores every entry by a program that was built, and compares with what was committed.
+/// T0, T1 and T2: scores every entry by a program that was built, and compares with what was committed.
 #pragma once
 
 #include <functional>

@@ -79,7 +79,7 @@ std::string counts_path(const std::string& folder, const Key& key) {
 std::string format_counts(const Counts& counts) {
   std::string text = fmt::format("{}\n", kHeader);
   for (const auto& [name, value] : counts.key) text += fmt::format("# {}: {}\n", name, value);
-  text += "kernel\tinstructions of 1000 steps\n";
+  text += fmt::format("kernel\tinstructions of {} steps\n", kCountedSteps);
   for (const auto& [kernel, count] : counts.kernels) text += fmt::format("{}\t{}\n", kernel, count);
   return text + kEnd + "\n";
 }

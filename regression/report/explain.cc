@@ -44,9 +44,12 @@ std::string explain_kernel(GateOptions o, const std::string& kernel) {
   o.even_if_identical = true;
   const GateResult r = run_layers(o);
   const auto& counts = *r.instructions;
+  const std::string said = format_terminal(r, true) + "\n";
+  if (!counts.head->kernels.contains(kernel)) {
+    return said + kernel + " is gone from head: base alone has it\n";
+  }
   const bool both = counts.base && counts.base->kernels.contains(kernel);
-  return format_terminal(r, true) + "\n" +
-         functions_of(*counts.head, both ? &*counts.base : nullptr, kernel);
+  return said + functions_of(*counts.head, both ? &*counts.base : nullptr, kernel);
 }
 
 // every metric, seed by seed, and below it what was committed, if that is another

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -44,17 +45,18 @@ std::vector<Finding> time_findings(const GateResult& r) {
 }
 
 std::vector<Finding> count_findings(const std::vector<CountChange>& changes, const char* layer) {
+  const auto a_step = [](std::uint64_t n) { return static_cast<double>(n) / kCountedSteps; };
   std::vector<Finding> all;
   for (const CountChange& c : changes) {
     const Verdict v = too_many(c)                         ? Verdict::kFail
                       : std::abs(c.change()) > kCountNote ? Verdict::kNote
                                                           : Verdict::kPass;
-    Finding f{layer, c.kernel, v,
-              fmt::format(
-                  "{:<34} {:.1f} -> {:.1f} instructions a step, {:+.2f} % (limit +{:.0f} %)  {}",
-                  c.kernel, static_cast<double>(c.before) / 1e3, static_cast<double>(c.after) / 1e3,
-                  100 * c.change(), 100 * kCountLimit, name_of(v)),
-              c.gained};
+    Finding f{
+        layer, c.kernel, v,
+        fmt::format("{:<34} {:.1f} -> {:.1f} instructions a step, {:+.2f} % (limit +{:.0f} %)  {}",
+                    c.kernel, a_step(c.before), a_step(c.after), 100 * c.change(),
+                    100 * kCountLimit, name_of(v)),
+        c.gained};
     all.push_back(std::move(f));
   }
   return all;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/exit_code.h"
+#include "bench/program/exit_code.h"
 #include "regression/accuracy/accuracy.h"
 #include "regression/counts/count_layer.h"
 #include "regression/time/time_layer.h"

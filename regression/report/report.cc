@@ -64,8 +64,10 @@ std::string advice(ExitCode code) {
     case kCouldNotRun:
       return fmt::format("HARNESS ERROR (exit {}): no verdict of this run counts", int{code});
     case kUpdateNeeded:
-      return fmt::format("update needed (exit {}): if it is meant, ci/gate --update 'the reason'",
-                         int{code});
+      return fmt::format(
+          "update needed (exit {}): if it is meant, call ci/gate or "
+          "tauext-gate-commits with --update 'the reason'",
+          int{code});
     case kInconclusive:
       return fmt::format("INCONCLUSIVE (exit {}): if it is for noise, run it again", int{code});
     case kLessAccurate:

@@ -6,11 +6,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
-#include "bench/exit_code.h"
+#include "bench/program/exit_code.h"
 #include "regression/accuracy/accuracy_layer.h"
 #include "regression/host/child.h"
 #include "regression/host/files.h"
@@ -24,11 +23,6 @@ inline constexpr const char* kEntries = "testbed1/hold/subject$";
 
 inline std::string plugin(const std::string& name) {
   return kBin + "/subject_" + name + ".so";
-}
-
-inline std::string content(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 class Gate : public testing::Test {

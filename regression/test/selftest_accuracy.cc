@@ -26,7 +26,7 @@ TEST_F(AccuracyGate, NothingChangedPassesAndEveryFaultIsSeen) {
 
 TEST_F(AccuracyGate, SwappedSeedsAreSeen) {
   make_golden();
-  std::string text = content(golden());
+  std::string text = read_file(golden());
   const auto seed1 = text.find("seed 1"), seed2 = text.find("seed 2");
   text[seed1 + 5] = '2', text[seed2 + 5] = '1';
   write(golden(), text);
@@ -36,9 +36,10 @@ TEST_F(AccuracyGate, SwappedSeedsAreSeen) {
 TEST_F(AccuracyGate, AFileThatIsNotWholeIsAnErrorWithItsName) {
   EXPECT_EQ(accuracy(""), kUpdateNeeded) << "none at all: " << text_;
   make_golden();
-  const std::string whole = content(golden());
-  for (const std::string& bad : {std::string(), whole.substr(0, whole.size() / 2),
-                                 std::string("t,q1,qd1,tau1\n0,0,0,0\n"), content(make_counts())}) {
+  const std::string whole = read_file(golden());
+  for (const std::string& bad :
+       {std::string(), whole.substr(0, whole.size() / 2), std::string("t,q1,qd1,tau1\n0,0,0,0\n"),
+        read_file(make_counts())}) {
     write(golden(), bad);
     EXPECT_EQ(accuracy(""), kCouldNotRun) << text_;
     EXPECT_TRUE(says(golden())) << text_;
@@ -80,6 +81,9 @@ TEST_F(Usage, WrongFlagsAndFilesSayWhatIsWrong) {
           "--kernels: no regular expression: ");
   refuses({"time", "--base", plugin("base"), "--period", "nan"}, "--period: more than 0 s");
   refuses({"calibrate", "--trials", "0"}, "--trials: at least 1");
+  refuses(
+      {"calibrate", "--base", plugin("base"), "--head", plugin("slower"), "--slowdowns", "0.01"},
+      "--slowdowns: nothing is injected where --head says what is slower");
   refuses({"time", "--base", "/nowhere.so"}, "/nowhere.so: ");
   const std::string text = baselines() + "/text.so";
   write(text, "no plug-in");

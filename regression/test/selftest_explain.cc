@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tauext-gate explain prints can be run, and makes the entry's own run.
+// What tauext-gate explain prints can be run, and makes the entry's own run; what is gone is told.
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -11,7 +11,7 @@ namespace {
 
 // a CSV file's columns by name
 std::map<std::string, std::vector<double>> columns(const std::string& path) {
-  std::istringstream in(content(path));
+  std::istringstream in(read_file(path));
   std::string line, cell;
   std::getline(in, line);
   std::vector<std::string> names;
@@ -74,6 +74,14 @@ TEST_F(Explain, PrintsCommandsThatReproduceTheEntry) {
         << record << '\n'
         << replay;
   }
+}
+
+TEST_F(Explain, SaysThatAKernelIsGoneFromHead) {
+  EXPECT_EQ(run({"explain", "testbed1/mo1", "--base", kBin + "/tauext_plugin.so", "--head",
+                 plugin("base"), "--baselines", baselines()}),
+            kGood)
+      << text_;
+  EXPECT_TRUE(says("testbed1/mo1 is gone from head: base alone has it")) << text_;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <elf.h>
 
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
@@ -59,12 +60,6 @@ std::string code_of(const std::string& path) {
 }
 
 }  // namespace
-
-std::uint64_t code_hash(const std::string& path) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const unsigned char c : code_of(path)) hash = (hash ^ c) * 1099511628211u;
-  return hash;
-}
 
 bool identical(const std::string& a, const std::string& b) {
   return code_of(a) == code_of(b);

@@ -11,6 +11,7 @@
 #include "bench/live/entry_tap.h"
 #include "bench/score/suite.h"
 #include "mjcf/record.h"
+#include "mjcf/trace/test/same_trace.h"
 
 namespace tauext {
 namespace {
@@ -53,12 +54,7 @@ TEST_F(LcmTrace, AnOwnLogComesBackToTheLastBit) {
   append_samples(readings_of(t), MessageType::kTauext, log);
   put(log);
   const Trace back = get();
-  EXPECT_EQ(back.t, t.t);
-  EXPECT_EQ(back.q, t.q);
-  EXPECT_EQ(back.qd, t.qd);
-  EXPECT_EQ(back.tau, t.tau);
-  EXPECT_EQ(back.tau_ext, t.tau_ext);
-  EXPECT_EQ(back.contact, t.contact);
+  test::expect_same(back, t);
   EXPECT_EQ(report_.in_words(), "");
   EXPECT_EQ(report_.channel, "TAUEXT_SAMPLE");
 }

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
 #include "mjcf/test/error_of.h"
@@ -151,6 +154,18 @@ TEST_F(Registry, FailsWhenTheRobotsAreFirstAskedForAndSaysWhy) {
   EXPECT_TRUE(holds(robot("wallmobot3").estimators(), "mo2:bandwidth=50"));
   EXPECT_TRUE(holds(wallmobot3_believing(100)->estimators(), "mo2:bandwidth=50"));
   EXPECT_THROW(register_specification("testbed1", "mo2:bandwidth=50"), std::logic_error);
+}
+
+// in a process of its own, in which nobody has asked for scenarios before
+TEST(RegistryDeathTest, AScenarioOfARobotThatDoesNotExistIsRefused) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto misspelt = [] {
+    register_scenario("wallmobto3", {.name = "mine", .description = "of nobody"});
+    std::fputs(error_of([] { scenarios("wallmobot3"); }).c_str(), stderr);
+    std::exit(0);
+  };
+  EXPECT_EXIT(misspelt(), testing::ExitedWithCode(0),
+              "unknown robot 'wallmobto3'; known: testbed1, wallmobot3");
 }
 
 }  // namespace

@@ -63,6 +63,7 @@ TEST_F(ThresholdFile, SaysWhatIsWrongWithIt) {
             std::string::npos);
   EXPECT_NE(error("\"wallmobot3\"", "\"r2d2\"").find("unknown robot 'r2d2'"), std::string::npos);
   EXPECT_NE(error("\"ekf\"", "\"oracle\"").find("unknown estimator 'oracle'"), std::string::npos);
+  EXPECT_NE(error("\"ekf\"", "\"ekf:alpha=1\"").find("there is no key 'alpha'"), std::string::npos);
   EXPECT_NE(error("\"clamping\"", "\"ear\"").find("unknown detector 'ear'"), std::string::npos);
   EXPECT_NE(error("2.0", "0.0").find("wallmobot3/ekf+threshold: a threshold of 0 is not positive"),
             std::string::npos);

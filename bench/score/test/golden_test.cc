@@ -15,6 +15,7 @@ GoldenOptions small() {
   GoldenOptions o;
   o.filter = "testbed1/(collision/(truth|ekf.pan_tompkins)|hold/delayed_truth)$";
   o.seeds = {1, 7};
+  o.threads = 1;
   return o;
 }
 

@@ -25,6 +25,7 @@ StudyOptions small() {
   o.brisk_pushes = 8;
   o.clampings = 3;
   o.hours = 0.01;
+  o.threads = 1;
   return o;
 }
 
@@ -92,14 +93,15 @@ TEST(DetectionStudy, ShowsADetectorThatIsInAlarmAllTheTime) {
 
 TEST(DetectionStudy, ASpecificationOfTheRostersOwnValueIsTheSameEstimator) {
   StudyOptions o = small();
-  o.estimators = {"mo1", "mo1:bandwidth=30"};  // the roster's bandwidth
+  o.estimators = {"mo1", "mo1:bandwidth=30", "mo1:bandwidth=90"};  // 30 is the roster's
   o.detectors = {"high_pass"};
   o.brisk_pushes = o.clampings = 0;
   const std::vector<Cell> both = detection_study(o, {});
-  ASSERT_EQ(both.size(), 2u);
+  ASSERT_EQ(both.size(), 3u);
   EXPECT_EQ(both[1].estimator, "mo1:bandwidth=30");
   EXPECT_EQ(both[1].delays, both[0].delays);
   EXPECT_EQ(both[1].detected_at, both[0].detected_at);
+  EXPECT_NE(both[2].delays, both[0].delays) << "and another one is another estimator";
 }
 
 TEST(Calibration, TrainsASpecificationForItself) {

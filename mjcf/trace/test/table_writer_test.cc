@@ -48,6 +48,35 @@ TEST(TableWriter, MarkdownAndLatexEscapeTheirOwnSigns) {
             "\\hline\n\\end{tabular}\n");
 }
 
+// two groups of a row, the second with a note and without a value
+TableWriter grouped() {
+  TableWriter t({{"name", "", true}, {"x", "s"}});
+  t.add({"a", "1"});
+  t.add_gap();
+  t.add_note("b  FAILED: why");
+  t.add({"c", ""});
+  return t;
+}
+
+TEST(TableWriter, HasNotesAndGapsInTextAlone) {
+  EXPECT_EQ(grouped().format(),
+            "name  x\n"
+            "      s\n"
+            "a     1\n"
+            "\n"
+            "b  FAILED: why\n"
+            "c\n");
+  EXPECT_EQ(grouped().format(TableFormat::kCsv), "name,x_s\na,1\nc,\n");
+  EXPECT_EQ(grouped().format(TableFormat::kMarkdown),
+            "| name | x [s] |\n|---|--:|\n| a | 1 |\n| c |  |\n");
+  EXPECT_EQ(
+      grouped().format(TableFormat::kLatex),
+      "\\begin{tabular}{lr}\n\\hline\nname & x \\\\\n & s \\\\\n\\hline\na & 1 \\\\\nc &  \\\\\n"
+      "\\hline\n\\end{tabular}\n");
+  EXPECT_EQ(grouped().format(TableFormat::kJson),
+            "[\n  {\"name\": \"a\", \"x_s\": 1},\n  {\"name\": \"c\", \"x_s\": null}\n]\n");
+}
+
 TEST(TableWriter, RefusesARowOfAnotherLengthAndAnUnknownFormat) {
   TableWriter t({{"a"}, {"b"}});
   EXPECT_THROW(t.add({"1"}), std::logic_error);

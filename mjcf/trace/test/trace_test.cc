@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mjcf/record.h"
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/test/same_trace.h"
+#include "mjcf/trace/test/some_trace.h"
 
 namespace tauext::test {
 namespace {
@@ -40,26 +41,16 @@ class TraceFile : public testing::Test {
 constexpr const char* kHead = "t,q1,q2,qd1,qd2,tau1,tau2\n";
 
 TEST_F(TraceFile, ComesBackBitForBit) {
-  Scenario s = scenario("wallmobot3", "collision");
-  s.duration = 5.1;
-  const Trace t =
-      record(load_robot("wallmobot3"), s, {.velocity_noise = 1e-3, .loadcell_noise = 1});
+  const Trace t = some_trace(3, 2000);
   write_csv(t, path());
   SkippedRows skipped;
   const Trace r = read_csv(path(), &skipped);
   EXPECT_EQ(skipped.total(), 0);
-  EXPECT_EQ(r.t, t.t);
-  EXPECT_EQ(r.q, t.q);
-  EXPECT_EQ(r.qd, t.qd);
-  EXPECT_EQ(r.tau, t.tau);
-  EXPECT_EQ(r.tau_ext, t.tau_ext);
-  EXPECT_EQ(r.contact, t.contact);
+  expect_same(r, t);
 }
 
 TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
-  Scenario s = scenario("wallmobot3", "free");
-  s.duration = 0.01;
-  write_csv(record(load_robot("wallmobot3"), s), path());
+  write_csv(some_trace(3, 10), path());
   std::ifstream in(path());
   std::string line;
   std::getline(in, line);
@@ -143,9 +134,7 @@ TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
 }
 
 TEST_F(TraceFile, AFullDiskAndAMissingFolderAreErrors) {
-  Scenario s = scenario("wallmobot3", "free");
-  s.duration = 1;
-  const Trace t = record(load_robot("wallmobot3"), s);
+  const Trace t = some_trace(3, 1000);
   EXPECT_EQ(error_of([&] { write_csv(t, "/dev/full"); }),
             "/dev/full: cannot write: No space left on device");
   EXPECT_EQ(error_of([&] { write_csv(t, "/nowhere/t.csv"); }),

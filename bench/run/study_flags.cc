@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/study/study_flags.h"
+#include "bench/run/study_flags.h"
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <vector>
 
-#include "bench/program.h"
+#include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
@@ -58,12 +59,13 @@ std::string run_pareto(const StudyFlags& f) {
 }  // namespace
 
 void add_study_flags(CLI::App& app, StudyFlags& f) {
-  app.add_flag("--reliability", f.reliability, "instead: 200 blows and an hour of a human's hand");
+  app.add_flag("--reliability", f.reliability,
+               "study instead: 200 blows and an hour of a human's hand");
   app.add_option("--equal-bandwidth", f.equal_bandwidth,
-                 "instead: every estimator at so many rad/s, 1 to 200")
+                 "study instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
   app.add_flag("--pareto", f.pareto,
-               "instead: noise against delay (these three take --robot and --out)");
+               "study instead: noise against delay (all three: --robot, --out)");
   app.add_option("--format", f.format, "of the tables: text, csv, json, md or latex")
       ->type_name("NAME");
   // hidden, as the help fits a screen: bench/study/README.md

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "bench/program.h"
+#include "bench/program/program.h"
 
 namespace tauext {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/reporter.h"
+#include "bench/run/reporter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/roster/degradation.h"
+#include "bench/score/degradation.h"
 
 #include <gtest/gtest.h>
 

@@ -3,12 +3,16 @@
 /// What every program is made of: errors as one line, the share that is done.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
 #include <string>
+#include <vector>
 
-#include "bench/exit_code.h"
+#include "bench/program/exit_code.h"
+
+namespace CLI {
+class App;
+}
 
 namespace tauext {
 
@@ -40,6 +44,17 @@ class Progress {
   bool terminal_, dirty_ = false;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
+
+/// A flag that would be ignored is one that was misunderstood.
+/// @param fits whether the program runs in the mode to which the flags belong
+/// @param mode in words, like "--scenario and --from"
+/// @throws std::invalid_argument if it does not, and one of the flags was given
+void require_mode(const CLI::App& app, bool fits, const std::string& mode,
+                  const std::vector<const char*>& flags);
+
+/// A check for CLI11, which takes a number that does not fit for the largest that does.
+/// @returns "" for a whole number from 0 to 2^64 - 1, else why not
+std::string whole_number(const std::string& text);
 
 /// Whether a standard stream (STDOUT_FILENO, STDERR_FILENO) is a terminal.
 bool is_terminal(int stream);

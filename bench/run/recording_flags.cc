@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/recording_flags.h"
+#include "bench/run/recording_flags.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
-#include <limits>
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "bench/roster/degradation.h"
+#include "bench/program/program.h"
+#include "bench/score/degradation.h"
 
 namespace tauext {
-
-namespace {
-
-// CLI11 takes a number that does not fit for the largest that does
-std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size()) return "";
-  return fmt::format("{} is not a whole number from 0 to {}", text,
-                     std::numeric_limits<std::uint64_t>::max());
-}
-
-}  // namespace
 
 void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r) {
   const auto list = [&](const char* name, auto& fields, const char* help) {

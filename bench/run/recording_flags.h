@@ -3,11 +3,13 @@
 /// Flags of the programs that simulate: how the plant is run, and what its sensors are like.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "mjcf/plant/model_error.h"
 #include "mjcf/record.h"
 #include "mjcf/trace/sensors.h"
+
+namespace CLI {
+class App;
+}
 
 namespace tauext {
 

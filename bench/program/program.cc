@@ -1,39 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/program.h"
+#include "bench/program/program.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 namespace tauext {
 
+namespace {
+
+// false if help or the version was asked for, which is then printed
+bool parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return true;
+  } catch (const CLI::Success& e) {
+    std::ostringstream text;
+    app.exit(e, text);
+    fmt::print("{}", text.str());
+    return false;
+  }
+}
+
+}  // namespace
+
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), TAUEXT_VERSION));
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    fmt::print(stderr, "{0}: {1}\n{0}: see {0} --help\n", app.get_name(), e.what());
-    return kCouldNotRun;
-  } catch (const std::exception& e) {  // of a flag that reads a file
-    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
-    return kCouldNotRun;
-  }
-  try {
-    const int code = body();
+    const int code = parse(app, argc, argv) ? body() : kGood;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       throw std::runtime_error("cannot write to standard output");
     }
     return code;
+  } catch (const CLI::ParseError& e) {
+    fmt::print(stderr, "{0}: {1}\n{0}: see {0} --help\n", app.get_name(), e.what());
+    return kCouldNotRun;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
     return kCouldNotRun;
   }
+}
+
+void require_mode(const CLI::App& app, bool fits, const std::string& mode,
+                  const std::vector<const char*>& flags) {
+  for (const char* flag : flags) {
+    if (fits || app.count(flag) == 0) continue;
+    throw std::invalid_argument(
+        fmt::format("{} goes with {}; see {} --help", flag, mode, app.get_name()));
+  }
+}
+
+std::string whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size()) return "";
+  return fmt::format("{} is not a whole number from 0 to {}", text,
+                     std::numeric_limits<std::uint64_t>::max());
 }
 
 bool is_terminal(int stream) {

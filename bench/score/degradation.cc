@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/roster/degradation.h"
+#include "bench/score/degradation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -101,7 +101,10 @@ Degradation from_json(const Json& document, Degradation d) {
       add_object(key, "loadcell.", value, sensors);
     } else if (key == "model_error") {
       add_object(key, "", value, model_error);
-    } else if (key == "seed" && value.is_number_unsigned()) {
+    } else if (key == "seed") {
+      if (!value.is_number_unsigned()) {
+        throw std::invalid_argument(fmt::format("\"seed\" is {}, no whole number", value.dump()));
+      }
       d.sensors.seed = value.get<std::uint64_t>();
     } else {
       add_number(key, value, sensors);

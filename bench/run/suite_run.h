@@ -26,6 +26,9 @@ struct SuiteRun {
   std::optional<std::string> lcm_log;       ///< folder for logs
 };
 
+/// What built this program: its version, the compiler and its flags.
+std::string build();
+
 /// Scores and times the entries, and prints their tables.
 /// @returns the exit code
 /// @throws std::invalid_argument for a selection or a format that is unknown, and if nothing ran

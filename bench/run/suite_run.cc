@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/suite_run.h"
+#include "bench/run/suite_run.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "bench/live/entry_tap.h"
-#include "bench/program.h"
-#include "bench/reporter.h"
-#include "bench/roster/degradation.h"
+#include "bench/program/program.h"
+#include "bench/run/reporter.h"
+#include "bench/score/degradation.h"
 #include "bench/score/table.h"
 #include "bench/study/table3.h"
 #include "mjcf/trace/atomic_file.h"
@@ -70,8 +70,8 @@ std::unique_ptr<benchmark::BenchmarkReporter> make_display(
 }
 
 std::string build_line(const SuiteOptions& o) {
-  std::string line = fmt::format("tauext {}, {}, {}, MuJoCo {}, seed {}", TAUEXT_VERSION,
-                                 TAUEXT_COMPILER, TAUEXT_FLAGS, mujoco_version(), o.sensors.seed);
+  std::string line =
+      fmt::format("{}, MuJoCo {}, seed {}", build(), mujoco_version(), o.sensors.seed);
   if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
   if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
   const std::string degraded = describe({o.sensors, o.model_error});
@@ -136,6 +136,10 @@ void write_json(const std::string& path, const Reporter& reporter) {
 }
 
 }  // namespace
+
+std::string build() {
+  return fmt::format("tauext {}, {}, {}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS);
+}
 
 int run_suite(const SuiteRun& run) {
   Rows rows;

@@ -3,11 +3,14 @@
 /// The studies that tauext-bench runs instead of its suite, by flags.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "bench/score/suite.h"
+
+namespace CLI {
+class App;
+}
 
 namespace tauext {
 
@@ -19,9 +22,8 @@ struct StudyFlags {
   std::optional<std::string> format;  ///< of all tables, as table_format() knows it; else text
   std::optional<std::string> out;     ///< file, else standard output
 
-  int studies() const {
-    return reliability + pareto + equal_bandwidth.has_value();
-  }  ///< how many are asked for
+  /// How many are asked for.
+  int studies() const { return reliability + pareto + equal_bandwidth.has_value(); }
 };
 
 /// Adds --reliability, --equal-bandwidth, --pareto, --robot and --out of these, and --format of all tables.

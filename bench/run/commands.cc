@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/commands.h"
+#include "bench/run/commands.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/roster/degradation.h"
+#include "bench/score/degradation.h"
 
 namespace tauext {
 namespace {
 
-// the flags of bench/recording_flags.h that set these
+// the flags of bench/run/recording_flags.h that set these
 std::string recording_flags(const SuiteOptions& o) {
   std::map<std::string, std::string> lists;  // of KEY=VALUE, by flag
   std::istringstream items(describe({o.sensors, o.model_error}));
@@ -44,10 +44,12 @@ std::string record_and_replay(const std::string& name, const SuiteOptions& o) {
   }
   return fmt::format(
       "  tauext-record --robot {0} --scenario {1}{2}{3} --out log.csv\n"
-      "  tauext-replay log.csv --robot {0} --estimator {4}{5} --out est.csv\n",
+      "  tauext-replay log.csv --robot {0} --estimator {4}{5}{6} --out est.csv\n",
       e->robot().name(), e->scenario().name, recording_flags(o),
       e->closed_loop() ? fmt::format(" --stop {}+{}", e->estimator(), e->detector()) : "",
-      e->estimator(), e->detector().empty() ? "" : " --detector " + e->detector());
+      e->estimator(), e->detector().empty() ? "" : " --detector " + e->detector(),
+      e->scenario().score_from > 0 ? fmt::format(" --score_from {}", e->scenario().score_from)
+                                   : "");
 }
 
 }  // namespace tauext

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// More instructions make the gate fail; counts of another compiler are not compared.
+#include "regression/test/gate_fixture.h"
+
+namespace tauext::gate::test {
+namespace {
+
+using Instructions = Gate;
+
+TEST_F(Instructions, OnePercentMoreFailsWhereverTheyComeFrom) {
+  EXPECT_EQ(count("instructions"), kSlower) << text_;
+  make_counts();
+  EXPECT_EQ(run({"count", "--head", plugin("instructions"), "--baselines", baselines()}), kSlower)
+      << "without a base, too: " << text_;
+  EXPECT_EQ(run({"count", "--head", plugin("base"), "--baselines", baselines()}), kGood) << text_;
+  EXPECT_EQ(run({"count", "--head", plugin("shifted"), "--baselines", baselines()}), kGood)
+      << text_;
+}
+
+TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
+  EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
+  const std::string path = make_counts();
+  std::string other = read_file(path);
+  other.replace(other.find("# glibc: "), 9, "# glibc: 1");
+  fs::remove(path);
+  write(baselines() + "/instructions-00000000.tsv", other);
+  EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
+  EXPECT_TRUE(says("no baseline for this key") && says("glibc: '1")) << text_;
+  write(path, other);
+  EXPECT_EQ(count("base"), kCouldNotRun) << "its name is not its key's: " << text_;
+}
+
+TEST_F(Instructions, AFileThatIsNotWholeIsAnErrorWithItsName) {
+  const std::string path = make_counts(), whole = read_file(path);
+  for (const std::string& bad :
+       {std::string(), whole.substr(0, whole.size() / 2), std::string("{}")}) {
+    write(path, bad);
+    EXPECT_EQ(count("base"), kCouldNotRun) << text_;
+    EXPECT_TRUE(says(path)) << text_;
+  }
+}
+
+}  // namespace
+}  // namespace tauext::gate::test
