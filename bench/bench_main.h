@@ -5,8 +5,9 @@
 
 namespace tauext {
 
-/// Scores, then times every entry inside Google Benchmark, and prints tables; with --equal-bandwidth,
-/// --pareto or --reliability one of the studies instead. The flags are those of tauext-bench.
+/// Scores, then times every entry inside Google Benchmark, and prints tables; with
+/// --equal-bandwidth, --pareto or --reliability one of the studies instead. The flags are those of
+/// tauext-bench.
 /// @returns the exit code: 0 good, 1 an entry failed, 2 could not run
 int bench_main(int argc, char** argv);
 

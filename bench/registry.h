@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Yours beside ours, without a change to tauext: in a program of your own, register what you have and
-/// call bench_main; the tables, the studies and the JSON then hold it like any other.
+/// Yours beside ours, without a change to tauext: in a program of your own, register what you have
+/// and call bench_main; the tables, the studies and the JSON then hold it like any other.
 ///
 ///     int main(int argc, char** argv) {
 ///       tauext::register_estimator<tauext::WallMoBot3>([](const auto& arm) { return Mine(arm); });
@@ -21,11 +21,12 @@
 
 namespace tauext {
 
-/// An estimator for every robot of model M; make(model) builds one. With a constructor E(model, parameters)
-/// and E::Parameters::fields() (estimators/parameters.h) it is set by specifications, `name:key=value`; with
-/// E::Parameters::for_bandwidth(model, w), too, it takes part in --equal-bandwidth and --pareto. Keys change
-/// E::Parameters{}, whatever parameters make gives it: where they are others, register a specification instead. A name that
-/// is taken is refused when the robots are first asked for (std::invalid_argument).
+/// An estimator for every robot of model M; make(model) builds one. With a constructor E(model,
+/// parameters) and E::Parameters::fields() (estimators/parameters.h) it is set by specifications,
+/// `name:key=value`; with E::Parameters::for_bandwidth(model, w), too, it takes part in
+/// --equal-bandwidth and --pareto. Keys change E::Parameters{}, whatever parameters make gives it:
+/// where they are others, register a specification instead. A name that is taken is refused when
+/// the robots are first asked for (std::invalid_argument).
 template <RobotModel M, class Make>
 void register_estimator(Make make) {
   detail::require_unused();
@@ -35,8 +36,8 @@ void register_estimator(Make make) {
       });
 }
 
-/// A detector for every robot of D::kDof joints, with its default parameters unless a specification sets them
-/// (D::Parameters::fields()). A name that is taken is refused likewise.
+/// A detector for every robot of D::kDof joints, with its default parameters unless a specification
+/// sets them (D::Parameters::fields()). A name that is taken is refused likewise.
 template <CollisionDetector D>
 void register_detector() {
   detail::require_unused();
@@ -44,15 +45,16 @@ void register_detector() {
       [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
 }
 
-/// A specification as an estimator of that robot: a row `mo2:bandwidth=50` beside `mo2`. One that means
-/// nothing there or is listed already is refused likewise, and so is an unknown robot.
+/// A specification as an estimator of that robot: a row `mo2:bandwidth=50` beside `mo2`. One that
+/// means nothing there or is listed already is refused likewise, and so is an unknown robot.
 inline void register_specification(const std::string& robot, const std::string& specification) {
   detail::require_unused();
   detail::registered_specifications().emplace_back(robot, specification);
 }
 
-/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/plant/layout.h says. It has the
-/// estimators that every arm has (for_each_common_estimator), and the scenarios that you register.
+/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/plant/layout.h says. It
+/// has the estimators that every arm has (for_each_common_estimator), and the scenarios that you
+/// register.
 /// @throws std::runtime_error naming the file if MuJoCo cannot read it
 template <RobotModel M>
 void register_robot(const std::string& name, const M& model, const std::string& mjcf_path) {

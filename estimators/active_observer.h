@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Active observer in its lumped form, after the extended active observer of Chan, Naghdy and Stirling,
-/// "Extended active observer for force estimation and disturbance rejection of robotic manipulators",
-/// Robotics and Autonomous Systems 2013, and the active observer of Cortesao. We could not read the
-/// source, so what follows is ours: a computed torque makes the joints double integrators, and one extra
-/// ("active") state of a Kalman filter takes up what is left. Whether theirs weighs it alike is open.
+/// Active observer in its lumped form, after the extended active observer of Chan, Naghdy and
+/// Stirling, "Extended active observer for force estimation and disturbance rejection of robotic
+/// manipulators", Robotics and Autonomous Systems 2013, and the active observer of Cortesao. We
+/// could not read the source, so what follows is ours: a computed torque makes the joints double
+/// integrators, and one extra ("active") state of a Kalman filter takes up what is left. Whether
+/// theirs weighs it alike is open.
 ///     a = B^-1 (tau - C qd - g - F),   qdd = a - delta,   delta = B^-1 tau_ext                 (i)
-/// Over [t_k-1, t_k) a is the mean of both ends with tau_k-1 held. Every joint is the same linear system
-/// x = [q; qd; delta], so one 3 x 3 covariance serves them all, and the gains do not depend on data.
+/// Over [t_k-1, t_k) a is the mean of both ends with tau_k-1 held. Every joint is the same linear
+/// system
+/// x = [q; qd; delta], so one 3 x 3 covariance serves them all, and the gains do not depend on
+/// data.
 ///     deltadot = white noise of density Q_delta, qdd carries white noise of density Q_qdd
 ///
 /// Exact over a step h (Van Loan), with P in scalars:
@@ -16,8 +19,8 @@
 ///     Q = Q_delta [h^5/20 h^4/8 -h^3/6; . h^3/3 -h^2/2; . . h] + Q_qdd [h^3/3 h^2/2 0; . h 0; . . 0]
 /// then q and qd are measured in turn, with noise of R_q / h and R_qd / h:
 ///     s = P_ii + R_i / h,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s         (iii)
-/// Densities make the answer independent of the sampling time. tau_ext = B(q_k) delta; and it is tau_ext
-/// that lasts while the arm moves on, not delta, so before (ii)
+/// Densities make the answer independent of the sampling time. tau_ext = B(q_k) delta; and it is
+/// tau_ext that lasts while the arm moves on, not delta, so before (ii)
 ///     delta = B(q_k)^-1 B(q_k-1) delta                                                      (iv)
 #pragma once
 

@@ -75,8 +75,8 @@ concept TorqueEstimator = requires(E e, const Measurement<E::kDof>& y) {
   noexcept->std::same_as<Estimate<E::kDof>>;
 };
 
-/// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext alone or with the whole
-/// sample (speed, for example).
+/// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext alone or with the
+/// whole sample (speed, for example).
 template <class D>
 concept CollisionDetector = requires(D d) {
   { D::kName } -> std::convertible_to<std::string_view>;

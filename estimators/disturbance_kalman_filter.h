@@ -2,7 +2,8 @@
 /// @file
 /// Disturbance Kalman filter on the momentum: Hu and Xiong, "Contact force estimation for robot
 /// manipulator using semiparametric model and disturbance Kalman filter", IEEE Transactions on
-/// Industrial Electronics 2018. With the p and n of momentum.h and d = tau_ext with the sign of (3),
+/// Industrial Electronics 2018. With the p and n of momentum.h and d = tau_ext with the sign of
+/// (3),
 ///     pdot = n - d + white noise of density Q_p,   ddot = white noise of density Q_d           (i)
 /// measured as B qd, where qd carries white noise of density Q_qd.
 ///
@@ -13,7 +14,8 @@
 ///     R = B Q_qd B^T / h
 /// R / h and h Q keep the densities, so the answer does not depend on the sampling time. Then
 ///     S = P_pp + R,   [p; d] += [P_pp; P_dp] S^-1 (B qd - p),   P -= [P_pp; P_dp] S^-1 [P_pp P_dp^T]   (iii)
-/// with S factorised and never inverted. Of the symmetric blocks one triangle is computed and mirrored.
+/// with S factorised and never inverted. Of the symmetric blocks one triangle is computed and
+/// mirrored.
 ///
 /// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w.
 #pragma once
@@ -59,8 +61,8 @@ class DisturbanceKalmanFilter {
           max_gap_field<P>());
     }
 
-    /// Q_d = w^4 B(0) Q_qd B(0)^T: at q = 0 every joint is Butterworth's of -3 dB at w [rad/s], however
-    /// B couples them, and in other poses about so. P0 is what the filter settles to.
+    /// Q_d = w^4 B(0) Q_qd B(0)^T: at q = 0 every joint is Butterworth's of -3 dB at w [rad/s],
+    /// however B couples them, and in other poses about so. P0 is what the filter settles to.
     static Parameters for_bandwidth(const M& model, double w) {
       Parameters p;
       const Mat<kDof> B = model.inertia(Vec<kDof>::Zero());

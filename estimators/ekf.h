@@ -5,12 +5,13 @@
 /// Time update over h from k-1 to k, with qdd and its Jacobians Jq, Jv at the last estimate:
 ///     q += h qd,  qd += h qdd,  P' = F P F^T + Q,
 ///     F = I + h [ 0  I  0 ; Jq  Jv  -B^-1 ; 0  0  0 ]                                   (10), (15)
-/// and, unless Integration::kEuler asks for (10) as printed, the second-order terms of Taylor's series
+/// and, unless Integration::kEuler asks for (10) as printed, the second-order terms of Taylor's
+/// series
 ///     q += h^2/2 qdd,   qd += h^2/2 (Jq qd + Jv qdd),                                       (iii)
-/// without which the filter takes h/2 B qddd for a load: 0.14 N m rms on wallmobot3 in motion at 1 ms.
-/// (10) says that tau_k-1 drives this step; (13) prints tau_k, a sample late: Alignment::kPaper.
-/// F is the identity but for its middle rows, so with G = h [Jq Jv -B^-1] (N x 3N) and U = P G^T,
-/// in blocks U_q, U_v, U_d, these blocks of the symmetric P change:
+/// without which the filter takes h/2 B qddd for a load: 0.14 N m rms on wallmobot3 in motion at 1
+/// ms. (10) says that tau_k-1 drives this step; (13) prints tau_k, a sample late:
+/// Alignment::kPaper. F is the identity but for its middle rows, so with G = h [Jq Jv -B^-1] (N x
+/// 3N) and U = P G^T, in blocks U_q, U_v, U_d, these blocks of the symmetric P change:
 ///     P_qq' = P_qq + h (P_qv + P_vq) + h^2 P_vv
 ///     P_qv' = P_qv + h P_vv + U_q + h U_v          P_dq' = P_dq + h P_dv
 ///     P_vv' = P_vv + V + V^T,  V = U_v + G U / 2   P_dv' = P_dv + U_d                       (i)

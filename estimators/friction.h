@@ -3,10 +3,10 @@
 /// Dry friction of one joint, as an estimator models it.
 ///
 ///     F(qd) = level tanh(qd / v_s),   or level sign(qd) for v_s = 0
-/// At standstill the sign of a velocity that is all round-off and noise flips from sample to sample,
-/// and a sign() throws that into the estimate: +-2 level of chatter. The tanh passes through zero
-/// smoothly. What no function of qd can know is the friction of an arm that sticks: it lies anywhere
-/// within +-level, and an estimate at rest is only that good (the stiction bound).
+/// At standstill the sign of a velocity that is all round-off and noise flips from sample to
+/// sample, and a sign() throws that into the estimate: +-2 level of chatter. The tanh passes
+/// through zero smoothly. What no function of qd can know is the friction of an arm that sticks: it
+/// lies anywhere within +-level, and an estimate at rest is only that good (the stiction bound).
 ///
 /// An explicit step of h sees dF/dqd = level / v_s at rest, so it asks for
 ///     v_s >= h level / (2 B).

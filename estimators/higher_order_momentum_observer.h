@@ -3,16 +3,16 @@
 /// Momentum observers of second and third order: Ruggiero, Cacace, Sadeghian and Lippiello,
 /// "Passivity-based control of VTOL UAVs with a momentum-based estimator of external wrench and
 /// unmodeled dynamics", Robotics and Autonomous Systems 2015, where every joint's estimate is an
-/// all-pole low-pass of tau_ext with unit gain. The gains here are Butterworth's, from one bandwidth w
-/// (-3 dB at w):
+/// all-pole low-pass of tau_ext with unit gain. The gains here are Butterworth's, from one
+/// bandwidth w (-3 dB at w):
 ///     mo2:                    d'' / w^2 + sqrt2 d' / w + d = u
 ///     mo3:  d''' / w^3 + 2 d'' / w^2   +   2 d' / w   + d = u,   u = n - pdot                (i)
-/// with p and n of momentum.h. Noise beyond w falls with w^-2 (w^-3), a ramp is followed slope sqrt2 / w
-/// (slope 2 / w) behind; a step overshoots by 4 % (8 %).
+/// with p and n of momentum.h. Noise beyond w falls with w^-2 (w^-3), a ramp is followed slope
+/// sqrt2 / w (slope 2 / w) behind; a step overshoots by 4 % (8 %).
 ///
-/// Discretised exactly for u constant over [t_k-1, t_k), where it is n - (p_k - p_k-1) / h, so stable for
-/// every w h. With x = (d, d'/w, d''/w^2) and a = w h, A the companion matrix of (i), and g the impulse
-/// response of (i) in normalised time,
+/// Discretised exactly for u constant over [t_k-1, t_k), where it is n - (p_k - p_k-1) / h, so
+/// stable for every w h. With x = (d, d'/w, d''/w^2) and a = w h, A the companion matrix of (i),
+/// and g the impulse response of (i) in normalised time,
 ///     x_k = u e_1 + Phi (x_k-1 - u e_1),   Phi = exp(A a)                                  (ii)
 ///     mo2: Phi = g'(a) I + g(a) (A + sqrt2 I)
 ///     mo3: Phi = g''(a) I + g'(a) (A + 2 I) + g(a) (A^2 + 2 A + 2 I)                       (iii)

@@ -4,9 +4,9 @@
 ///
 ///     raw_k = tau - B (qd_k - qd_k-1) / h - (C qd + F + g)     over [t_k-1, t_k)         (4)
 ///     d_k = a d_k-1 + (1 - a) raw_k,   a = exp(-w h)
-/// tau is tau_k-1 (held over the interval); B and C qd + F + g are the mean of both ends. Every term
-/// goes through the one filter, so the terms stay in phase and a motion without contact cancels.
-/// At equal bandwidth this is the first-order momentum observer.
+/// tau is tau_k-1 (held over the interval); B and C qd + F + g are the mean of both ends. Every
+/// term goes through the one filter, so the terms stay in phase and a motion without contact
+/// cancels. At equal bandwidth this is the first-order momentum observer.
 #pragma once
 
 #include <cmath>

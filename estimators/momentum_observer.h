@@ -8,8 +8,8 @@
 ///     ddot = K (n - pdot - d):  every joint follows tau_ext as a low-pass of K, whatever the pose
 /// The residual r of the literature is -d: it has the opposite sign of (3).
 ///
-/// Discretised exactly over [t_k-1, t_k), as Bledt et al., IROS 2018, do, so that it is stable for every
-/// K h and no initial momentum has to be kept:
+/// Discretised exactly over [t_k-1, t_k), as Bledt et al., IROS 2018, do, so that it is stable for
+/// every K h and no initial momentum has to be kept:
 ///     d_k = a d_k-1 + (1 - a) (n - (p_k - p_k-1) / h),   a = exp(-K h)                     (ii)
 /// tau is tau_k-1 (held over the interval); the other terms of n are the mean of both ends.
 #pragma once
@@ -30,8 +30,8 @@ class MomentumObserver {
   static constexpr int kDof = M::kDof;
 
   struct Parameters {
-    /// [rad/s] bandwidth of every joint, positive: larger is faster and noisier; 90 % of a step after
-    /// ln 10 / K, a ramp is followed slope / K behind
+    /// [rad/s] bandwidth of every joint, positive: larger is faster and noisier; 90 % of a step
+    /// after ln 10 / K, a ramp is followed slope / K behind
     Vec<kDof> K = Vec<kDof>::Constant(30);
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 

@@ -9,11 +9,12 @@
 /// the eigenvalues of X B^-1(q), so they move with the pose. As printed, (17)-(18) carry the
 /// opposite sign of (3) and converge to -tau_ext.
 ///
-/// Over [t_k-1, t_k) with tau_k-1 held, everything else in (18) is the mean of both ends, d_k too. With
-/// d_k from (17) that is one symmetric system for the observer's acceleration a:
+/// Over [t_k-1, t_k) with tau_k-1 held, everything else in (18) is the mean of both ends, d_k too.
+/// With d_k from (17) that is one symmetric system for the observer's acceleration a:
 ///     (B + h X / 2) a = tau_k-1 - (C qd + F + g) - d_k-1 + X (qd_k - qd_k-1) / 2,   z += h X a      (i)
-/// It is stable for every h. Forward Euler, as the paper has it, takes (18) at k-1 alone: stable for
-/// h < 2 / lambda_max(X B^-1), and off by h/2 B qddd in motion, 0.2 N m rms on wallmobot3 at 1 ms.
+/// It is stable for every h. Forward Euler, as the paper has it, takes (18) at k-1 alone: stable
+/// for h < 2 / lambda_max(X B^-1), and off by h/2 B qddd in motion, 0.2 N m rms on wallmobot3 at 1
+/// ms.
 #pragma once
 
 #include <tuple>
@@ -49,8 +50,8 @@ class Ndob {
     /// Section 5.2: X = 2000 diag(0.3, 0.5, 0.3), for wallmobot3.
     static Parameters paper() requires(kDof == 3) { return {.X = {600, 1000, 600}}; }
 
-    /// Bandwidth w [rad/s] of every joint that moves alone at q = 0: X = w diag(B(0)). Joints coupled
-    /// by B spread about it, and so does every other pose.
+    /// Bandwidth w [rad/s] of every joint that moves alone at q = 0: X = w diag(B(0)). Joints
+    /// coupled by B spread about it, and so does every other pose.
     static Parameters for_bandwidth(const M& model, double w) {
       return {.X = w * Mat<kDof>(model.inertia(Vec<kDof>::Zero())).diagonal()};
     }

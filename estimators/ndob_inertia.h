@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Nonlinear disturbance observer with the gain X = w B(q): Mohammadi, Tavakoli, Marquez and
-/// Hashemzadeh, "Nonlinear disturbance observer design for robotic manipulators", Control Engineering
-/// Practice 2013, whose gain matrix it is with their free matrix a multiple of the unit.
+/// Hashemzadeh, "Nonlinear disturbance observer design for robotic manipulators", Control
+/// Engineering Practice 2013, whose gain matrix it is with their free matrix a multiple of the
+/// unit.
 ///
 ///     d = z - w B qd                                                                   (17)
 ///     zdot = w (tau + C^T qd - g - F - d),   because Bdot = C + C^T                        (18)
-/// where n = tau + C^T qd - g - F and p = B qd are those of momentum.h: no B^-1, and every joint follows
-/// tau_ext as a low-pass of w, whatever the pose. So it is the first-order momentum observer, but for how
-/// it is stepped. As in ndob.h everything but tau_k-1 is the mean of both ends, d_k too:
+/// where n = tau + C^T qd - g - F and p = B qd are those of momentum.h: no B^-1, and every joint
+/// follows tau_ext as a low-pass of w, whatever the pose. So it is the first-order momentum
+/// observer, but for how it is stepped. As in ndob.h everything but tau_k-1 is the mean of both
+/// ends, d_k too:
 ///     (1 + h w / 2) (z_k - z_k-1) = h w (n - d_k-1 + w (p_k - p_k-1) / 2)                  (i)
 #pragma once
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Parameters of estimators and detectors, each listed once: what may be set by name, its unit, its limits
-/// and what it does. A `struct Parameters` lists them in a static function:
+/// Parameters of estimators and detectors, each listed once: what may be set by name, its unit, its
+/// limits and what it does. A `struct Parameters` lists them in a static function:
 ///
 ///     static constexpr auto fields() {
 ///       return std::tuple(Field{"w", &Parameters::w, "rad/s", 1e-3, 1e5, "larger lets less pass"});
 ///     }
-/// The constructor's check, specifications (`high_pass:w=60`), their help and errors all read this list.
+/// The constructor's check, specifications (`high_pass:w=60`), their help and errors all read this
+/// list.
 #pragma once
 
 #include <array>
@@ -19,8 +20,9 @@
 
 namespace tauext {
 
-/// A number, a vector, a whole number or a choice (an enum) in P. A vector has a value for each joint, unless
-/// `effect` says otherwise (covariances of the EKF). Limits include their ends; a choice has none.
+/// A number, a vector, a whole number or a choice (an enum) in P. A vector has a value for each
+/// joint, unless `effect` says otherwise (covariances of the EKF). Limits include their ends; a
+/// choice has none.
 template <class P, class T>
 struct Field {
   const char* key;     ///< as a specification names it
@@ -54,8 +56,8 @@ struct Choice {
 inline constexpr double kLeastBandwidth = 1e-3;  ///< [rad/s] of a bandwidth or a cut-off
 inline constexpr double kMostBandwidth = 1e6;    ///< [rad/s]
 
-/// Where the list of P's fields stands: in P::fields(). A struct that must not include this file has a
-/// specialisation instead, beside who sets it by name.
+/// Where the list of P's fields stands: in P::fields(). A struct that must not include this file
+/// has a specialisation instead, beside who sets it by name.
 template <class P>
 struct FieldsOf {
   /// The list.
@@ -104,7 +106,8 @@ void check_field(const Nested<P, Inner>&, const P&, const char*) {}  // its own 
 
 /// @param of the name of the estimator or detector, for the error
 /// @returns p
-/// @throws std::invalid_argument for a value beyond its limits, or NaN: "w [rad/s] of high_pass is 0: .."
+/// @throws std::invalid_argument for a value beyond its limits, or NaN: "w [rad/s] of high_pass is
+/// 0: .."
 template <ListsFields P>
 const P& check_parameters(const P& p, const char* of) {
   for_each_field<P>([&](const auto& f) { detail::check_field(f, p, of); });

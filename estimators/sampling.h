@@ -55,7 +55,8 @@ class Sampling {
 
   void reset() noexcept { started_ = false; }
 
-  /// Whether y can be used: kOk to step by h(), kStarted to start at y, kBadMeasurement to ignore it.
+  /// Whether y can be used: kOk to step by h(), kStarted to start at y, kBadMeasurement to ignore
+  /// it.
   template <int N>
   [[gnu::always_inline]] Status accept(const Measurement<N>& y) noexcept {
     const bool in_order = !started_ || y.t > t_;

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Sliding-mode momentum observer: Garofalo, Mansfeld, Jankowski and Ott, "Sliding mode momentum
-/// observers for estimation of external torques and joint acceleration", ICRA 2019. It is super-twisting
-/// with linear terms; with the p and n of momentum.h, d = tau_ext with the sign of (3), e = p_hat - p,
+/// observers for estimation of external torques and joint acceleration", ICRA 2019. It is
+/// super-twisting with linear terms; with the p and n of momentum.h, d = tau_ext with the sign of
+/// (3), e = p_hat - p,
 ///     p_hat' = n - d - T2 e - T1 sqrt|e| sgn e,   d' = S2 e + S1 sgn e                      (i)
-/// joint by joint. A tau_ext that changes by less than S1 per second is reached in finite time and then
-/// followed exactly; the linear part alone (T1 = S1 = 0) is a second-order momentum observer.
+/// joint by joint. A tau_ext that changes by less than S1 per second is reached in finite time and
+/// then followed exactly; the linear part alone (T1 = S1 = 0) is a second-order momentum observer.
 ///
-/// An explicit step of (i) chatters: d jumps by +-2 h S1 for ever. So the end of the step is taken on the
-/// right, sgn(0) being any number in [-1, 1] (Brogliato, Polyakov and Efimov, "The implicit discretization
-/// of the supertwisting sliding-mode control algorithm", IEEE Transactions on Automatic Control 2020):
+/// An explicit step of (i) chatters: d jumps by +-2 h S1 for ever. So the end of the step is taken
+/// on the right, sgn(0) being any number in [-1, 1] (Brogliato, Polyakov and Efimov, "The implicit
+/// discretization of the supertwisting sliding-mode control algorithm", IEEE Transactions on
+/// Automatic Control 2020):
 ///     b = e_k-1 - (p_k - p_k-1) + h (n - d_k-1)                    e_k for d and e held
 ///     (1 + h T2 + h^2 S2) |e_k| + h T1 sqrt|e_k| + h^2 S1 = |b|,   sgn e_k = sgn b         (ii)
 /// For |b| <= h^2 S1 that is e_k = 0 with b / (h^2 S1) for its sign, else a quadratic in sqrt|e_k|.
@@ -50,9 +52,9 @@ class SlidingModeObserver {
           Field{"T2", &P::T2, "1/s", 0, 1e12, "damps S2"}, max_gap_field<P>());
     }
 
-    /// The linear part is mo2 of bandwidth w [rad/s]: T2 = sqrt2 w, S2 = w^2. The sliding terms are as
-    /// large as the linear ones where the velocity is wrong by 1e-4 rad/s, a tenth of a usual sensor's
-    /// noise, e_0 = 1e-4 diag(B(0)): smaller errors than that are the sliding mode's.
+    /// The linear part is mo2 of bandwidth w [rad/s]: T2 = sqrt2 w, S2 = w^2. The sliding terms are
+    /// as large as the linear ones where the velocity is wrong by 1e-4 rad/s, a tenth of a usual
+    /// sensor's noise, e_0 = 1e-4 diag(B(0)): smaller errors than that are the sliding mode's.
     static Parameters for_bandwidth(const M& model, double w) {
       const Vec<kDof> e_0 = 1e-4 * Mat<kDof>(model.inertia(Vec<kDof>::Zero())).diagonal();
       Parameters p;

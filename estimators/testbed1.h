@@ -5,9 +5,9 @@
 /// q = 0 with the arm level, positive upwards. sign() is smoothed by default (friction.h).
 ///
 /// No rigid body of sensible mass has the printed values: the first moment of 11.69 kg m with an
-/// inertia of 0.419 kg m^2 takes 326 kg at least. If g already is inside theta_2 and theta_3, 3.4 kg
-/// do. The equation is what counts, so it is taken as printed; Parameters::absorbed() is the other
-/// reading.
+/// inertia of 0.419 kg m^2 takes 326 kg at least. If g already is inside theta_2 and theta_3, 3.4
+/// kg do. The equation is what counts, so it is taken as printed; Parameters::absorbed() is the
+/// other reading.
 #pragma once
 
 #include "estimators/concepts.h"
@@ -29,7 +29,8 @@ class Testbed1 {
     double theta3 = -0.74;    ///< [kg m] first moment across it, downwards
     double theta4 = 2.163;    ///< [N m] dry friction
     double g = kGravity;      ///< [m/s^2] the g of (36)
-    /// [rad/s] of friction.h; 0 is the printed sign(). At least Ts theta_4 / (2 theta_1) = 0.0026 for
+    /// [rad/s] of friction.h; 0 is the printed sign(). At least Ts theta_4 / (2 theta_1) = 0.0026
+    /// for
     /// Ts = 1 ms; ours is the slip at which the MJCF's friction is full, too
     double v_s = 0.005;
 

@@ -134,7 +134,8 @@ class BasicWallMoBot3 {
     f.qdd = B.solve(Vec3(u - friction(qd) - to_joints(Vec3(coriolis_force(c, wd) + gravity(c)))));
     f.dqdd_dtau_ext = B.solve(Mat3(-Mat3::Identity()));
 
-    // (ii) by the angles: d/dphi_a = -d/dphi_b, row a: M' wdd_b + M wd_b^2, row b: M' wdd_a - M wd_a^2
+    // (ii) by the angles: d/dphi_a = -d/dphi_b, row a: M' wdd_b + M wd_b^2, row b: M' wdd_a - M
+    // wd_a^2
     const Vec3 wdd = to_links(f.qdd);
     const Scalar r24 = c.d24 * wdd[1] + c.f24 * wd[1] * wd[1];
     const Scalar r42 = c.d24 * wdd[0] - c.f24 * wd[0] * wd[0];

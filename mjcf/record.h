@@ -21,16 +21,16 @@ struct Recording {
   int substeps = 1;          ///< RK4 steps per sample
 };
 
-/// Asked at every sample, with what the sensors read: whether to stop the motor. From the next sample
-/// on the controller holds the arm where it was at this one.
+/// Asked at every sample, with what the sensors read: whether to stop the motor. From the next
+/// sample on the controller holds the arm where it was at this one.
 using Supervisor = std::function<bool(const Sample&)>;
 
 /// Runs the scenario from its start and samples t_k = k Ts before the end; the supervisor, if there
 /// is one, sees it through the sensors. The trace returned is the truth: ideal sensors.
 ///
 /// tau_ext acts as a generalised force and the force on the end effector as J(q_k)^T f, both held
-/// over [t_k, t_k+1), so their recorded tau_ext is exact by construction. What a tether or a contact
-/// does to the arm changes within a sample; recorded is its value at t_k.
+/// over [t_k, t_k+1), so their recorded tau_ext is exact by construction. What a tether or a
+/// contact does to the arm changes within a sample; recorded is its value at t_k.
 /// @throws std::invalid_argument for a Recording that is out of range, or a model without the
 /// scenario's scene (load_for gives one with it); std::runtime_error if MuJoCo warns
 Trace simulate(const Model& model, const Scenario& scenario, const Recording& recording = {},

@@ -14,21 +14,22 @@
 namespace tauext {
 
 /// All scenarios of a robot, in the order in which they are listed.
-/// @throws std::invalid_argument for a robot without scenarios, listing those that have some; and if scenarios
-/// were registered for a robot that does not exist
+/// @throws std::invalid_argument for a robot without scenarios, listing those that have some; and
+/// if scenarios were registered for a robot that does not exist
 const std::vector<Scenario>& scenarios(std::string_view robot);
 
 /// The scenario of that name.
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Scenario& scenario(std::string_view robot, std::string_view name);
 
-/// Adds a scenario to a robot's list; before a list is first asked for, else std::logic_error. The robot may be
-/// registered later; one that does not exist then is refused when the lists are first asked for.
+/// Adds a scenario to a robot's list; before a list is first asked for, else std::logic_error. The
+/// robot may be registered later; one that does not exist then is refused when the lists are first
+/// asked for.
 /// @throws std::invalid_argument if the name is empty or taken
 void register_scenario(const std::string& robot, const Scenario& scenario);
 
-/// The robot as the scenario needs it: with its scene, and the load as heavy as it says; and with errors
-/// that its estimators do not know of.
+/// The robot as the scenario needs it: with its scene, and the load as heavy as it says; and with
+/// errors that its estimators do not know of.
 /// @throws std::invalid_argument for an error out of range
 Model load_for(std::string_view robot, const Scenario& scenario, const ModelError& error = {});
 

@@ -25,9 +25,10 @@ enum class Response {
   kBandwidth,  ///< where the estimate of a swept sine falls to -3 dB
 };
 
-/// The tracking controller: computed torque, tau = B (qdd_ref + Kp e + Kd edot) + C qd + D qd + g with
-/// the exact model, dry friction left to the feedback. The paper names no controller, but its runs
-/// presuppose one: under gravity compensation alone wallmobot3 falls over within 2 s of the step.
+/// The tracking controller: computed torque, tau = B (qdd_ref + Kp e + Kd edot) + C qd + D qd + g
+/// with the exact model, dry friction left to the feedback. The paper names no controller, but its
+/// runs presuppose one: under gravity compensation alone wallmobot3 falls over within 2 s of the
+/// step.
 struct Tracking {
   double Kp = 400;  ///< [1/s^2]
   double Kd = 40;   ///< [1/s]

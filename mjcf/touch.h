@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// How the outside touches an arm at its end effector: blows, pushes, clampings, one by one or drawn
-/// at random. The forces are prescribed, in the plane of x and z.
+/// How the outside touches an arm at its end effector: blows, pushes, clampings, one by one or
+/// drawn at random. The forces are prescribed, in the plane of x and z.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,15 +35,17 @@ struct Touch {
   Eigen::Vector3d operator()(double t) const;
 };
 
-/// Touches of one kind, one after the other, at random times, directions and sizes within the ranges
-/// of TouchKind, all between `from` and `until` [s]; 1 to 2 s apart, clampings 2 to 3 s.
+/// Touches of one kind, one after the other, at random times, directions and sizes within the
+/// ranges of TouchKind, all between `from` and `until` [s]; 1 to 2 s apart, clampings 2 to 3 s.
 std::vector<Touch> draw_touches(TouchKind kind, std::uint64_t seed, double from, double until);
 
-/// The scenario with these forces on its end effector. `contact` says where a blow or a clamping acts.
+/// The scenario with these forces on its end effector. `contact` says where a blow or a clamping
+/// acts.
 Scenario with_touches(Scenario scenario, const std::vector<Touch>& touches);
 
-/// A run of wallmobot3 for studies: q_ref of 0.05 to 0.1 rad and 0.5 to 1 rad/s as the seed draws them,
-/// 30 s, with touches of one kind from 4 s on. The panel and the rest of the robot are the model's.
+/// A run of wallmobot3 for studies: q_ref of 0.05 to 0.1 rad and 0.5 to 1 rad/s as the seed draws
+/// them, 30 s, with touches of one kind from 4 s on. The panel and the rest of the robot are the
+/// model's.
 Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed);
 
 /// The touches in that run.

@@ -22,15 +22,15 @@ struct UpdateOptions {
 
 /// What was done.
 struct UpdateResult {
-  /// refused, as something is worse and nobody said that it may be: kSlower if a kernel's count is, else
-  /// kLessAccurate
+  /// refused, as something is worse and nobody said that it may be: kSlower if a kernel's count is,
+  /// else kLessAccurate
   ExitCode code = kGood;
   std::string text;  ///< for people: what changed, or what is worse
 };
 
 /// Writes the baselines of head and a line in the changelog. Baselines of other keys stay.
-/// @throws std::invalid_argument for a reason that is empty or has more than one line, std::runtime_error for
-/// files and programs; nothing is changed then
+/// @throws std::invalid_argument for a reason that is empty or has more than one line,
+/// std::runtime_error for files and programs; nothing is changed then
 UpdateResult update_baselines(const UpdateOptions& options);
 
 }  // namespace tauext::gate

@@ -69,7 +69,8 @@ class EstimatorClaims {
     EXPECT_LE(std::sqrt(sum / static_cast<double>(samples.size())), 0.1) << "N m rms";
   }
 
-  /// 0.3 s after a step of 50 N m it says the same at 0.25, 0.5, 1 and 2 ms, within 2 % of the step.
+  /// 0.3 s after a step of 50 N m it says the same at 0.25, 0.5, 1 and 2 ms, within 2 % of the
+  /// step.
   void answers_alike_at_every_sample_time() const {
     SCOPED_TRACE("answers alike at every sample time");
     const Vec<N> reference = half_way(simulated::grid(0.8, 1e-3));
@@ -89,8 +90,8 @@ class EstimatorClaims {
     EXPECT_LT((half_way(times) - reference).norm(), 0.02 * 50);
   }
 
-  /// Three seconds with a tenth of the samples lost end where those with all of them do, within 2 % of
-  /// 20 N m.
+  /// Three seconds with a tenth of the samples lost end where those with all of them do, within 2 %
+  /// of 20 N m.
   void bears_lost_samples() const {
     SCOPED_TRACE("bears lost samples");
     std::mt19937_64 generator(5);
@@ -111,7 +112,8 @@ class EstimatorClaims {
     EXPECT_LT((run(late).back().tau_ext - early.back().tau_ext).norm(), 1e-6);
   }
 
-  /// A NaN in q, qd or tau: kBadMeasurement, the estimate held to the bit, and as good as new 2 s later.
+  /// A NaN in q, qd or tau: kBadMeasurement, the estimate held to the bit, and as good as new 2 s
+  /// later.
   void flags_a_bad_sample_holds_and_recovers() const {
     SCOPED_TRACE("flags a bad sample, holds and recovers");
     const Samples good = steady(3, 20);
@@ -128,7 +130,8 @@ class EstimatorClaims {
     }
   }
 
-  /// A time stamp that stands still or goes back: kBadMeasurement, held, and the rest as without it.
+  /// A time stamp that stands still or goes back: kBadMeasurement, held, and the rest as without
+  /// it.
   void ignores_time_that_goes_back() const {
     SCOPED_TRACE("ignores time that goes back");
     const Samples good = steady(1, 20);

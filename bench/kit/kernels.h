@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A plug-in of your own estimators and detectors for tauext-gate, which compares two commits of it:
+/// A plug-in of your own estimators and detectors for tauext-gate, which compares two commits of
+/// it:
 ///
 ///     \#include <bench/kit/kernels.h>
 ///     TAUEXT_PLUGIN(kernels) {
@@ -145,8 +146,8 @@ class KernelOf final : public Kernel {
 
   int sample_size() const override { return 1 + 4 * N; }
 
-  // q = 0.3 sin(2 t) in every joint, tau from (3); a blow of 200 N m and 30 ms every half second, sensors
-  // with 1e-4 rad/s of noise
+  // q = 0.3 sin(2 t) in every joint, tau from (3); a blow of 200 N m and 30 ms every half second,
+  // sensors with 1e-4 rad/s of noise
   void example(int n, double* x) const override {
     std::uint64_t random = 1;
     const auto noise = [&] {  // Knuth's linear congruential generator, -0.5 to 0.5

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
- * What tauext-gate sees of a build: its kernels (estimators, detectors, terms of a model) behind a C ABI,
- * so that two commits run in one process. bench/kit/kernels.h fills it in; nobody else needs to.
+ * What tauext-gate sees of a build: its kernels (estimators, detectors, terms of a model) behind a
+ * C ABI, so that two commits run in one process. bench/kit/kernels.h fills it in; nobody else needs
+ * to.
  */
 #pragma once
 
@@ -22,7 +23,7 @@ struct tauext_plugin {  // NOLINT(readability-identifier-naming): a C name
 
   /** ROBOT/ESTIMATOR, ROBOT/DETECTOR or ROBOT/model.TERM; unique. */
   const char* (*name)(int kernel);
-  /** Doubles a sample: t [s], then q [rad], qd [rad/s], tau [N m] and tau_ext [N m] of each joint. */
+  /** Doubles a sample: t [s]; then q [rad], qd [rad/s], tau [N m], tau_ext [N m] of each joint. */
   int (*sample_size)(int kernel);
   /** Writes n samples 1 ms apart, of a moving arm with noisy sensors that is hit. */
   void (*example)(int kernel, int n, double* samples);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A simulated arm for tests that need samples and no simulator: RK4 of a model's own forward dynamics
-/// under computed torque, tau and tau_ext held over each sample. Not for benchmarks: it knows no friction
-/// that sticks, no contact, and nothing that the model does not know.
+/// A simulated arm for tests that need samples and no simulator: RK4 of a model's own forward
+/// dynamics under computed torque, tau and tau_ext held over each sample. Not for benchmarks: it
+/// knows no friction that sticks, no contact, and nothing that the model does not know.
 #pragma once
 
 #include <cmath>

@@ -9,8 +9,8 @@
 
 namespace tauext::live {
 
-/// From its construction on the first SIGINT, SIGTERM or SIGHUP is only noted; a second one acts as ever,
-/// should the first not help. Make it when all that could hang has been set up.
+/// From its construction on the first SIGINT, SIGTERM or SIGHUP is only noted; a second one acts as
+/// ever, should the first not help. Make it when all that could hang has been set up.
 class Interrupt {
  public:
   Interrupt() {

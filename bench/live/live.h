@@ -19,7 +19,8 @@ namespace tauext::live {
 /// What one estimator did so far. Written by the loop; any thread may read it.
 struct LiveFigures {
   Histogram step_ns;  ///< [ns] wall time of an update
-  /// samples that made no estimate, but for the first one after a reset: bad ones, gaps, divergences
+  /// samples that made no estimate, but for the first one after a reset: bad ones, gaps,
+  /// divergences
   std::atomic<std::int64_t> unusable = 0;
   std::atomic<std::int64_t> marks = 0;                    ///< of its detector
   std::atomic<std::int64_t> compared = 0;                 ///< samples with a reference

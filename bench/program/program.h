@@ -20,8 +20,8 @@ namespace tauext {
 /// @param body is called once the flags are read; what it throws becomes kCouldNotRun
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
-/// A line on a terminal's standard error with what is going on, how much of it is done, and the time that is
-/// left; nothing elsewhere. Erased when it ends.
+/// A line on a terminal's standard error with what is going on, how much of it is done, and the
+/// time that is left; nothing elsewhere. Erased when it ends.
 class Progress {
  public:
   explicit Progress(std::string what);  ///< what is going on

@@ -59,7 +59,8 @@ D make_detector(const DetectorSettings& settings, const Specification& s) {
   }
 }
 
-// what the keys change: the roster's own parameters, or those of a bandwidth, whose key is taken out
+// what the keys change: the roster's own parameters, or those of a bandwidth, whose key is taken
+// out
 template <class E, bool tunable, class Make, class M>
 typename E::Parameters start_of(const Make& make, const M& model, Specification& s) {
   using P = typename E::Parameters;

@@ -30,10 +30,10 @@ struct Calibration {
   bool has_metric = false;    ///< whether it weighs the joints by a metric, too
 };
 
-/// A robot with the estimators and detectors that run on it. Wherever an estimator or a detector is asked
-/// for, a specification (bench/roster/specification.h) is understood. Every call throws
-/// std::invalid_argument for an unknown name or key, listing the known ones, and for a trace of another
-/// number of joints.
+/// A robot with the estimators and detectors that run on it. Wherever an estimator or a detector is
+/// asked for, a specification (bench/roster/specification.h) is understood. Every call throws
+/// std::invalid_argument for an unknown name or key, listing the known ones, and for a trace of
+/// another number of joints.
 class Robot {
  public:
   virtual ~Robot() = default;
@@ -53,19 +53,22 @@ class Robot {
       std::string_view name) const = 0;  ///< of a detector
 
   /// Binds an estimator, and a detector unless it is "", to a trace's samples.
-  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not
+  /// have
   virtual std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                          const Trace& trace,
                                          const DetectorSettings& settings = {}) const = 0;
 
-  /// The same for a live run. The trace is what an estimator that copies the truth copies; else it may be empty.
-  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not have
+  /// The same for a live run. The trace is what an estimator that copies the truth copies; else it
+  /// may be empty.
+  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not
+  /// have
   virtual std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
                                            const Trace& trace,
                                            const DetectorSettings& settings = {}) const = 0;
 
-  /// Nothing, if the specifications of an estimator and of a detector (or "") are good ones: to be asked before
-  /// any work begins.
+  /// Nothing, if the specifications of an estimator and of a detector (or "") are good ones: to be
+  /// asked before any work begins.
   void check(std::string_view estimator, std::string_view detector) const;
 
   /// The pair as the one who stops the motor: at the first mark. It never sees a truth.
@@ -78,7 +81,8 @@ class Robot {
                                         const Output& estimates,
                                         const DetectorSettings& settings) const = 0;
 
-  /// The largest statistic of a calibratable detector, joint by joint, over samples with t >= from [s].
+  /// The largest statistic of a calibratable detector, joint by joint, over samples with t >= from
+  /// [s].
   virtual Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
                                             const Output& estimates,
                                             const DetectorSettings& settings,

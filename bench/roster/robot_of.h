@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// From the roster's types to a Robot that is asked by name. Include this to make a robot of your own
-/// model; else bench/roster/robots.h is enough.
+/// From the roster's types to a Robot that is asked by name. Include this to make a robot of your
+/// own model; else bench/roster/robots.h is enough.
 #pragma once
 
 #include <algorithm>

@@ -24,8 +24,9 @@ void add_robot(MakeRobot make);
 /// Every robot of bench/roster/roster.h, and the registered ones.
 const std::vector<std::unique_ptr<const Robot>>& robots();
 
-/// A robot by its name, or by the path of its MJCF file (it ends in .xml), which then is its name: an arm of
-/// 1 to 7 hinges and slides with the estimators and detectors that every arm has. A file is read once.
+/// A robot by its name, or by the path of its MJCF file (it ends in .xml), which then is its name:
+/// an arm of 1 to 7 hinges and slides with the estimators and detectors that every arm has. A file
+/// is read once.
 /// @throws std::invalid_argument for an unknown name, listing the known ones; std::runtime_error or
 /// std::invalid_argument naming the path and what is wrong with it
 const Robot& robot(std::string_view name_or_file);
@@ -33,21 +34,24 @@ const Robot& robot(std::string_view name_or_file);
 /// Whether robot(name) takes it for the path of a file.
 bool is_robot_file(std::string_view name_or_file);
 
-/// wallmobot3 whose estimators believe in a panel of so many kg; 150 is what robot("wallmobot3") believes.
+/// wallmobot3 whose estimators believe in a panel of so many kg; 150 is what robot("wallmobot3")
+/// believes.
 std::unique_ptr<const Robot> wallmobot3_believing(double panel);
 
 /// Whether a detector stands in the studies alone (for_each_study_detector).
 bool study_only(std::string_view detector);
 
 /// A scenario of that robot.
-/// @throws std::invalid_argument for an unknown name, listing the known ones; and for a robot from a file, which
-/// has none yet
+/// @throws std::invalid_argument for an unknown name, listing the known ones; and for a robot from
+/// a file, which has none yet
 const Scenario& scenario_of(const Robot& robot, std::string_view name);
 
-/// What --list prints: everything the roster and the scenarios hold, and the keys of specifications.
+/// What --list prints: everything the roster and the scenarios hold, and the keys of
+/// specifications.
 std::string list_known();
 
-/// A line for each key that an estimator or a detector of any robot has: unit, limits, what larger does.
+/// A line for each key that an estimator or a detector of any robot has: unit, limits, what larger
+/// does.
 std::string list_fields();
 
 }  // namespace tauext

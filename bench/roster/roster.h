@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// THE list: what the suite runs. One line here adds an estimator, a detector or a robot to the
-/// benchmark, to tauext-replay and to the conformance tests. (Scenarios: mjcf/scenario_wallmobot3.cc and its like.)
+/// benchmark, to tauext-replay and to the conformance tests. (Scenarios:
+/// mjcf/scenario_wallmobot3.cc and its like.)
 #pragma once
 
 #include <type_traits>
@@ -29,8 +30,8 @@
 
 namespace tauext {
 
-// Forms as the paper prints them, to be compared with those that we stand for (kPrintedForm). What has a
-// kFixedTuning is no tunable estimator, whatever its Parameters can do.
+// Forms as the paper prints them, to be compared with those that we stand for (kPrintedForm). What
+// has a kFixedTuning is no tunable estimator, whatever its Parameters can do.
 
 /// The testbed's EKF from x_0 = 0, as section 6.2 starts it, wherever the arm is.
 struct EkfZeroStart : Ekf<Testbed1> {
@@ -66,7 +67,8 @@ inline Ndob<Testbed1>::Parameters testbed1_ndob() {
   return {.X = Vec<1>(100 * Testbed1::Parameters().theta1)};
 }
 
-/// [rad/s] of the estimators whose bandwidth is ours to choose: they are comparable with each other.
+/// [rad/s] of the estimators whose bandwidth is ours to choose: they are comparable with each
+/// other.
 inline constexpr double kRosterBandwidth = 30;
 
 /// The EKF with the Q and R of the sensors instead of the printed ones: what the filter can do.
@@ -139,14 +141,16 @@ void for_each_estimator(const Testbed1& arm, Visit&& visit) {
   visit(with<NdobRawSign>(raw_sign, testbed1_ndob()));
 }
 
-/// Calls visit(make) for the detectors that the suite runs behind every estimator; make() builds one.
+/// Calls visit(make) for the detectors that the suite runs behind every estimator; make() builds
+/// one.
 template <int N, class Visit>
 void for_each_suite_detector(Visit&& visit) {
   visit([] { return PanTompkins<N>(); });
   visit([] { return ContactClassifier<N>(); });
 }
 
-/// Calls visit(make) for those that stand in the studies alone: with all of them the suite's tables would not end.
+/// Calls visit(make) for those that stand in the studies alone: with all of them the suite's tables
+/// would not end.
 template <int N, class Visit>
 void for_each_study_detector(Visit&& visit) {
   visit([] { return Clamping<N>(); });

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Estimators and detectors as people write them: `name[:key=value]...`, like `mo2:bandwidth=50`,
-/// `ekf:integration=euler:alignment=paper` or `ndob:X=600/600/600`. Values of joints are apart by slashes; one
-/// value stands for all joints. The keys are those that the Parameters list (estimators/parameters.h), and
-/// `bandwidth` [rad/s] of every estimator that can be set to one.
+/// `ekf:integration=euler:alignment=paper` or `ndob:X=600/600/600`. Values of joints are apart by
+/// slashes; one value stands for all joints. The keys are those that the Parameters list
+/// (estimators/parameters.h), and `bandwidth` [rad/s] of every estimator that can be set to one.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,8 @@ struct Specification {
   KeyValues keys;    ///< in their order
 };
 
-/// @throws std::invalid_argument for text that is none: no name, a key without `=`, a key named twice
+/// @throws std::invalid_argument for text that is none: no name, a key without `=`, a key named
+/// twice
 Specification parse_specification(std::string_view text);
 
 /// What stands before the first colon.

@@ -116,8 +116,8 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
   virtual void reset() noexcept = 0;  ///< forgets all samples
-  /// Reads a value for each joint of q [rad], qd [rad/s] and tau [N m] at time t [s], and writes tau_ext [N m].
-  /// Allocates nothing.
+  /// Reads a value for each joint of q [rad], qd [rad/s] and tau [N m] at time t [s], and writes
+  /// tau_ext [N m]. Allocates nothing.
   virtual Stepped step(double t, const double* q, const double* qd, const double* tau,
                        double* tau_ext) noexcept = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The file of thresholds that calibration writes and the suite reads, and what it says of a detector.
+/// The file of thresholds that calibration writes and the suite reads, and what it says of a
+/// detector.
 #pragma once
 
 #include <string>
@@ -13,14 +14,14 @@ namespace tauext {
 /// @throws std::runtime_error naming the path
 void write_thresholds(const Thresholds& t, const std::string& path);
 
-/// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing key, a
-/// threshold that is not positive, a wrong number of joints, an unknown robot, estimator or detector
-/// (a metric that is none is refused where the detector is built)
+/// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing
+/// key, a threshold that is not positive, a wrong number of joints, an unknown robot, estimator or
+/// detector (a metric that is none is refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 
-/// What training says of a detector behind an estimator, both by specification, by the detector's name as
-/// DetectorSettings want it. A detector whose specification was not trained has the thresholds of its name;
-/// behind an estimator that was not trained it keeps its defaults.
+/// What training says of a detector behind an estimator, both by specification, by the detector's
+/// name as DetectorSettings want it. A detector whose specification was not trained has the
+/// thresholds of its name; behind an estimator that was not trained it keeps its defaults.
 DetectorThresholds trained_for(const ThresholdSet& set, const std::string& estimator,
                                const std::string& detector);
 

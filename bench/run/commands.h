@@ -9,10 +9,12 @@
 
 namespace tauext {
 
-/// Two lines: tauext-record with everything that the entry's trace depends on (the pair that stops the motor,
-/// in a scenario that reacts), and tauext-replay, which prints the errors of the same estimates.
+/// Two lines: tauext-record with everything that the entry's trace depends on (the pair that stops
+/// the motor, in a scenario that reacts), and tauext-replay, which prints the errors of the same
+/// estimates.
 /// @param entry its name
-/// @throws std::invalid_argument for an unknown entry, and for thresholds, which those two programs do not take
+/// @throws std::invalid_argument for an unknown entry, and for thresholds, which those two programs
+/// do not take
 std::string record_and_replay(const std::string& entry, const SuiteOptions& options);
 
 }  // namespace tauext

@@ -13,7 +13,8 @@ class App;
 
 namespace tauext {
 
-/// Adds the flags of the sensors' faults, the model's errors, a file of both, --seed, --kp and --kd.
+/// Adds the flags of the sensors' faults, the model's errors, a file of both, --seed, --kp and
+/// --kd.
 void add_recording_flags(CLI::App& app, Sensors& sensors, ModelError& error, Recording& recording);
 
 }  // namespace tauext

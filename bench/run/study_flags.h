@@ -26,16 +26,18 @@ struct StudyFlags {
   int studies() const { return reliability + pareto + equal_bandwidth.has_value(); }
 };
 
-/// Adds --reliability, --equal-bandwidth, --pareto, --robot and --out of these, and --format of all tables.
+/// Adds --reliability, --equal-bandwidth, --pareto, --robot and --out of these, and --format of all
+/// tables.
 void add_study_flags(CLI::App& app, StudyFlags& flags);
 
 /// Whether a study was asked for.
-/// @throws std::invalid_argument for a flag of the studies without a study, a format that is none, and two
-/// studies in one file of another format than text
+/// @throws std::invalid_argument for a flag of the studies without a study, a format that is none,
+/// and two studies in one file of another format than text
 bool wants_study(const StudyFlags& flags);
 
 /// Runs what was asked for, and writes it; the file appears whole or not at all.
-/// @param suite its sensors are those of --reliability; ideal ones stand for a good and a poor encoder
+/// @param suite its sensors are those of --reliability; ideal ones stand for a good and a poor
+/// encoder
 /// @returns an ExitCode
 /// @throws std::invalid_argument for sensors and model errors that a study would not use
 int run_study(const StudyFlags& flags, const SuiteOptions& suite);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A run of the suite inside Google Benchmark, and what it leaves: tables, JSON, logs and messages. Not installed.
+/// A run of the suite inside Google Benchmark, and what it leaves: tables, JSON, logs and messages.
+/// Not installed.
 #pragma once
 
 #include <optional>

@@ -22,8 +22,9 @@ struct Degradation {
 ///     { "velocity_noise": 1e-3, "dropped": 0.01, "loadcell": { "hysteresis": 0.002 },
 ///       "model_error": { "mass": 1.05, "friction": 2 } }
 /// The keys are the fields of Sensors, Loadcell and ModelError, in their units.
-/// @throws std::runtime_error naming the file and what is wrong: unreadable, not JSON, an unknown key or a
-/// value out of range (listing the known ones with their limits), a value that is no number
+/// @throws std::runtime_error naming the file and what is wrong: unreadable, not JSON, an unknown
+/// key or a value out of range (listing the known ones with their limits), a value that is no
+/// number
 void read_degradation(const std::string& path, Degradation& d);
 
 /// Sets fields from "key=number" items: of Sensors, of a Loadcell, of a ModelError.

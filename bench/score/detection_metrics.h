@@ -16,10 +16,10 @@ namespace metrics {
 /// [s] after a contact in which a mark, or another contact, still belongs to it.
 inline constexpr double kGrace = 0.2;
 
-/// Marks against the true contact. A collision begins with a contact. Contacts that follow each other within
-/// kGrace are one collision: what was hit is still there, and an arm whose motor the mark has stopped rebounds
-/// onto it. A collision is detected by the first mark from its begin until kGrace after its last contact; any
-/// mark outside these windows is a false alarm.
+/// Marks against the true contact. A collision begins with a contact. Contacts that follow each
+/// other within kGrace are one collision: what was hit is still there, and an arm whose motor the
+/// mark has stopped rebounds onto it. A collision is detected by the first mark from its begin
+/// until kGrace after its last contact; any mark outside these windows is a false alarm.
 struct DetectionScore {
   int collisions = 0;                ///< that the truth has
   int detected = 0;                  ///< of these
@@ -32,8 +32,8 @@ DetectionScore detection_score(const std::vector<double>& t,
                                const std::vector<std::uint8_t>& contact,
                                const std::vector<std::uint8_t>& marks);
 
-/// [rad] how far an arm moves on, in the direction in which it moved, after a mark stopped its motor at
-/// sample trace.stopped_at: the largest of its joints. NaN if nothing stopped it.
+/// [rad] how far an arm moves on, in the direction in which it moved, after a mark stopped its
+/// motor at sample trace.stopped_at: the largest of its joints. NaN if nothing stopped it.
 double overtravel(const Trace& trace);
 
 /// [N] the largest force of a contact; 0 without a sample.
@@ -42,13 +42,14 @@ double peak(const std::vector<double>& force);
 /// Smallest of the values that at least `share` of them do not exceed; NaN without a value.
 double quantile(std::vector<double> values, double share);
 
-/// The rate that can be excluded at 95 % if `count` events were seen: with a mean of poisson_upper(count)
-/// so few or fewer are seen in 5 % of all trials (Garwood 1936). 3.0 for none.
+/// The rate that can be excluded at 95 % if `count` events were seen: with a mean of
+/// poisson_upper(count) so few or fewer are seen in 5 % of all trials (Garwood 1936). 3.0 for none.
 double poisson_upper(int count);
 
 }  // namespace metrics
 
-/// The trace's contacts against the output's marks; nothing without a detector or without known contacts.
+/// The trace's contacts against the output's marks; nothing without a detector or without known
+/// contacts.
 void add_detection_metrics(const Trace& trace, const Output& output, Score& score);
 
 /// What stopping at the mark was worth: overtravel, and the contact's peak force with and without.

@@ -20,12 +20,13 @@ struct Selection {
   bool empty() const { return estimators.empty() && detectors.empty(); }  ///< nobody asked for any
 };
 
-/// One row of the suite: a robot, what happens to it, and the specifications of the estimator and the detector
-/// (bench/roster/specification.h) that it runs.
+/// One row of the suite: a robot, what happens to it, and the specifications of the estimator and
+/// the detector (bench/roster/specification.h) that it runs.
 class Entry {
  public:
   /// @param detector "" for none
-  /// @throws std::invalid_argument for an unknown name or key or a value out of range, listing what is known
+  /// @throws std::invalid_argument for an unknown name or key or a value out of range, listing what
+  /// is known
   Entry(std::string_view robot, std::string_view scenario, std::string_view estimator,
         std::string_view detector = "");
 
@@ -53,9 +54,10 @@ class Entry {
   std::string estimator_, detector_;
 };
 
-/// Every robot x scenario x estimator, and with a detector where it has something to detect (or to leave in
-/// peace). A robot that does not have a selected estimator or detector has no row for it.
-/// @throws std::invalid_argument for a specification that no robot understands, and for one that is there twice
+/// Every robot x scenario x estimator, and with a detector where it has something to detect (or to
+/// leave in peace). A robot that does not have a selected estimator or detector has no row for it.
+/// @throws std::invalid_argument for a specification that no robot understands, and for one that is
+/// there twice
 std::vector<Entry> entries(const Selection& selection = {});
 
 }  // namespace tauext

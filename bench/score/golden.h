@@ -24,16 +24,18 @@ struct GoldenOptions {
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
 };
 
-/// Sensors of a good robot, 1e-3 rad/s of velocity noise and an encoder of 17 bits: with ideal ones nothing
-/// would depend on the seed, and a paired comparison needs seeds.
+/// Sensors of a good robot, 1e-3 rad/s of velocity noise and an encoder of 17 bits: with ideal ones
+/// nothing would depend on the seed, and a paired comparison needs seeds.
 Sensors golden_sensors();
 
-/// Lines "# name: value" of what the numbers depend on, then a line for each entry and metric, sorted: entry,
-/// metric, tolerance and a value for each seed, apart by tabs. Values are %.17g, "never" where the metric has none or is no number. `tolerance` is what may change between
-/// two machines, absolute or relative, whichever is larger: 1e-9, and 1e-6 where something stands in the arm's
-/// way. The metrics are those that the list calls gated (bench/score/metric_list.h), of the worst joint. The text
-/// does not depend on the number of threads.
-/// @throws std::invalid_argument for a filter that matches nothing or is no regular expression, and for no seed
+/// Lines "# name: value" of what the numbers depend on, then a line for each entry and metric,
+/// sorted: entry, metric, tolerance and a value for each seed, apart by tabs. Values are %.17g,
+/// "never" where the metric has none or is no number. `tolerance` is what may change between two
+/// machines, absolute or relative, whichever is larger: 1e-9, and 1e-6 where something stands in
+/// the arm's way. The metrics are those that the list calls gated (bench/score/metric_list.h), of
+/// the worst joint. The text does not depend on the number of threads.
+/// @throws std::invalid_argument for a filter that matches nothing or is no regular expression, and
+/// for no seed
 std::string golden_metrics(const GoldenOptions& options);
 
 }  // namespace tauext

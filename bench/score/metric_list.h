@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// THE list of metrics. Tables, legends, JSON, golden files, tauext-gate, summaries and bench/score/README.md
-/// read it; a metric's key is spelled here alone. A new metric is a row here, a definition and a call beside it
-/// (metrics.h or detection_metrics.h).
+/// THE list of metrics. Tables, legends, JSON, golden files, tauext-gate, summaries and
+/// bench/score/README.md read it; a metric's key is spelled here alone. A new metric is a row here,
+/// a definition and a call beside it (metrics.h or detection_metrics.h).
 #pragma once
 
 #include <array>
@@ -42,8 +42,8 @@ enum class Metric : std::uint8_t {
 /// Which values are good.
 enum class Better : std::uint8_t { kLess, kMore, kNeither };
 
-/// Whether a metric is judged joint by joint, and which joint then stands for the entry. A joint without a
-/// value ("never") is worse than all others.
+/// Whether a metric is judged joint by joint, and which joint then stands for the entry. A joint
+/// without a value ("never") is worse than all others.
 enum class WorstJoint : std::uint8_t { kNone, kLargest, kSmallest };
 
 /// What is to be known of a metric.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The metrics of estimates, each defined once. A signal is one joint's row over the samples; `truth`
-/// and `estimate` are tau_ext [N m]; NaN says that a metric does not exist for these signals.
+/// The metrics of estimates, each defined once. A signal is one joint's row over the samples;
+/// `truth` and `estimate` are tau_ext [N m]; NaN says that a metric does not exist for these
+/// signals.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,8 +32,8 @@ double max_error(const Times& t, const Signal& truth, const Signal& estimate, do
 /// [s] when |estimate - truth| is largest, over samples with t >= from; NaN without a sample.
 double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
-/// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run, over
-/// samples with t >= from.
+/// [N m] what sensor noise adds: standard deviation of noisy - ideal, two estimates of one run,
+/// over samples with t >= from.
 double noise(const Times& t, const Signal& ideal, const Signal& noisy, double from);
 
 /// [N m] mean of estimate - truth over the last second: where an estimate ends up.
@@ -56,9 +57,10 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
 /// [rad/s] -3 dB: the frequency at which the estimate's answer to a swept sine first falls below
-/// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's own
-/// spectrum, each a mean over a band of 10 %. NaN if it does not fall or already has at 0.7 rad/s, if the
-/// truth does not cover these frequencies, or if samples are not evenly spaced (within 1 %).
+/// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's
+/// own spectrum, each a mean over a band of 10 %. NaN if it does not fall or already has at 0.7
+/// rad/s, if the truth does not cover these frequencies, or if samples are not evenly spaced
+/// (within 1 %).
 double bandwidth(const Times& t, const Signal& truth, const Signal& estimate);
 
 }  // namespace metrics
@@ -66,8 +68,8 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate);
 /// The errors of a trace's estimates, over samples with t >= from [s].
 void add_error_metrics(const Trace& trace, const Output& output, double from, Score& score);
 
-/// What sensor noise adds: two estimates of one run, over samples with t >= from [s]. Nothing if samples were
-/// dropped, so that the two are of different lengths.
+/// What sensor noise adds: two estimates of one run, over samples with t >= from [s]. Nothing if
+/// samples were dropped, so that the two are of different lengths.
 void add_noise_metric(const Trace& trace, const Output& ideal, const Output& noisy, double from,
                       Score& score);
 

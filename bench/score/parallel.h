@@ -18,9 +18,10 @@ inline int thread_count(int jobs) {
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// Calls work(i) for i = 0 to n - 1 from several threads, in no order. After an exception no new work
-/// begins, and it is thrown here.
-/// @param done called from time to time with the share that is done, 0 to 1, by one thread at a time
+/// Calls work(i) for i = 0 to n - 1 from several threads, in no order. After an exception no new
+/// work begins, and it is thrown here.
+/// @param done called from time to time with the share that is done, 0 to 1, by one thread at a
+/// time
 inline void parallel_for(int n, int threads, const std::function<void(int)>& work,
                          const std::function<void(double)>& done = nullptr) {
   std::atomic<int> next = 0;

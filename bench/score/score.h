@@ -14,8 +14,8 @@
 
 namespace tauext {
 
-/// A value for each metric that exists for the run, NaN where it has no value ("never settles"), and the values
-/// of the joints where the metric is judged joint by joint.
+/// A value for each metric that exists for the run, NaN where it has no value ("never settles"),
+/// and the values of the joints where the metric is judged joint by joint.
 class Score {
  public:
   std::string error;  ///< why the entry failed; "" if it did not

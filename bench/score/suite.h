@@ -27,13 +27,14 @@ struct SuiteOptions {
 /// The first estimate that is not finite or whose status says that it is an old one; "" for none.
 std::string bad_status(const Trace& trace, const Output& output);
 
-/// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one is
-/// not finite, a status says so, or from time `from` [s] on some joint's rmse exceeds
+/// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one
+/// is not finite, a status says so, or from time `from` [s] on some joint's rmse exceeds
 /// 1.5 times that of an estimate of 0 by more than 5 N m.
 std::string failure(const Trace& ideal, const Output& output, double from);
 
-/// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is recorded
-/// anew for each pair of estimator and detector, whose mark then stops the motor. Safe for one thread.
+/// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is
+/// recorded anew for each pair of estimator and detector, whose mark then stops the motor. Safe for
+/// one thread.
 class Suite {
  public:
   /// For scores of these sensors, errors and thresholds.

@@ -18,9 +18,10 @@ struct Row {
   Score score;  ///< what it is worth
 };
 
-/// The rows in their order; a column for each metric of the table that some row has; `*` at the best of a
-/// group's column (baselines do not compete), "never" for a metric without a value. A failed entry says why, as
-/// "FAILED: why" or in a column of its own. CSV and JSON name the columns by the metrics' keys.
+/// The rows in their order; a column for each metric of the table that some row has; `*` at the
+/// best of a group's column (baselines do not compete), "never" for a metric without a value. A
+/// failed entry says why, as "FAILED: why" or in a column of its own. CSV and JSON name the columns
+/// by the metrics' keys.
 std::string format_table(const std::vector<Row>& rows, TableFormat format = TableFormat::kText);
 
 /// What the columns of format_table(rows) mean, a line each.

@@ -35,7 +35,8 @@ std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std
   return all;
 }
 
-// what undoes the covariances of training, run by run in their order: a sum of rounded numbers depends on it
+// what undoes the covariances of training, run by run in their order: a sum of rounded numbers
+// depends on it
 Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances) {
   const auto n = covariances.begin()->second.rows();
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
@@ -113,7 +114,8 @@ class Training {
     });
   }
 
-  // calls look(number of the run, robot, detector, trace, estimates, what is known) for all runs, estimators, detectors
+  // calls look(number of the run, robot, detector, trace, estimates, what is known) for all runs,
+  // estimators, detectors
   template <class Look>
   void pass(int number, Look&& look) {
     const int count = static_cast<int>(names_.size());

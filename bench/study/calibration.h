@@ -28,8 +28,8 @@ struct CalibrationOptions {
 };
 
 /// Sets every calibratable detector's thresholds behind every estimator: `margin` times the largest
-/// statistic of training runs, free motion and slow pushes alone, for each of the study's velocity noises.
-/// A specification with keys is trained for itself.
+/// statistic of training runs, free motion and slow pushes alone, for each of the study's velocity
+/// noises. A specification with keys is trained for itself.
 /// @throws std::invalid_argument for a margin below 1, a robot without runs and unknown names
 Thresholds calibrate(const CalibrationOptions& options);
 

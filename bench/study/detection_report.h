@@ -12,7 +12,8 @@
 
 namespace tauext::study {
 
-/// As text a table for each condition, and what the columns mean; else one table with a column of conditions.
+/// As text a table for each condition, and what the columns mean; else one table with a column of
+/// conditions.
 /// @param robot that was studied; "" for the first one that has runs
 std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
                          TableFormat format = TableFormat::kText);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Every estimator with every detector on one robot, under conditions that it meets: what is missed, how
-/// late, how often for nothing, and what a human's push or a slow clamping is taken for.
+/// Every estimator with every detector on one robot, under conditions that it meets: what is
+/// missed, how late, how often for nothing, and what a human's push or a slow clamping is taken
+/// for.
 ///
-/// Each run is simulated once and seen by all; each condition adds its own sensors. Every figure is a
-/// count or a quantile over runs that are numbered, so it does not depend on the number of threads.
+/// Each run is simulated once and seen by all; each condition adds its own sensors. Every figure is
+/// a count or a quantile over runs that are numbered, so it does not depend on the number of
+/// threads.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +34,8 @@ struct StudyOptions {
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
 };
 
-/// @throws std::invalid_argument for a robot without runs, for unknown names, and for seeds that reach
-/// those of calibration
+/// @throws std::invalid_argument for a robot without runs, for unknown names, and for seeds that
+/// reach those of calibration
 void check_study(const StudyOptions& options);
 
 /// Runs the study. Cells are ordered by condition, estimator, detector.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Estimators compared at one bandwidth: a fast estimator is noisy, a quiet one is slow, and as printed none
-/// is comparable with another.
+/// Estimators compared at one bandwidth: a fast estimator is noisy, a quiet one is slow, and as
+/// printed none is comparable with another.
 #pragma once
 
 #include <functional>
@@ -54,7 +54,8 @@ struct AtBandwidth {
 };
 
 /// Sets every tunable estimator of the robot so that its measured bandwidth is w [rad/s].
-/// @throws std::invalid_argument unless 1 <= w <= 200, and for a robot without the scenarios, naming them
+/// @throws std::invalid_argument unless 1 <= w <= 200, and for a robot without the scenarios,
+/// naming them
 std::vector<AtBandwidth> at_equal_bandwidth(const Robot& robot, double w, int threads = 0,
                                             const std::function<void(double)>& progress = nullptr);
 

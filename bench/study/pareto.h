@@ -11,8 +11,8 @@
 
 namespace tauext::study {
 
-/// A point of an estimator's front of noise against delay. The delay is the settling time: who reaches 90 %
-/// early and overshoots is not there yet.
+/// A point of an estimator's front of noise against delay. The delay is the settling time: who
+/// reaches 90 % early and overshoots is not there yet.
 struct ParetoPoint {
   std::string estimator;     ///< its specification
   double design = 0;         ///< [rad/s]; 0: as the roster has it
@@ -20,19 +20,21 @@ struct ParetoPoint {
   std::string dominated_by;  ///< who settles as quickly and is at least 2 % quieter; "" if nobody
   double excess = 0;         ///< [1] how much noisier this one is than that
 
-  /// Whether it has a place at all: an estimate that never settles, or whose noise has no value, has none.
+  /// Whether it has a place at all: an estimate that never settles, or whose noise has no value,
+  /// has none.
   bool has_value() const;
   /// Whether nobody is better in both.
   bool on_front() const { return has_value() && dominated_by.empty(); }
 };
 
-/// Sweeps every tunable estimator of the robot, and adds all as the roster has them, one point each.
+/// Sweeps every tunable estimator of the robot, and adds all as the roster has them, one point
+/// each.
 /// @throws std::invalid_argument for a robot without the scenarios `step` and `free`
 std::vector<ParetoPoint> pareto(const Robot& robot, int threads = 0,
                                 const std::function<void(double)>& progress = nullptr);
 
-/// Marks who is dominated: the front of another estimator, on straight lines between its points in the
-/// logarithms, lies below, or a point of its own does.
+/// Marks who is dominated: the front of another estimator, on straight lines between its points in
+/// the logarithms, lies below, or a point of its own does.
 void mark_dominated(std::vector<ParetoPoint>& points);
 
 /// As text with a head and with what the columns mean.

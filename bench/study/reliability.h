@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// How reliable a detector is behind an estimator: many blows that it must mark, and hours of a human's
-/// hand that it must leave in peace. On a robot whose scenarios can be drawn by a seed.
+/// How reliable a detector is behind an estimator: many blows that it must mark, and hours of a
+/// human's hand that it must leave in peace. On a robot whose scenarios can be drawn by a seed.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All that belongs
-/// to one robot stands in study_runs.cc; the studies themselves know no robot by name.
+/// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All
+/// that belongs to one robot stands in study_runs.cc; the studies themselves know no robot by name.
 #pragma once
 
 #include <compare>
@@ -56,7 +56,8 @@ struct StudyRuns {
 };
 
 /// The runs of a robot for the detection study; "" stands for the first robot that has some.
-/// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those with
+/// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those
+/// with
 const StudyRuns& touched_runs(const std::string& robot);
 
 /// The runs of a robot for the reliability study; "" stands for the first robot that has some.

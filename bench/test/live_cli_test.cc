@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tauext-live, and LCM in the other programs. Whatever sends does so in a network namespace of its own.
+// tauext-live, and LCM in the other programs. Whatever sends does so in a network namespace of its
+// own.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -160,7 +161,8 @@ TEST_F(LivePrograms, EstimatesARobotOnTheAir) {
         "lcm-logplayer --speed=4 robot.lcm > /dev/null\n"
         "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code");
     EXPECT_EQ(o.code, 0) << o.text;
-    // on a busy machine the first few of UDP may not arrive, and nobody can know that they were sent
+    // on a busy machine the first few of UDP may not arrive, and nobody can know that they were
+    // sent
     EXPECT_GE(number(o, "used"), 7900) << o.text;
     EXPECT_TRUE(o.says("used, 0 lost, 0 late, 0 repeated, 0 rejected; 0 restarts")) << o.text;
     const std::regex marked("\nmo1 +[0-9.]+ +[0-9.]+ .* 0 +[1-9][0-9]*\n");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The programs that write and read logs: tauext-record, -replay and -identify, and the suite's logs of LCM.
+// The programs that write and read logs: tauext-record, -replay and -identify, and the suite's logs
+// of LCM.
 #include <gtest/gtest.h>
 
 #include <algorithm>

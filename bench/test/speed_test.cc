@@ -37,8 +37,8 @@ double median_ratio(Runner& a, Runner& b) {
   return r[kPairs / 2];
 }
 
-// the first of up to five that reaches the limit, else the last: a neighbour on the machine can spoil
-// one for a while, a slower estimator spoils them all
+// the first of up to five that reaches the limit, else the last: a neighbour on the machine can
+// spoil one for a while, a slower estimator spoils them all
 double ratio(Runner& a, Runner& b, double limit) {
   double r = 0;
   for (int attempt = 0; attempt < 5 && r < limit; ++attempt) r = median_ratio(a, b);
@@ -80,7 +80,8 @@ TEST_F(Speed, TheNdobIsFiveTimesFasterThanTheEkf) {
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
-  // with 230 ns for the EKF: 45 ns for observers, 60 for the sliding mode, 250 for the Kalman filter
+  // with 230 ns for the EKF: 45 ns for observers, 60 for the sliding mode, 250 for the Kalman
+  // filter
   const std::pair<const char*, double> kLeast[] = {{"mo1", 5},   {"ndob_wb", 5}, {"mo2", 4},
                                                    {"mo3", 3.8}, {"smo", 3.8},   {"eao", 2},
                                                    {"dkf", 0.92}};
@@ -91,7 +92,8 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
   }
 }
 
-// pushes as a cycle with three estimators makes them, five times as often, while the other thread takes them out
+// pushes as a cycle with three estimators makes them, five times as often, while the other thread
+// takes them out
 void push_for_a_second(live::Histogram& push_ns) {
   LiveStream stream(nullptr, live::streams_of({"a", "b", "c"}, "d"), 200);
   LiveSample s;

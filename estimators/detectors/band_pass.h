@@ -22,7 +22,8 @@ class BandPass {
   static constexpr int kDegree = 1;
 
   struct Parameters {
-    /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the origin
+    /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the
+    /// origin
     Vec<N> threshold = Vec<N>::Constant(45);
     double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
     double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Something is caught between the arm and a wall: the force rises slowly, over half a second or more,
-/// beyond any push, and stays. A derivative does not see that; a plain limit takes an unknown payload
-/// for it. So the limit is on what has changed within the last second or so:
+/// Something is caught between the arm and a wall: the force rises slowly, over half a second or
+/// more, beyond any push, and stays. A derivative does not see that; a plain limit takes an unknown
+/// payload for it. So the limit is on what has changed within the last second or so:
 ///     z = high-pass of tau_ext at w_baseline, low-pass at w_smooth (filters.h)              (i)
 ///     size = sqrt(z^T metric z)                                                             (ii)
 ///     lasting = smallest size of the last `duration`, by eight blocks of it                 (iii)
 ///     mark where lasting / threshold rises through 1
-/// One force is a different torque on every joint, in every direction another; the metric undoes that.
-/// Trained on pushes from all sides it is (I + C / rho^2)^-1, C the covariance of z in training and
-/// rho a torque that counts where training shows nothing (Mahalanobis 1936), so that pushes of one
-/// strength are of one size, and what an unknown payload does as the arm moves counts less.
-/// (iii) lets a blow pass: it is over before `duration` is. Known limits: what rises much slower than
-/// 1 / w_baseline passes, too; and a push that is as strong and as slow is a clamping to it.
+/// One force is a different torque on every joint, in every direction another; the metric undoes
+/// that. Trained on pushes from all sides it is (I + C / rho^2)^-1, C the covariance of z in
+/// training and rho a torque that counts where training shows nothing (Mahalanobis 1936), so that
+/// pushes of one strength are of one size, and what an unknown payload does as the arm moves counts
+/// less. (iii) lets a blow pass: it is over before `duration` is. Known limits: what rises much
+/// slower than 1 / w_baseline passes, too; and a push that is as strong and as slow is a clamping
+/// to it.
 #pragma once
 
 #include <algorithm>
@@ -36,12 +37,12 @@ class Clamping {
   static constexpr int kDegree = 1;
 
   struct Parameters {
-    /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger misses
-    /// more and alarms less; by default beyond a push of 100 N at 1.5 m
+    /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger
+    /// misses more and alarms less; by default beyond a push of 100 N at 1.5 m
     Vec<N> threshold = Vec<N>::Constant(150);
     Mat<N> metric = Mat<N>::Identity();  ///< [1] of (ii), symmetric positive definite
-    /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a clamping
-    /// that rises slowly
+    /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a
+    /// clamping that rises slowly
     double w_baseline = 0.5;
     double w_smooth = 100;    ///< [rad/s] smaller lets less noise pass, and marks later
     double duration = 0.1;    ///< [s] larger lets longer blows pass, and marks later

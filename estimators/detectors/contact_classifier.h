@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What kind of contact it is. pan_tompkins.h sees a blow and no slow clamping, clamping.h sees a slow
-/// clamping and no blow, and neither knows a hand from nothing; together they do. At every sample, the
-/// first line that holds:
+/// What kind of contact it is. pan_tompkins.h sees a blow and no slow clamping, clamping.h sees a
+/// slow clamping and no blow, and neither knows a hand from nothing; together they do. At every
+/// sample, the first line that holds:
 ///     within `hold` of a mark of pan_tompkins                          collision
 ///     clamping's score is at least 1                                   clamping
 ///     max_i(|z_i| / intentional_i) >= 1, z as in clamping.h            intentional
 ///     else                                                             none
-/// A collision is marked where pan_tompkins marks, a clamping where its score rises through 1 (or is
-/// above it when a collision's `hold` ends: then the arm hit something and is caught there). Known limit:
-/// a payload that the model lacks changes tau_ext as the arm moves, and that reads as intentional, too.
+/// A collision is marked where pan_tompkins marks, a clamping where its score rises through 1 (or
+/// is above it when a collision's `hold` ends: then the arm hit something and is caught there).
+/// Known limit: a payload that the model lacks changes tau_ext as the arm moves, and that reads as
+/// intentional, too.
 #pragma once
 
 #include <algorithm>

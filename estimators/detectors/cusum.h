@@ -5,8 +5,8 @@
 ///     z = high-pass of tau_ext at w (filters.h)
 ///     S+ = max(0, S+ + h (z - drift)),   S- = max(0, S- + h (-z - drift))                   (i)
 ///     mark where max_i(max(S+_i, S-_i) / threshold_i) rises through 1
-/// Sums are in N m s and weighted by h, so they do not depend on the sampling time. Noise cancels in
-/// them, which is why this detector lasts where a derivative drowns. A sum stops at twice the
+/// Sums are in N m s and weighted by h, so they do not depend on the sampling time. Noise cancels
+/// in them, which is why this detector lasts where a derivative drowns. A sum stops at twice the
 /// threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
@@ -27,11 +27,11 @@ class Cusum {
   static constexpr int kDegree = 1;  ///< at least: the drift does not grow
 
   struct Parameters {
-    /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow of
-    /// 100 N and 10 ms at 1.2 m
+    /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
+    /// of 100 N and 10 ms at 1.2 m
     Vec<N> threshold = Vec<N>::Constant(0.4);
-    /// [N m] what z may have for ever: larger forgets quicker; by default above what a push of 80 N in
-    /// 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
+    /// [N m] what z may have for ever: larger forgets quicker; by default above what a push of 80 N
+    /// in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
     double drift = 12;
     double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
     double refractory = 0.2;  ///< [s] after a mark without another

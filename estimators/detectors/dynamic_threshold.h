@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A limit that grows with speed, since errors of friction and inertia do: Sotoudehnejad and Kermani,
-/// "Velocity-based variable thresholds for improving collision detection in manipulators", ICRA 2014, in
-/// its simplest form.
+/// A limit that grows with speed, since errors of friction and inertia do: Sotoudehnejad and
+/// Kermani, "Velocity-based variable thresholds for improving collision detection in manipulators",
+/// ICRA 2014, in its simplest form.
 ///     mark where max_i(|tau_ext_i| / (threshold_i (1 + |qd_i| / speed))) rises through 1
 #pragma once
 
@@ -22,7 +22,8 @@ class DynamicThreshold {
   static constexpr int kDegree = 1;
 
   struct Parameters {
-    /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at 1.2 m
+    /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at
+    /// 1.2 m
     Vec<N> threshold = Vec<N>::Constant(100);
     double speed = 0.5;  ///< [rad/s] at which the limit has doubled: smaller trusts motion less
     double refractory = 0.2;  ///< [s] after a mark without another

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// First-order filters for detectors, exact for an input that is held between samples, whatever their
-/// spacing:
+/// First-order filters for detectors, exact for an input that is held between samples, whatever
+/// their spacing:
 ///     low-pass   l_k = x_k-1 + e^(-w h) (l_k-1 - x_k-1)                                      (i)
 ///     high-pass  x_k - l_k
 /// A unit step gives 1 - e^(-w t) and e^(-w t).

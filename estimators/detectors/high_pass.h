@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A limit on what is quick in the estimate: a first-order high-pass takes payloads, model errors and slow
-/// pushes out. After Cho, Kim, Lee and Song, "Collision detection algorithm to distinguish between
-/// intended contact and unexpected collision", Advanced Robotics 2012.
+/// A limit on what is quick in the estimate: a first-order high-pass takes payloads, model errors
+/// and slow pushes out. After Cho, Kim, Lee and Song, "Collision detection algorithm to distinguish
+/// between intended contact and unexpected collision", Advanced Robotics 2012.
 ///     z = high-pass of tau_ext at w (filters.h)                                             (i)
 ///     mark where max_i(|z_i| / threshold_i) rises through 1
 #pragma once

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A static limit on the estimate, the oldest detector of all: De Luca and Mattone 2003; Haddadin, De Luca
-/// and Albu-Schaeffer 2017, section IV.
+/// A static limit on the estimate, the oldest detector of all: De Luca and Mattone 2003; Haddadin,
+/// De Luca and Albu-Schaeffer 2017, section IV.
 ///     mark where max_i(|tau_ext_i| / threshold_i) rises through 1
-/// Knows no difference between a blow, a hand that leans on the arm and a payload that the model lacks.
+/// Knows no difference between a blow, a hand that leans on the arm and a payload that the model
+/// lacks.
 #pragma once
 
 #include <tuple>
@@ -22,7 +23,8 @@ class Threshold {
   static constexpr int kDegree = 1;
 
   struct Parameters {
-    /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at 1.2 m
+    /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at
+    /// 1.2 m
     Vec<N> threshold = Vec<N>::Constant(120);
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark

@@ -26,11 +26,11 @@ inline void store(double* to, const Lanes& x) noexcept {
   std::memcpy(to, &x, sizeof x);
 }
 
-// Lanes go by reference, inlined as all of this is: a vector as a value would warn of its ABI wherever
-// a program is built without AVX.
+// Lanes go by reference, inlined as all of this is: a vector as a value would warn of its ABI
+// wherever a program is built without AVX.
 
-/// Four elements of v from `first` on, with copies of the first one beyond its end; `first` must fold
-/// to a constant.
+/// Four elements of v from `first` on, with copies of the first one beyond its end; `first` must
+/// fold to a constant.
 template <int N>
 [[gnu::always_inline]] inline void gather(const Vec<N>& v, int first, Lanes& x) noexcept {
   const auto at = [&](int i) { return v[i < N ? i : first]; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an estimator of 30 or 100 rad/s makes of a touch on one joint, on top of an unknown payload that
-// weighs 1500 N m and swings by 60 as the arm moves.
+// What an estimator of 30 or 100 rad/s makes of a touch on one joint, on top of an unknown payload
+// that weighs 1500 N m and swings by 60 as the arm moves.
 #include "estimators/detectors/contact_classifier.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detectors against closed forms of what they compute; what all of them share: bench/kit/conformance.h.
+// Detectors against closed forms of what they compute; what all of them share:
+// bench/kit/conformance.h.
 #include <gtest/gtest.h>
 
 #include <cmath>

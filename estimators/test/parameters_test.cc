@@ -30,7 +30,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// sets the field beyond its limits in every way and builds T of it; the number of ways that were refused
+// sets the field beyond its limits in every way and builds T of it; the number of ways that were
+// refused
 template <class T, class P, class Value, class Build>
 int refused(const Field<P, Value>& f, const P& good, Build&& build) {
   int count = 0;

@@ -58,7 +58,8 @@ TEST(Testbed1, JacobiansAreTheDifferencesOfItsAcceleration) {
         return arm.forward_dynamics(vec(q + dq), vec(qd + dqd), vec(100 + du)).qdd[0];
       };
       const auto f = arm.forward_dynamics(vec(q), vec(qd), vec(100));
-      // central differences: h^2 / 6 of the third derivative, and round-off of 100 N m / theta_1 / h
+      // central differences: h^2 / 6 of the third derivative, and round-off of 100 N m / theta_1 /
+      // h
       EXPECT_NEAR(f.dqdd_dq(0, 0), (qdd(kStep, 0, 0) - qdd(-kStep, 0, 0)) / (2 * kStep), 1e-6);
       EXPECT_NEAR(f.dqdd_dqd(0, 0), (qdd(0, kStep, 0) - qdd(0, -kStep, 0)) / (2 * kStep), 1e-4);
       EXPECT_NEAR(f.dqdd_dtau_ext(0, 0), -(qdd(0, 0, kStep) - qdd(0, 0, -kStep)) / (2 * kStep),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages and logs as nobody should send them: nothing crashes (the sanitizers look), nothing is half-taken.
+// Messages and logs as nobody should send them: nothing crashes (the sanitizers look), nothing is
+// half-taken.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -47,8 +47,9 @@ TEST(ReadingTest, TheSampleKeepsTimeToTheLastBitAndTheContact) {
   EXPECT_EQ(got.reference, ReferenceKind::kTruth);
 }
 
-// Drake's manipulation/README.md: measured torque negated on the iiwa and correct on the Panda, external torque
-// correct (positive where it accelerates the joint) on the iiwa and negated on the Panda
+// Drake's manipulation/README.md: measured torque negated on the iiwa and correct on the Panda,
+// external torque correct (positive where it accelerates the joint) on the iiwa and negated on the
+// Panda
 TEST(ReadingTest, EachDriverHasItsOwnSigns) {
   Reading r;
   r.n = 1;

@@ -12,8 +12,9 @@
 namespace tauext::test {
 namespace {
 
-// A change of a hash breaks every log and every subscriber: these are promises, not measurements. The last two are
-// those of Drake's lcmt_iiwa_status and lcmt_panda_status, from lcm-gen on Drake's own files.
+// A change of a hash breaks every log and every subscriber: these are promises, not measurements.
+// The last two are those of Drake's lcmt_iiwa_status and lcmt_panda_status, from lcm-gen on Drake's
+// own files.
 TEST(Wire, HashesAreThoseThatLogsWereWrittenWith) {
   EXPECT_EQ(static_cast<std::uint64_t>(sample_t::getHash()), 0x4fbf6b47af6662abULL);
   EXPECT_EQ(static_cast<std::uint64_t>(estimate_t::getHash()), 0xfbbbd82d4b247158ULL);

@@ -12,12 +12,13 @@
 namespace tauext {
 
 /// Actuators, in this order:
-///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its force
-///    tau_i. So q = S rho + const, rho the positions of the arm's degrees of freedom.
+///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its
+///    force tau_i. So q = S rho + const, rho the positions of the arm's degrees of freedom.
 ///  - none, or one motor of unit gain on a spatial tendon for each joint: a linear screw, which is
 ///    never driven here but says what a loadcell at its end feels.
 ///  - with the scene "load", the switch of the tether.
-/// Further degrees of freedom are the scene's: bodies that meet the arm by contacts and tethers only.
+/// Further degrees of freedom are the scene's: bodies that meet the arm by contacts and tethers
+/// only.
 struct Layout {
   int dof = 0;                ///< joints
   std::vector<int> arm;       ///< the arm's degrees of freedom in the model

@@ -32,8 +32,8 @@ std::vector<int> arm_of(const Model& m) {
   return layout_of(*m, *initial_state(*m)).arm;
 }
 
-// along the line from the last joint to the centre of mass of what it moves; that line has to lie in
-// the plane in which the joint turns
+// along the line from the last joint to the centre of mass of what it moves; that line has to lie
+// in the plane in which the joint turns
 void move_com(mjModel& m, int dof, double by) {
   const int body = m.dof_bodyid[dof], joint = m.dof_jntid[dof];
   using Vector3d = Eigen::Vector3d;

@@ -20,8 +20,9 @@ struct Point {
   Eigen::Vector3d velocity;  ///< [m/s]
 };
 
-/// A simulated arm, and what stands around it, as mjcf/plant/layout.h reads them from the model. MuJoCo's
-/// coordinates rho of the arm are mapped to q = S rho; generalised forces by rho_force = S^T force.
+/// A simulated arm, and what stands around it, as mjcf/plant/layout.h reads them from the model.
+/// MuJoCo's coordinates rho of the arm are mapped to q = S rho; generalised forces by rho_force =
+/// S^T force.
 ///
 /// Everything but `step` speaks of the present state and input, and equation (3) holds there:
 ///     B qdd + bias + friction + tau_ext = tau.
@@ -37,12 +38,12 @@ class Plant {
   /// The screws of the joints, in their order; empty if the robot has none.
   const std::vector<Screw>& screws() const { return layout_.screws; }
 
-  /// Puts the arm at q [rad], qd [rad/s], at rest from inputs, and the scene at its begin: a load is
-  /// held beside the arm.
+  /// Puts the arm at q [rad], qd [rad/s], at rest from inputs, and the scene at its begin: a load
+  /// is held beside the arm.
   void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 
-  /// Applies tau [N m] and tau_ext [N m, sign of (3)] from now on. tau beyond what the motors can do
-  /// is clipped.
+  /// Applies tau [N m] and tau_ext [N m, sign of (3)] from now on. tau beyond what the motors can
+  /// do is clipped.
   void set_input(const Eigen::VectorXd& tau, const Eigen::VectorXd& tau_ext);
 
   Eigen::VectorXd q() const;         ///< [rad]

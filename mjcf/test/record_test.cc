@@ -62,8 +62,8 @@ TEST_P(EveryScenario, IsBitIdenticalWhenRepeated) {
   EXPECT_EQ(a.tau_ext, b.tau_ext);
 }
 
-// tau is held, so a finer integration of each sample must converge: RK4's error falls 16-fold when its
-// step is halved. At 1 ms nothing is left of it but round-off, so the rate is taken at 20 ms
+// tau is held, so a finer integration of each sample must converge: RK4's error falls 16-fold when
+// its step is halved. At 1 ms nothing is left of it but round-off, so the rate is taken at 20 ms
 TEST_P(EveryScenario, ConvergesWithTheStepSize) {
   const Model m = model();
   Scenario s = chosen();

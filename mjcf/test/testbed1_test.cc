@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The testbed's MJCF against (35)-(37), the load against the laws of a pendulum, the obstacle against
-// its own spring.
+// The testbed's MJCF against (35)-(37), the load against the laws of a pendulum, the obstacle
+// against its own spring.
 #include "estimators/testbed1.h"
 
 #include <gtest/gtest.h>
@@ -177,7 +177,8 @@ TEST(Obstacle, HitsWithAForceThatDoesNotDependOnTheStep) {
   EXPECT_NEAR(peak(1), peak(4), 1e-3 * peak(4));
 }
 
-// section 6.1: "the robot end-effector moves upward until it reaches the upper limit position and stops"
+// section 6.1: "the robot end-effector moves upward until it reaches the upper limit position and
+// stops"
 TEST(Buttons, DriveTheArmToItsLimitWhereItStops) {
   const Scenario& s = scenario("testbed1", "button");
   const Trace t = record(load_for("testbed1", s), s);

@@ -76,7 +76,8 @@ TEST_F(WallMoBot3Mjcf, FrictionOfATendonIsFrictionOfItsJointCoordinate) {
   EXPECT_LT((plant.friction() - arm.friction(qd)).norm(), 1e-12 * arm.friction(qd).norm());
 }
 
-// modified Denavit-Hartenberg transform of Table I, in the plane: along x by a, then about y by theta
+// modified Denavit-Hartenberg transform of Table I, in the plane: along x by a, then about y by
+// theta
 struct Pose {
   double x = 0, z = 0, phi = 0;
   void next(double a, double theta) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The triangle of a joint that a linear screw drives, section 6.1 of the paper: the screw of length b
-/// runs from the base to a point of the arm, a and c away from the joint.
+/// The triangle of a joint that a linear screw drives, section 6.1 of the paper: the screw of
+/// length b runs from the base to a point of the arm, a and c away from the joint.
 #pragma once
 
 #include <cmath>

@@ -16,8 +16,8 @@ namespace tauext {
 
 /// A loadcell at the end of each screw. Its faults act on the force along the screw, and reach tau
 /// through (33)-(34), pose by pose: the true force is tau / (a sin Theta) at the true q, and the
-/// measured tau is the measured force times a sin Theta at the measured q. On a robot without screws it
-/// is a torque sensor in each joint, and N below stands for N m. In this order:
+/// measured tau is the measured force times a sin Theta at the measured q. On a robot without
+/// screws it is a torque sensor in each joint, and N below stands for N m. In this order:
 struct Loadcell {
   double scale = 1;         ///< [1] gain error: the true force times this
   double offset = 0;        ///< [N]
@@ -87,8 +87,8 @@ class SensorStream {
   double stamp_;                // [s] its time stamp
 };
 
-/// The trace as these sensors would have recorded it; the truth in it stays the truth, sample by sample:
-/// a dropped sample is missing in both.
+/// The trace as these sensors would have recorded it; the truth in it stays the truth, sample by
+/// sample: a dropped sample is missing in both.
 /// @throws std::invalid_argument as SensorStream does
 Trace measure(const Trace& truth, const Sensors& sensors);
 

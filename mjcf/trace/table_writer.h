@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The one writer of tables for people: aligned text, or the same for a spreadsheet, a page or a paper.
+/// The one writer of tables for people: aligned text, or the same for a spreadsheet, a page or a
+/// paper.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,8 @@ enum class TableFormat { kText, kCsv, kJson, kMarkdown, kLatex };
 /// @throws std::invalid_argument for another name, listing these
 TableFormat table_format(std::string_view name);
 
-/// Rows under columns with a title and a unit. Cells are text; numbers are formatted by who adds them.
+/// Rows under columns with a title and a unit. Cells are text; numbers are formatted by who adds
+/// them.
 class TableWriter {
  public:
   /// What stands above a column, and how its cells stand.
@@ -37,15 +39,16 @@ class TableWriter {
 
   /// @throws std::logic_error for another number of cells than columns
   void add(std::vector<std::string> cells);
-  /// A line across the columns, in place of a row; in text alone, as the other formats have rows only.
+  /// A line across the columns, in place of a row; in text alone, as the other formats have rows
+  /// only.
   void add_note(std::string text);
   /// An empty line between groups of rows; in text alone.
   void add_gap();
 
   bool empty() const { return rows_.empty(); }  ///< whether it has no rows
 
-  /// Ends with a line end. JSON: an array of objects, `title_unit` to the cell, as a number where it is one, null
-  /// for "-", "never" and an empty cell.
+  /// Ends with a line end. JSON: an array of objects, `title_unit` to the cell, as a number where
+  /// it is one, null for "-", "never" and an empty cell.
   std::string format(TableFormat format = TableFormat::kText) const;
 
  private:

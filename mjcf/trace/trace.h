@@ -21,8 +21,8 @@ struct Sample {
   Eigen::VectorXd tau;  ///< [N m]
 };
 
-/// Samples of an arm with n joints; column k of a matrix is sample k. Signs and sampling convention:
-/// estimators/types.h.
+/// Samples of an arm with n joints; column k of a matrix is sample k. Signs and sampling
+/// convention: estimators/types.h.
 struct Trace {
   std::vector<double> t;              ///< [s]
   Eigen::MatrixXd q;                  ///< [rad] measured

@@ -72,7 +72,8 @@ double standard_errors(const std::vector<double>& d) {
   return std::abs(m) / std::sqrt(square / (n - 1) / n);
 }
 
-// "never" is worse than every value, unless it is the best; one seed's step over that edge is no verdict
+// "never" is worse than every value, unless it is the best; one seed's step over that edge is no
+// verdict
 Change judge(const std::string& metric, const Paired& p, std::size_t seeds) {
   if (known(metric).better == Better::kNeither) return Change::kChanged;
   const int lost = p.lost - p.gained;

@@ -2,9 +2,9 @@
 /// @file
 /// How golden metrics compare with the committed ones.
 ///
-/// T0: a repeated seed gives the same bits. T1: a value that differs by more than its line's tolerance, better
-/// or worse, wants a reviewed update. T2: paired over the seeds, a mean that is worse by more than 0.5 % and by
-/// more than 3 standard errors is less accurate.
+/// T0: a repeated seed gives the same bits. T1: a value that differs by more than its line's
+/// tolerance, better or worse, wants a reviewed update. T2: paired over the seeds, a mean that is
+/// worse by more than 0.5 % and by more than 3 standard errors is less accurate.
 #pragma once
 
 #include <string>
@@ -45,8 +45,8 @@ inline constexpr double kWorseBy = 0.005, kStandardErrors = 3;
 AccuracyReport compare_accuracy(const Golden& baseline, const Golden& head,
                                 const std::string& filter = "");
 
-/// T0: the lines of `again`, which has some of the seeds of `once`, that are not the same to the last bit, as
-/// "entry metric, seed n: a then b".
+/// T0: the lines of `again`, which has some of the seeds of `once`, that are not the same to the
+/// last bit, as "entry metric, seed n: a then b".
 std::vector<std::string> not_repeated(const Golden& once, const Golden& again);
 
 /// Whether larger is better, by bench/score/metric_list.h.

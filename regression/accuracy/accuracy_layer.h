@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// T0, T1 and T2: scores every entry by a program that was built, and compares with what was committed.
+/// T0, T1 and T2: scores every entry by a program that was built, and compares with what was
+/// committed.
 #pragma once
 
 #include <functional>
@@ -19,8 +20,8 @@ struct AccuracyOptions {
 };
 
 /// Scores every entry, the first seed twice. Without a file of golden metrics: no_baseline.
-/// @throws std::invalid_argument for a filter that matches nothing of the file, std::runtime_error for
-/// files and programs
+/// @throws std::invalid_argument for a filter that matches nothing of the file, std::runtime_error
+/// for files and programs
 AccuracyReport score_and_compare(const AccuracyOptions& options);
 
 /// A program's golden metrics of the entries that match, as it writes them.

@@ -24,7 +24,8 @@ struct Golden {
 };
 
 /// @param path to be named in errors
-/// @throws std::runtime_error naming the path and the line: cut off, foreign, a value that is no number
+/// @throws std::runtime_error naming the path and the line: cut off, foreign, a value that is no
+/// number
 Golden parse_golden(const std::string& text, const std::string& path);
 
 /// @throws std::runtime_error as parse_golden does, and for an unreadable file

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Counted instructions of a step: as a file, and beside others. A count means something beside one of the
-/// same compiler, flags and libraries alone: its key.
+/// Counted instructions of a step: as a file, and beside others. A count means something beside one
+/// of the same compiler, flags and libraries alone: its key.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace tauext::gate {
 
-/// What a count depends on beside the source, by name: arch, compiler, flags, eigen, glibc, libm, valgrind.
+/// What a count depends on beside the source, by name: arch, compiler, flags, eigen, glibc, libm,
+/// valgrind.
 using Key = std::map<std::string, std::string>;
 
 inline constexpr int kCountedSteps = 1000;

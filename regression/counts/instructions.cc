@@ -25,7 +25,8 @@ namespace {
 
 constexpr int kWarm = 100;  // steps before the count
 
-// what glibc chooses its libm by, as this process sees it: under valgrind another processor than outside
+// what glibc chooses its libm by, as this process sees it: under valgrind another processor than
+// outside
 std::string libm_variant() {
   std::vector<const char*> has;
   __builtin_cpu_init();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Counts the instructions of a step by valgrind's callgrind, which repeat exactly where times do not.
+/// Counts the instructions of a step by valgrind's callgrind, which repeat exactly where times do
+/// not.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,11 @@
 
 namespace tauext::gate {
 
-/// Runs every kernel that matches `filter` under callgrind, in a child: "count-worker" of this program, so for
-/// tauext-gate alone.
+/// Runs every kernel that matches `filter` under callgrind, in a child: "count-worker" of this
+/// program, so for tauext-gate alone.
 /// No kernel need match.
-/// @throws std::runtime_error if valgrind is missing or fails, std::regex_error for a filter that is none
+/// @throws std::runtime_error if valgrind is missing or fails, std::regex_error for a filter that
+/// is none
 Counts count_instructions(const std::string& plugin, const std::string& filter);
 
 /// The child that runs under callgrind. @return exit code

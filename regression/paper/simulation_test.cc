@@ -69,8 +69,8 @@ TEST_P(Simulation, Figure7TheCollisionAt5SecondsIsMarkedAndNothingBefore) {
   EXPECT_EQ(std::count(quiet.marks.begin(), quiet.marks.end(), 1), 0);
 }
 
-// "As can be seen in Table III, the NDOB has a smaller settling time than EKF": with the arm of Table II
-// and the printed parameters it has not
+// "As can be seen in Table III, the NDOB has a smaller settling time than EKF": with the arm of
+// Table II and the printed parameters it has not
 TEST(SimulationClaims, TheNdobSettlesLaterThanTheEkfOnTheWorstJoint) {
   const Trace t = record_of("wallmobot3", "step");
   const auto settling = [&](const char* e) {
@@ -84,8 +84,8 @@ TEST(SimulationClaims, TheNdobSettlesLaterThanTheEkfOnTheWorstJoint) {
   EXPECT_GT(settling("ndob"), 1.5 * settling("ekf"));
 }
 
-// (26) takes sigma_min(X) |d|^2 for a lower bound of d^T B X B^-1 d. It is none: the symmetric part of
-// B X B^-1 is indefinite in most poses
+// (26) takes sigma_min(X) |d|^2 for a lower bound of d^T B X B^-1 d. It is none: the symmetric part
+// of B X B^-1 is indefinite in most poses
 using Boundedness = RandomStates;
 
 TEST_F(Boundedness, Inequality26FailsInMostPoses) {

@@ -91,8 +91,8 @@ TEST_P(Testbed, HoldIsReachedAsFastAsTheEstimatorsPole) {
   const Trace t = record_slipping("hold");
   const Output out = slipping(t);
   const double to_90 = step_response(t.t, t.tau_ext.row(0), out.tau_ext.row(0)).rise_0_90;
-  // (38) makes the EKF a one-step differentiator; the NDOB's pole is X / theta_1 = 100 rad/s, and the
-  // truth itself still bounces on its tether while it settles
+  // (38) makes the EKF a one-step differentiator; the NDOB's pole is X / theta_1 = 100 rad/s, and
+  // the truth itself still bounces on its tether while it settles
   if (is_ekf()) {
     EXPECT_LT(to_90, 0.003);
   } else {
@@ -197,7 +197,8 @@ TEST(TestbedDetection, MissesNoBlowIsLateForNoneAndLeavesAnHourOfManualInPeace) 
   EXPECT_EQ(seen, 6);
 }
 
-// section 7: "the NDOB estimations are more noisy"; with (38) and our gain it is the other way round
+// section 7: "the NDOB estimations are more noisy"; with (38) and our gain it is the other way
+// round
 TEST(TestbedNoise, TheEkfIsTheNoisierOneWithThePrintedCovariances) {
   const Trace t = record_of("testbed1", "button");
   const Trace noisy = measure(t, {.velocity_noise = 1e-3});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The kernels' times and instructions as a table, line by line, so that each line can be shown by itself.
+/// The kernels' times and instructions as a table, line by line, so that each line can be shown by
+/// itself.
 #pragma once
 
 #include <string>
@@ -21,7 +22,8 @@ KernelTable kernel_table(const GateResult& result);
 /// How the instructions of a kernel changed beside base; nullptr: not at all, or nobody counted.
 const CountChange* change_of(const GateResult& result, const std::string& kernel);
 
-/// Why a kernel's time and instructions are as they are, in a few words; "" if there is nothing to say.
+/// Why a kernel's time and instructions are as they are, in a few words; "" if there is nothing to
+/// say.
 std::string why(const GateResult& result, const KernelTime& time);
 
 }  // namespace tauext::gate

@@ -38,11 +38,12 @@ struct GateResult {
 };
 
 /// Runs the layers that were asked for.
-/// @throws std::invalid_argument for filters that match nothing, std::runtime_error for files and programs
+/// @throws std::invalid_argument for filters that match nothing, std::runtime_error for files and
+/// programs
 GateResult run_layers(const GateOptions& options);
 
-/// A harness that is broken (kCouldNotRun) counts before kSlower, that before kLessAccurate, kUpdateNeeded and
-/// kInconclusive.
+/// A harness that is broken (kCouldNotRun) counts before kSlower, that before kLessAccurate,
+/// kUpdateNeeded and kInconclusive.
 ExitCode exit_code(const GateResult& result);
 
 }  // namespace tauext::gate

@@ -9,7 +9,8 @@
 
 namespace tauext::gate {
 
-/// For a terminal: what is not well, with its reason and the command that shows it; else a few lines.
+/// For a terminal: what is not well, with its reason and the command that shows it; else a few
+/// lines.
 /// @param all every kernel, well or not
 std::string format_terminal(const GateResult& result, bool all);
 

@@ -57,7 +57,8 @@ class Explain : public Gate {
   }
 };
 
-// scenarios whose errors count from their begin; in the first two the detector's mark stops the motor
+// scenarios whose errors count from their begin; in the first two the detector's mark stops the
+// motor
 TEST_F(Explain, PrintsCommandsThatReproduceTheEntry) {
   for (const std::string entry : {"wallmobot3/contact/mo2+pan_tompkins",
                                   "testbed1/collision/ekf+pan_tompkins", "wallmobot3/step/ndob"}) {

@@ -9,8 +9,8 @@
 
 namespace tauext::gate::test {
 
-/// The testbed's NDOB with a fault: "" none, "gain=1.01" its X times that, "delay" an estimate one sample
-/// old, "sign" the other sign.
+/// The testbed's NDOB with a fault: "" none, "gain=1.01" its X times that, "delay" an estimate one
+/// sample old, "sign" the other sign.
 class Subject {
  public:
   static constexpr const char* kName = "subject";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A kernel whose every operation waits for the one before it, so that it is known what makes it slower: as it is,
-// elsewhere in memory, or with something added, each a plug-in of its own.
+// A kernel whose every operation waits for the one before it, so that it is known what makes it
+// slower: as it is, elsewhere in memory, or with something added, each a plug-in of its own.
 //   SUBJECT_SHIFT=n         so many bytes of code before it
 //   SUBJECT_STAGES=n        60 unless said: more are more work
 //   SUBJECT_DIVIDES=n       divides in the chain: hardly an instruction, but a wait

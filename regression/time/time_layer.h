@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// L0, L2 and L3: whether two plug-ins are the same, whether head is slower, and whether a step fits into
-/// the control period.
+/// L0, L2 and L3: whether two plug-ins are the same, whether head is slower, and whether a step
+/// fits into the control period.
 #pragma once
 
 #include <functional>
@@ -42,8 +42,8 @@ struct TimeReport {
   std::vector<KernelTime> alone;    ///< in head alone: L3, and nothing to compare with
 };
 
-/// @throws std::runtime_error for a plug-in that does not load, std::invalid_argument for a filter that
-/// matches nothing
+/// @throws std::runtime_error for a plug-in that does not load, std::invalid_argument for a filter
+/// that matches nothing
 TimeReport compare_times(const TimeOptions& options);
 
 /// The names of both plug-ins' kernels that match: in both, in base alone, in head alone.

@@ -38,8 +38,8 @@ int steps_for(Work& w, double block) {
   return std::clamp(static_cast<int>(kTry * block / std::max(median(tries), 1e-9)), 40, 1'000'000);
 }
 
-// Base, head, base's copy and base with more steps: each a library and a state of its own, else the one that
-// follows another of the same library would find its caches and branch predictors warm.
+// Base, head, base's copy and base with more steps: each a library and a state of its own, else the
+// one that follows another of the same library would find its caches and branch predictors warm.
 struct Lane {
   std::unique_ptr<Work> work;
   int steps;

@@ -27,7 +27,8 @@ struct WorkerResult {
   std::vector<double> canaries;     ///< [1] likewise of base with `injected` more steps
 };
 
-/// Runs every kernel's pairs in a child process of this program, with its output on the other end of a pipe.
+/// Runs every kernel's pairs in a child process of this program, with its output on the other end
+/// of a pipe.
 /// @throws std::runtime_error with what the child said, if it failed
 std::vector<WorkerResult> run_worker(const WorkerOptions& options);
 

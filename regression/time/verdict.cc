@@ -30,8 +30,8 @@ bool slower(const std::vector<double>& sorted_values, double limit) {
   return median(sorted_values) > 1 + limit && low_of(sorted_values) > 1;
 }
 
-// the first stage may have been unlucky: later processes have to say so among themselves, and if they are no more
-// than those of the first stage, the first stage, too
+// the first stage may have been unlucky: later processes have to say so among themselves, and if
+// they are no more than those of the first stage, the first stage, too
 void confirm(const std::vector<ProcessRatios>& all, const TimeLimits& limits, TimeVerdict& v) {
   const auto first_stage = static_cast<std::size_t>(limits.stages[0]);
   const std::vector<ProcessRatios> stage(all.begin(),

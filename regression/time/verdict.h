@@ -39,13 +39,15 @@ struct TimeVerdict {
 /// Median of the values. @throws std::logic_error without a value
 double median(std::vector<double> values);
 
-/// Judges what is there. kInconclusive with `processes` below the last stage asks for the next stage.
+/// Judges what is there. kInconclusive with `processes` below the last stage asks for the next
+/// stage.
 ///
-/// Slower: the median of some processes lies above 1 + limit, and the third smallest of 10 ratios (6th of 20,
-/// 12th of 40) above 1, so at most 2 of 10 show no slowdown.
-/// Fails if all processes say so, and those after the first stage among themselves, and the first stage or else
-/// more than as many later ones. Passes if the median's
-/// interval ends below 1 + limit. A copy of base that is off by more than half the limit: never a verdict.
+/// Slower: the median of some processes lies above 1 + limit, and the third smallest of 10 ratios
+/// (6th of 20, 12th of 40) above 1, so at most 2 of 10 show no slowdown.
+/// Fails if all processes say so, and those after the first stage among themselves, and the first
+/// stage or else more than as many later ones. Passes if the median's
+/// interval ends below 1 + limit. A copy of base that is off by more than half the limit: never a
+/// verdict.
 /// @throws std::logic_error with fewer processes than the first stage
 TimeVerdict judge(const std::vector<ProcessRatios>& processes, const TimeLimits& limits);
 

@@ -32,7 +32,8 @@ TEST(EveryEstimatorOfWallMoBot3, EstimatesAForceOnThePanelAsMinusJTransposeF) {
   });
 }
 
-// within 0.1 N m in the last second after a step of 98.2 N m, which every estimator has had 29 s for
+// within 0.1 N m in the last second after a step of 98.2 N m, which every estimator has had 29 s
+// for
 TEST(EveryEstimatorOfWallMoBot3, EndsUpAtTheLoadAfterAStep) {
   for (const Entry& e : entries()) {
     if (e.group() != "wallmobot3/step" || is_baseline(e.estimator())) continue;

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// an arm of n hinges about z and y in turn, in space, with rotors and friction; position servos instead of motors
-// make it one that can only be watched
+// an arm of n hinges about z and y in turn, in space, with rotors and friction; position servos
+// instead of motors make it one that can only be watched
 std::string arm(int n, bool motors = true) {
   std::string bodies, ends, actuators;
   for (int j = 1; j <= n; ++j) {

@@ -97,7 +97,8 @@ TEST(Suite, AnUnknownMassIsABiasAndNoFailure) {
   Suite degraded(options);
   const Score score = degraded.score({"wallmobot3", "free", "mo1", ""});
   EXPECT_EQ(score.error, "");
-  // 5 % of link 5's weight, 85 N m on joint 3 at q = 0: what the extra weight does in the middle of the motion
+  // 5 % of link 5's weight, 85 N m on joint 3 at q = 0: what the extra weight does in the middle of
+  // the motion
   WallMoBot3::Parameters p;
   p.m5 *= 1.05;
   const double weight =

@@ -45,7 +45,8 @@ TEST(DetectionStudy, CalibrationDoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-// the paper's range, 0 to 150 kg, known or not, velocity noise 1e-4; a fifth of what tauext-detect tries
+// the paper's range, 0 to 150 kg, known or not, velocity noise 1e-4; a fifth of what tauext-detect
+// tries
 TEST(DetectionStudy, TheClassifierHoldsOverThePapersRangeBehindTheEkf) {
   StudyOptions o;
   o.conditions = {"known_0", "known_150", "unknown_150"};

@@ -77,7 +77,8 @@ TEST(Pareto, APointWithoutAValueIsNotOnTheFrontAndDominatesNobody) {
 }
 
 TEST(Pareto, WhoOvershootsAndSettlesLateIsBehindWhoSettlesEarly) {
-  // the hasty one is at 90 % first, and quieter than the calm one's quick designs: a place that it must not have
+  // the hasty one is at 90 % first, and quieter than the calm one's quick designs: a place that it
+  // must not have
   ParetoPoint hasty = point("hasty", 1, 0.3, 2);
   hasty.value.rise_0_90 = 0.05, hasty.value.overshoot = 25;
   ParetoPoint calm = point("calm", 1, 0.2, 1);

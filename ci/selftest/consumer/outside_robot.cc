@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shared library with a robot of somebody else's, as a plug-in or a Python module would be: all of tauext has to be
-// position-independent for it to link.
+// A shared library with a robot of somebody else's, as a plug-in or a Python module would be: all
+// of tauext has to be position-independent for it to link.
 #include <bench/bench_main.h>
 #include <bench/registry.h>
 #include <estimators/testbed1.h>

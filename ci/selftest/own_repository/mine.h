@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The estimator of this repository: tau_ext as what momentum does beyond the model, through a low-pass.
+// The estimator of this repository: tau_ext as what momentum does beyond the model, through a
+// low-pass.
 #pragma once
 
 #include <estimators/momentum_observer.h>

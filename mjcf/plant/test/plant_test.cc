@@ -91,7 +91,8 @@ TEST(Plant, UnknownSiteIsNamed) {
             "the robot has no site 'elbow'");
 }
 
-// two arms that an equality constraint couples, with dry friction; the tip of one rests on the floor
+// two arms that an equality constraint couples, with dry friction; the tip of one rests on the
+// floor
 constexpr const char* kCoupled = R"(<mujoco>
   <option timestep="0.001" integrator="RK4"/>
   <default><geom contype="0" conaffinity="0"/></default>
