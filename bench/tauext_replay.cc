@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -163,6 +164,10 @@ int main(int argc, char** argv) {
     const Robot& r = robot(robot_name);
     for (const std::string& e : estimators) r.check(e, detector);
     const Trace trace = read_log_or_csv(log, channel);
+    if (!(score_from <= trace.t.back())) {
+      throw std::invalid_argument(
+          fmt::format("--score_from {}: the log ends at {} s", score_from, trace.t.back()));
+    }
     std::vector<Column> columns;
     for (const std::string& e : estimators) {
       columns.push_back({e, detector, r.runner(e, detector, trace)->run()});

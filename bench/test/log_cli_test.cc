@@ -138,6 +138,19 @@ TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
   EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
 }
 
+TEST_F(Programs, ReplayScoresFromATimeWithinTheLog) {
+  ASSERT_EQ(run("tauext-record --robot testbed1 --scenario hold --out log.csv").code, 0);
+  const std::string replay =
+      "tauext-replay log.csv --robot testbed1 --estimator mo1 --out e.csv --score_from ";
+  for (const std::string from : {"1e9", "inf", "nan"}) {
+    const Outcome o = run(replay + from);
+    EXPECT_EQ(o.code, 2) << o.text;
+    EXPECT_TRUE(o.says("the log ends at")) << o.text;
+    EXPECT_FALSE(exists("e.csv"));
+  }
+  EXPECT_EQ(run(replay + "1").code, 0);
+}
+
 TEST_F(Programs, WritingToALinkWritesItsTarget) {
   fs::create_symlink(folder_ / "target.csv", folder_ / "link.csv");
   EXPECT_EQ(run("tauext-record --robot testbed1 --scenario hold --out link.csv").code, 0);
