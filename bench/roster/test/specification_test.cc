@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -241,14 +242,25 @@ TEST(Specification, OfADetectorIsHeldToItsLimitsAndRelations) {
 TEST(ListFields, FitsAScreenAndHoldsEveryKey) {
   const std::string text = list_fields();
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
-  for (const auto& r : robots()) {
-    for (const std::string& e : r->estimators()) {
-      for (const FieldHelp& f : r->estimator_fields(e)) {
-        EXPECT_NE(text.find("\n  :" + f.key + " "), std::string::npos) << e << " " << f.key;
-        EXPECT_FALSE(f.effect.empty()) << f.key;
-      }
+  std::map<std::string, std::string> below;  // a name, the lines of its keys
+  std::string name;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 100u) << line;
+    if (line.starts_with("  :")) {
+      below[name] += line + "\n";
+    } else {
+      name = line;
     }
+  }
+  const auto expect_all = [&](const std::string& of, const std::vector<FieldHelp>& fields) {
+    for (const FieldHelp& f : fields) {
+      EXPECT_NE(below[of].find("  :" + f.key + " "), std::string::npos) << of << " " << f.key;
+      EXPECT_FALSE(f.effect.empty()) << f.key;
+    }
+  };
+  for (const auto& r : robots()) {
+    for (const std::string& e : r->estimators()) expect_all(e, r->estimator_fields(e));
+    for (const std::string& d : r->detectors()) expect_all(d, r->detector_fields(d));
   }
   for (const char* key : {":collision.threshold ", ":clamping.w_baseline ", ":intentional "}) {
     EXPECT_NE(text.find(key), std::string::npos) << key;
