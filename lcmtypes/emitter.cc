@@ -12,8 +12,6 @@
 namespace tauext {
 namespace {
 
-constexpr std::size_t kLongestChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // n values and zeros behind them

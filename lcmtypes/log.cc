@@ -16,8 +16,7 @@ namespace tauext {
 namespace {
 
 constexpr std::uint32_t kSync = 0xEDA1DA01;
-constexpr std::size_t kHeader = 28;  // sync, number (8), time (8), two lengths
-constexpr std::uint32_t kLongestChannel = 63;
+constexpr std::size_t kHeader = 28;                  // sync, number (8), time (8), two lengths
 constexpr std::uint32_t kLongestMessage = 1u << 26;  // [bytes] 64 MiB; ours have some hundred
 
 using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;

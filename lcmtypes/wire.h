@@ -26,6 +26,8 @@ inline constexpr int kMaxJoints = 8;
 inline constexpr int kMaxMetrics = 1000;
 /// The longest of its texts [bytes].
 inline constexpr int kMaxText = 4096;
+/// LCM_MAX_CHANNEL_NAME_LENGTH.
+inline constexpr std::size_t kLongestChannel = 63;
 
 /// Why a message was not decoded.
 enum class Reject : std::uint8_t {

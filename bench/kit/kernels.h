@@ -132,17 +132,14 @@ class alignas(kPage) Instance final : public KernelInstance {
   int next_ = 0;
 };
 
-template <RobotModel M, class Subject, class Reset, class Step>
-class KernelOf final : public Kernel {
+// what does not depend on the subject, compiled once for each arm
+template <RobotModel M>
+class KernelOfArm : public Kernel {
  public:
   static constexpr int N = M::kDof;
 
-  KernelOf(std::string kernel_name, const M& model, Subject s, Reset reset, Step step)
-      : Kernel(std::move(kernel_name)),
-        model_(model),
-        subject_(std::move(s)),
-        reset_(reset),
-        step_(step) {}
+  KernelOfArm(std::string kernel_name, const M& model)
+      : Kernel(std::move(kernel_name)), model_(model) {}
 
   int sample_size() const override { return 1 + 4 * N; }
 
@@ -171,12 +168,24 @@ class KernelOf final : public Kernel {
     }
   }
 
+ private:
+  M model_;
+};
+
+template <RobotModel M, class Subject, class Reset, class Step>
+class KernelOf final : public KernelOfArm<M> {
+ public:
+  KernelOf(std::string kernel_name, const M& model, Subject s, Reset reset, Step step)
+      : KernelOfArm<M>(std::move(kernel_name), model),
+        subject_(std::move(s)),
+        reset_(reset),
+        step_(step) {}
+
   KernelInstance* create(int n, const double* samples) const override {
-    return new Instance<N, Subject, Reset, Step>(subject_, reset_, step_, n, samples);
+    return new Instance<M::kDof, Subject, Reset, Step>(subject_, reset_, step_, n, samples);
   }
 
  private:
-  M model_;
   Subject subject_;
   Reset reset_;
   Step step_;
@@ -249,11 +258,8 @@ inline Kernels& plugin_kernels() {
   return all;
 }
 
-inline const Kernel& plugin_kernel(int i) {
-  return *plugin_kernels().all()[static_cast<std::size_t>(i)];
-}
-
 inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
+  static constexpr auto kernel = [](int i) { return plugin_kernels().all()[i].get(); };
   static const tauext_plugin plugin = [&] {
     fill(plugin_kernels());
     return tauext_plugin{
@@ -262,12 +268,12 @@ inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
         "GCC-compatible " __VERSION__,
         TAUEXT_PLUGIN_FLAGS,
         TAUEXT_EIGEN_VERSION,
-        [](int i) { return plugin_kernel(i).name.c_str(); },
-        [](int i) { return plugin_kernel(i).sample_size(); },
-        [](int i, int n, double* x) { plugin_kernel(i).example(n, x); },
+        [](int i) { return kernel(i)->name.c_str(); },
+        [](int i) { return kernel(i)->sample_size(); },
+        [](int i, int n, double* x) { kernel(i)->example(n, x); },
         [](int i, int n, const double* x) -> void* {
           try {
-            return plugin_kernel(i).create(n, x);
+            return kernel(i)->create(n, x);
           } catch (const std::bad_alloc&) {
             return nullptr;
           }

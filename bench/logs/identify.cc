@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -20,6 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLongestGap = 0.05;  // [s]
+constexpr double kLeast = 1e-100;     // a column or a singular value that is none
 
 double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
@@ -65,18 +65,6 @@ void check(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
     throw std::invalid_argument(fmt::format(
         "window of {} s, min_speed {} rad/s: 0 to 10 s, and not negative", w.length, w.min_speed));
   }
-}
-
-// share of each column of the scaled regressor that the others cannot imitate
-VectorXd own_shares(const MatrixXd& scaled) {
-  VectorXd own(scaled.cols());
-  for (Eigen::Index i = 0; i < scaled.cols(); ++i) {
-    MatrixXd others(scaled.rows(), scaled.cols() - 1);
-    others << scaled.leftCols(i), scaled.rightCols(scaled.cols() - 1 - i);
-    const VectorXd c = scaled.col(i);
-    own[i] = others.cols() == 0 ? 1 : (c - others * others.colPivHouseholderQr().solve(c)).norm();
-  }
-  return own;
 }
 
 }  // namespace
@@ -142,18 +130,16 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
     y[i] = rows[i][n];
   }
   const VectorXd norm = A.colwise().norm();
-  const MatrixXd scaled = A * norm.cwiseInverse().asDiagonal();
+  const MatrixXd scaled = A * norm.cwiseMax(kLeast).cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const auto& s = svd.singularValues();
-  const VectorXd own = own_shares(scaled);
+  const Eigen::RowVectorXd s = svd.singularValues().cwiseMax(kLeast);
+  // a row of V S^-1 is a row of (A^T A)^-1's root; the inverse of its norm is what the other
+  // columns cannot imitate
+  const VectorXd root = (svd.matrixV() * s.cwiseInverse().asDiagonal()).rowwise().norm();
   id.condition = s[0] / s[n - 1];
   if (!(id.condition < 1e6)) {
     Eigen::Index least = 0;
-    if (own.hasNaN()) {
-      while (norm[least] != 0) ++least;
-    } else {
-      own.minCoeff(&least);
-    }
+    root.maxCoeff(&least);
     throw std::invalid_argument(fmt::format(
         "the motion cannot tell '{}' from the other terms (condition {:.1e}): record one "
         "that excites it, or leave it out",
@@ -163,10 +149,9 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   const double variance = (y - A * theta).squaredNorm() / static_cast<double>(m - n);
   id.residual = std::sqrt(variance);
   for (Eigen::Index i = 0; i < n; ++i) {
-    // a row of V S^-1 is a row of (A^T A)^-1's root
-    const double root = (svd.matrixV().row(i).array() / s.transpose().array()).matrix().norm();
-    id.parameters.push_back({theta[i], id.residual * root / norm[i],
-                             norm[i] / std::sqrt(static_cast<double>(m)), own[i]});
+    id.parameters.push_back({theta[i], id.residual * root[i] / norm[i],
+                             norm[i] / std::sqrt(static_cast<double>(m)),
+                             std::min(1 / root[i], 1.)});
   }
   return id;
 }

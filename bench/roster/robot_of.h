@@ -43,7 +43,7 @@ class RobotOf final : public Robot {
   template <RobotModel M>
   RobotOf(const std::string& name, const M& model) : Robot(name, N) {
     for_each_estimator(model, [&](auto make) { add_estimator(model, make); });
-    for_each_detector<N>([&](auto make) { add_detector<decltype(make())>(); });
+    add_roster_detectors();
     for (const auto& add : registered_estimators<M>()) add(model, *this);
     for (const auto& add : registered_detectors<N>()) add(*this);
     for (const auto& [robot, text] : registered_specifications()) {
@@ -106,6 +106,8 @@ class RobotOf final : public Robot {
     }
     detectors_.push_back(std::move(entry));
   }
+
+  void add_roster_detectors();
 
   /// Lists a specification among the estimators.
   /// @throws std::invalid_argument if it means nothing here, or is listed already
@@ -269,6 +271,16 @@ class RobotOf final : public Robot {
   std::vector<std::string> specifications_;  // that are listed beside the estimators
 };
 
+template <int N>
+void RobotOf<N>::add_roster_detectors() {
+  for_each_detector<N>([&](auto make) { add_detector<decltype(make())>(); });
+}
+
+// compiled in the library, from file_robot_of.cc.in
+extern template class RobotOf<1>;
+extern template class RobotOf<2>;
+extern template class RobotOf<3>;
+
 }  // namespace detail
 
 /// A robot with every estimator that for_each_estimator has for its model, and every detector.
@@ -276,5 +288,10 @@ template <RobotModel M>
 std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model) {
   return std::make_unique<detail::RobotOf<M::kDof>>(name, model);
 }
+
+/// Ours are compiled in robots.cc.
+extern template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&);
+/// Likewise.
+extern template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&);
 
 }  // namespace tauext

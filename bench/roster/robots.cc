@@ -15,6 +15,10 @@
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext {
+
+template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&);
+template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&);
+
 namespace {
 
 std::vector<detail::MakeRobot>& registered_robots() {

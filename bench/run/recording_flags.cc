@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/recording_flags.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <string>
@@ -15,11 +17,11 @@ void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r)
   const auto list = [&](const char* name, auto& fields, const char* help) {
     app.add_option_function<std::vector<std::string>>(
            name,
-           [&fields, name](const std::vector<std::string>& items) {
+           [&fields](const std::vector<std::string>& items) {
              try {
                set_fields(items, fields);
              } catch (const std::invalid_argument& error) {
-               throw CLI::ValidationError(name, error.what());
+               throw CLI::ValidationError(fmt::format("--{}", error.what()));
              }
            },
            help)

@@ -89,8 +89,10 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
   if (!suite.model_error.none()) {
     throw std::invalid_argument("a study brings its own model errors, or none: no --model_error");
   }
-  if (!suite.sensors.ideal() && (f.equal_bandwidth || f.pareto)) {
-    throw std::invalid_argument("--equal-bandwidth and --pareto bring their own sensors");
+  const bool seed = suite.sensors.seed != Sensors().seed;
+  if ((seed || !suite.sensors.ideal()) && (f.equal_bandwidth || f.pareto)) {
+    throw std::invalid_argument(
+        "--equal-bandwidth and --pareto bring their own sensors: no --sensors, no --seed");
   }
   if (!suite.thresholds.sets.empty() || suite.recording.Kp || suite.recording.Kd) {
     throw std::invalid_argument("a study takes no --thresholds, --kp and --kd");

@@ -116,23 +116,49 @@ void print_tables(const Rows& rows, TableFormat format, std::FILE* to) {
   }
 }
 
+// where tables go, and where sentences go
+std::FILE* tables_of(const SuiteRun& run) {
+  return run.display == "json" ? stderr : stdout;
+}
+std::FILE* words_of(const SuiteRun& run) {
+  return run.format == TableFormat::kText ? tables_of(run) : stderr;
+}
+
 void print_results(const SuiteRun& run, const Rows& rows) {
-  std::FILE* const to = run.display == "json" ? stderr : stdout;
-  std::FILE* const words = run.format == TableFormat::kText ? to : stderr;
+  std::FILE* const words = words_of(run);
   fmt::print(words, "{}\n\n", build_line(run.suite));
-  print_tables(rows, run.format, to);
+  print_tables(rows, run.format, tables_of(run));
   fmt::print(words, "{}", table_legend(rows));
   const bool step = std::any_of(rows.begin(), rows.end(), [](const Row& r) {
     return r.entry.group() == "wallmobot3/step";  // what Table III is about
   });
   if (run.paper && step) fmt::print(words, "\n{}", study::format_table3());
-  if (run.out) fmt::print(words, "\n{}: results as JSON\n", *run.out);
 }
 
-void write_json(const std::string& path, const Reporter& reporter) {
-  AtomicFile file(path);
+void write_json(const SuiteRun& run, const Reporter& reporter) {
+  AtomicFile file(*run.out);
   file.write(reporter.json());
   file.commit();
+  fmt::print(words_of(run), "\n{}: results as JSON\n", *run.out);
+}
+
+// whether everything that was asked for by name ran somewhere; says what did not
+bool all_ran(const Selection& wanted, const Rows& rows) {
+  bool all = true;
+  const auto look = [&](const std::vector<std::string>& names, auto name_of) {
+    for (const std::string& name : names) {
+      if (std::any_of(rows.begin(), rows.end(),
+                      [&](const Row& r) { return name_of(r.entry) == name; })) {
+        continue;
+      }
+      all = false;
+      fmt::print(stderr, "{}: it fits no robot and scenario that --benchmark_filter leaves\n",
+                 name);
+    }
+  };
+  look(wanted.estimators, [](const Entry& e) { return e.estimator(); });
+  look(wanted.detectors, [](const Entry& e) { return e.detector(); });
+  return all;
 }
 
 }  // namespace
@@ -160,9 +186,10 @@ int run_suite(const SuiteRun& run) {
   if (rows.empty() && run.list_tests) return kGood;
   if (rows.empty()) throw std::invalid_argument("no benchmark ran: check --benchmark_repetitions");
   for (Row& row : rows) add_time(reporter, row);
-  if (run.out) write_json(*run.out, reporter);
   print_results(run, rows);
+  if (run.out) write_json(run, reporter);
   if (!tap.heard()) fmt::print(stderr, "no summary could be published\n");
+  if (!all_ran(run.selection, rows)) return kCouldNotRun;
   return reporter.any_error() || !tap.heard() ? kAnswerIsNo : kGood;
 }
 

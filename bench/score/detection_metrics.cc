@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tauext {
 namespace metrics {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // one past the last sample of the collision that begins at sample k, rebounds and grace included
 std::size_t end_of_collision(const std::vector<double>& t, const std::vector<std::uint8_t>& contact,

@@ -12,8 +12,6 @@ namespace tauext {
 namespace metrics {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 // first sample that counts
 Eigen::Index first_from(const Times& t, double from) {
   return std::lower_bound(t.begin(), t.end(), from) - t.begin();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace tauext {
@@ -12,7 +11,7 @@ namespace {
 double worst(WorstJoint which, const std::vector<double>& values) {
   const auto never = [](double v) { return std::isnan(v); };
   if (values.empty() || std::any_of(values.begin(), values.end(), never)) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   }
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return which == WorstJoint::kSmallest ? *least : *most;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,9 @@
 #include "bench/score/metric_list.h"
 
 namespace tauext {
+
+/// A value that does not exist: \"never\".
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A value for each metric that exists for the run, NaN where it has no value ("never settles"),
 /// and the values of the joints where the metric is judged joint by joint.

@@ -18,7 +18,7 @@ using metrics::poisson_upper;
 using metrics::quantile;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kLegend = R"(
+constexpr const char* kDetectionLegend = R"(
 recall: share of the blows that were marked until {:g} s after their end. p50, p95: half, and 95 %
 of these marks come within this time from the blow's begin. stray: other marks in the same runs.
 alarms: marks in free motion and slow pushes, where nothing is hit; with 95 % confidence there are
@@ -37,7 +37,7 @@ std::string per_hour(double alarms, const Cell& c) {
   return c.quiet_samples == 0 ? "-" : fmt::format("{:.1f}", alarms / c.hours());
 }
 
-std::vector<TableWriter::Column> columns() {
+std::vector<TableWriter::Column> detection_columns() {
   return {{"estimator+detector", "", true},
           {"recall", "%"},
           {"p50", "ms"},
@@ -78,11 +78,11 @@ std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
                        out.empty() ? "" : "\n", first->condition,
                        condition(runs, first->condition).description, first->blows, first->hours(),
                        first->brisk, first->clampings);
-    TableWriter table(columns());
+    TableWriter table(detection_columns());
     for (; first != last; ++first) table.add(cells_of(*first));
     out += table.format();
   }
-  return out + fmt::format(kLegend, metrics::kGrace);
+  return out + fmt::format(kDetectionLegend, metrics::kGrace);
 }
 
 Json number(double x) {
@@ -151,7 +151,7 @@ std::string milliseconds(double s, int digits) {
 std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
                          TableFormat format) {
   if (format == TableFormat::kText) return text(touched_runs(robot), cells);
-  std::vector<TableWriter::Column> all = columns();
+  std::vector<TableWriter::Column> all = detection_columns();
   all.insert(all.begin(), {"condition", "", true});
   TableWriter table(all);
   for (const Cell& c : cells) {

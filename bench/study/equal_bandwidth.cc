@@ -21,10 +21,9 @@
 namespace tauext::study {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSettled = 3;  // [s] the start is over
 
-constexpr const char* kLegend =
+constexpr const char* kBandwidthLegend =
     R"(bandwidth: where the gain of the slowest joint falls to -3 dB in `chirp`; design: the parameter
 `bandwidth` that gives it. noise: what a velocity noise of 1e-3 rad/s and an encoder of 17 bits
 add. lag: how far the estimate is behind `sine`. rise 0-90 %, overshoot: the answer to `step`. mass:
@@ -221,7 +220,7 @@ std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<A
   const bool all =
       std::all_of(rows.begin(), rows.end(), [](const AtBandwidth& x) { return bool(x.worth); });
   return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}", r.name(), w, table.format(),
-                     kLegend, all ? "" : kNever);
+                     kBandwidthLegend, all ? "" : kNever);
 }
 
 }  // namespace tauext::study

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMargin = 1.02;  // less than this factor of noise is no difference
 
-constexpr const char* kLegend =
+constexpr const char* kParetoLegend =
     R"(settling: until the estimate of `step` stays within 2 %. rise 0-90 %, overshoot: its way there. noise:
 what a velocity noise of 1e-3 rad/s and an encoder of 17 bits add. A point is behind the front if
 another one settles as quickly and is at least 2 % quieter; the quietest of these is named. An
@@ -144,7 +144,7 @@ std::string format_pareto(const Robot& r, const std::vector<ParetoPoint>& points
   }
   if (format != TableFormat::kText) return table.format(format);
   return fmt::format("{}: noise against delay; design 0 is the roster's own tuning\n{}{}", r.name(),
-                     table.format(), kLegend);
+                     table.format(), kParetoLegend);
 }
 
 }  // namespace tauext::study

@@ -21,7 +21,7 @@ using metrics::detection_score;
 using metrics::DetectionScore;
 using metrics::quantile;
 
-constexpr const char* kLegend =
+constexpr const char* kReliabilityLegend =
     R"(missed: blows without a mark until {:g} s after their end. stray: other marks in these runs. p50,
 p95: half, and 95 % of the marks come within this time from the blow's begin. manual: marks while
 the hand moves the arm.
@@ -58,7 +58,7 @@ void add_hand(const Robot& r, const Trace& t, Reliability& row) {
   row.hours += (t.t.back() - t.t.front()) / 3600;
 }
 
-std::vector<TableWriter::Column> columns() {
+std::vector<TableWriter::Column> reliability_columns() {
   return {{"estimator+detector", "", true},
           {"missed", "blows"},
           {"stray", "marks"},
@@ -73,7 +73,7 @@ std::vector<std::string> cells_of(const Reliability& r) {
 }
 
 std::string text(const Tried& tried) {
-  TableWriter table(columns());
+  TableWriter table(reliability_columns());
   for (const Reliability& r : tried.rows) table.add(cells_of(r));
   return fmt::format(
       R"({}, sensors with {}: {} blows of 100 to 300 N and 10 to 50 ms, up or down, while it
@@ -117,9 +117,9 @@ std::string format_reliability(const std::vector<Tried>& all, TableFormat format
   if (format == TableFormat::kText) {
     std::string out;
     for (const Tried& tried : all) out += text(tried);
-    return out + fmt::format(kLegend, metrics::kGrace);
+    return out + fmt::format(kReliabilityLegend, metrics::kGrace);
   }
-  std::vector<TableWriter::Column> all_columns = columns();
+  std::vector<TableWriter::Column> all_columns = reliability_columns();
   all_columns.insert(all_columns.begin(), {"velocity noise", "rad/s"});
   TableWriter table(all_columns);
   for (const Tried& tried : all) {

@@ -31,6 +31,6 @@ function(tauext_add_plugin target)
   target_compile_options(${target} PRIVATE ${flags} -Wno-array-bounds
     -ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}=.)
   target_compile_definitions(${target} PRIVATE TAUEXT_PLUGIN_FLAGS="${text}")
-  set_target_properties(${target} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden
+  set_target_properties(${target} PROPERTIES PREFIX "" UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()

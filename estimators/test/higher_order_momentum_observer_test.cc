@@ -37,14 +37,6 @@ double step_response(int order, double a) {
   return sum.real();
 }
 
-// the arm held at q = 0 under a load, where (3) is tau = g + tau_ext and nothing else moves
-Measurement<3> held(double t, double load) {
-  Measurement<3> y;
-  y.t = t;
-  y.tau = WallMoBot3().gravity(y.q) + Vec<3>::Constant(load);
-  return y;
-}
-
 TYPED_TEST(HigherOrder, StepResponseIsButterworthsToTheLastDigitsAtAnyStep) {
   for (const double h : {0.1e-3, 1e-3, 20e-3}) {
     TypeParam mo = this->observer(30);

@@ -15,7 +15,7 @@ namespace {
 using ArmMo1 = MomentumObserver<WallMoBot3>;
 
 // a step of 50 N m at 1 s, in motion
-Vec<3> step(double t) {
+Vec<3> step_at_1_s(double t) {
   return Vec<3>::Constant(t < 1 ? 0 : 50);
 }
 
@@ -23,7 +23,7 @@ TEST(Mo1, Reaches90PercentOfAStepAfterLn10OverK) {
   for (const double K : {5., 30., 100.}) {
     ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), K));
     Vec<3> reached = Vec<3>::Constant(-1);
-    for (const auto& y : simulate(grid(2, 0.25e-3), step)) {
+    for (const auto& y : simulate(grid(2, 0.25e-3), step_at_1_s)) {
       const Vec<3> d = mo1.update(y).tau_ext;
       for (int j = 0; j < 3; ++j) {
         if (reached[j] < 0 && d[j] >= 0.9 * 50) reached[j] = y.t - 1;
@@ -51,7 +51,7 @@ TEST(Mo1, AtEqualBandwidthIsFilteredInverseDynamics) {
   ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 30));
   InverseDynamics<WallMoBot3> other(WallMoBot3(), {.bandwidth = 30});
   double worst = 0;
-  for (const auto& y : simulate(grid(3, 1e-3), step, {.amplitude = 0.3, .w = 2})) {
+  for (const auto& y : simulate(grid(3, 1e-3), step_at_1_s, {.amplitude = 0.3, .w = 2})) {
     worst = std::max(worst, (mo1.update(y).tau_ext - other.update(y).tau_ext).norm());
   }
   EXPECT_LT(worst, 0.01 * 50) << "N m: they differ by how the means are taken, of order h^2";
@@ -70,9 +70,9 @@ TEST(Mo1, StartedInMotionItIsRightFromTheFirstSample) {
 TEST(Mo1, IsStableForEveryStepOfItsBandwidth) {
   ArmMo1 mo1(WallMoBot3(), ArmMo1::Parameters::for_bandwidth(WallMoBot3(), 1e6));
   double worst = 0;
-  for (const auto& y : simulate(grid(3, 1e-3), step)) {
+  for (const auto& y : simulate(grid(3, 1e-3), step_at_1_s)) {
     const Vec<3> d = mo1.update(y).tau_ext;
-    if (y.t > 1.01) worst = std::max(worst, (d - step(y.t)).norm());
+    if (y.t > 1.01) worst = std::max(worst, (d - step_at_1_s(y.t)).norm());
   }
   EXPECT_LT(worst, 0.5) << "N m: K h = 1000 differentiates, and that is all";
 }

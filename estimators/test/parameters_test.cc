@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
 
 #include "estimators/active_observer.h"
@@ -22,13 +21,12 @@
 #include "estimators/ndob.h"
 #include "estimators/ndob_inertia.h"
 #include "estimators/sliding_mode_observer.h"
+#include "estimators/test/arm.h"
 #include "estimators/wallmobot3.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // sets the field beyond its limits in every way and builds T of it; the number of ways that were
 // refused

@@ -9,12 +9,12 @@
 #include "estimators/ekf.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/ndob.h"
+#include "estimators/test/arm.h"
 #include "estimators/wallmobot3.h"
 
 namespace tauext::test {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Sampling, StartsOnceThenSteps) {

@@ -22,14 +22,6 @@ Smo::Parameters with_rate(double S1) {
   return p;
 }
 
-// the arm held at q = 0 under a load, where (3) is tau = g + tau_ext
-Measurement<3> held(double t, double load) {
-  Measurement<3> y;
-  y.t = t;
-  y.tau = WallMoBot3().gravity(y.q) + Vec<3>::Constant(load);
-  return y;
-}
-
 TEST(Smo, ReachesAConstantLoadInFiniteTimeAndStaysThereWithoutChatter) {
   Smo smo(WallMoBot3(), with_rate(100));
   MomentumObserver2<WallMoBot3> mo2(WallMoBot3(), {.bandwidth = 30});

@@ -71,17 +71,17 @@ TEST(Wire, AMessageOfAnotherTypeIsForeign) {
 
 TEST(Wire, EveryShorterAndEveryLongerMessageIsRejected) {
   const auto check = [](auto message) {
-    using Message = decltype(message);
+    using Type = decltype(message);
     const std::vector<std::byte> whole = bytes_of(message);
     for (std::size_t size = 0; size < whole.size(); ++size) {
-      Message m{};
+      Type m{};
       const std::vector<std::byte> cut(whole.begin(),
                                        whole.begin() + static_cast<std::ptrdiff_t>(size));
       EXPECT_NE(decode(cut, m), Reject::kNone) << size;
     }
     std::vector<std::byte> longer = whole;
     longer.push_back(std::byte{0});
-    expect_reject<Message>(Reject::kWrongSize, longer, "a byte more");
+    expect_reject<Type>(Reject::kWrongSize, longer, "a byte more");
   };
   check(estimate());
   check(detection());

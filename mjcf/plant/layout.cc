@@ -16,10 +16,6 @@ namespace {
 using Eigen::Vector3d;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-Eigen::Map<const Vector3d> view3(const mjtNum* p) {
-  return Eigen::Map<const Vector3d>(p);
-}
-
 bool is_motor(const mjModel& m, int i) {
   return m.actuator_dyntype[i] == mjDYN_NONE && m.actuator_gaintype[i] == mjGAIN_FIXED &&
          m.actuator_biastype[i] == mjBIAS_NONE && m.actuator_gainprm[i * mjNGAIN] == 1;
@@ -55,9 +51,10 @@ Screw triangle(const mjModel& m, const mjData& d, int actuator, int dof) {
         fmt::format("tendon '{}': a screw runs between two sites across one hinge",
                     name_of(m, mjOBJ_TENDON, tendon)));
   }
-  const Vector3d hinge = view3(d.xanchor + 3 * joint), axis = view3(d.xaxis + 3 * joint);
+  const Vector3d hinge = Vector3d::Map(d.xanchor + 3 * joint),
+                 axis = Vector3d::Map(d.xaxis + 3 * joint);
   const auto in_plane = [&](int wrap) -> Vector3d {
-    const Vector3d r = view3(d.site_xpos + 3 * m.wrap_objid[wrap]) - hinge;
+    const Vector3d r = Vector3d::Map(d.site_xpos + 3 * m.wrap_objid[wrap]) - hinge;
     return r - r.dot(axis) * axis;
   };
   const Vector3d base = in_plane(first), arm = in_plane(first + 1);

@@ -36,7 +36,6 @@ std::vector<int> arm_of(const Model& m) {
 // in the plane in which the joint turns
 void move_com(mjModel& m, int dof, double by) {
   const int body = m.dof_bodyid[dof], joint = m.dof_jntid[dof];
-  using Vector3d = Eigen::Vector3d;
   Eigen::Map<Vector3d> com(m.body_ipos + 3 * body);
   const Eigen::Map<const Vector3d> axis(m.jnt_axis + 3 * joint), anchor(m.jnt_pos + 3 * joint);
   const Vector3d way = com - anchor, in_plane = way - way.dot(axis) * axis;

@@ -19,10 +19,6 @@ Eigen::Map<const VectorXd> view(const mjtNum* p, int n) {
   return {p, n};
 }
 
-Eigen::Map<const Vector3d> view3(const mjtNum* p) {
-  return Eigen::Map<const Vector3d>(p);
-}
-
 }  // namespace
 
 Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model_)) {
@@ -78,7 +74,8 @@ void Plant::apply_to_load() {
   data_->ctrl[layout_.tether] = load_ == LoadState::kHung;
   // held in a hand it does not move
   Eigen::Map<Vector3d>(data_->qfrc_applied + layout_.load_dof) =
-      load_ == LoadState::kHeld ? Vector3d(view3(data_->qfrc_bias + layout_.load_dof)) : push_;
+      load_ == LoadState::kHeld ? Vector3d(Vector3d::Map(data_->qfrc_bias + layout_.load_dof))
+                                : push_;
 }
 
 void Plant::hang_load() {
@@ -193,7 +190,7 @@ Point Plant::site(const std::string& name) const {
   const int id = site_id(name);
   RowMajor J(3, model_->nv);
   mj_jacSite(model_.get(), data_.get(), J.data(), nullptr, id);
-  return {view3(data_->site_xpos + 3 * id), J * view(data_->qvel, model_->nv)};
+  return {Vector3d::Map(data_->site_xpos + 3 * id), J * view(data_->qvel, model_->nv)};
 }
 
 VectorXd Plant::tau_ext_of(const Vector3d& f, const std::string& site) const {

@@ -17,8 +17,6 @@
 namespace tauext::gate {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-
 bool differs(double a, double b, double tolerance) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
   return std::abs(a - b) > tolerance * std::max({1., std::abs(a), std::abs(b)});

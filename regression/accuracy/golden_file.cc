@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -16,7 +15,6 @@ namespace {
 
 constexpr const char* kHeader = "# tauext golden metrics 1";
 constexpr const char* kEnd = "# end";
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields(1);

@@ -3,6 +3,7 @@
 /// Reads golden metrics; bench/score/golden.h writes them and says what they are.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,7 +11,10 @@
 
 namespace tauext::gate {
 
-/// One line: a metric of an entry, seed by seed; NaN is "never".
+/// The value of what never happened.
+inline constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+/// One line: a metric of an entry, seed by seed.
 struct GoldenLine {
   double tolerance = 1e-9;  ///< absolute or relative, whichever is larger
   std::vector<double> values;

@@ -13,7 +13,7 @@ namespace tauext::test {
 namespace {
 
 using namespace metrics;  // NOLINT(google-build-using-namespace)
-using Row = Eigen::RowVectorXd;
+using Eigen::RowVectorXd;
 
 Times times(int n, double Ts = 1e-3) {
   Times t(n);
@@ -22,16 +22,16 @@ Times times(int n, double Ts = 1e-3) {
 }
 
 template <class F>
-Row signal(const Times& t, F&& f) {
-  Row x(t.size());
+RowVectorXd signal(const Times& t, F&& f) {
+  RowVectorXd x(t.size());
   for (std::size_t k = 0; k < t.size(); ++k) x[k] = f(t[k]);
   return x;
 }
 
 TEST(ErrorMetrics, OfFourSamples) {
   const Times t = times(4, 1);
-  const Row truth = (Row(4) << 0, 0, 10, 10).finished(),
-            estimate = (Row(4) << 100, 3, 6, 10).finished();
+  const RowVectorXd truth = (RowVectorXd(4) << 0, 0, 10, 10).finished(),
+                    estimate = (RowVectorXd(4) << 100, 3, 6, 10).finished();
   EXPECT_DOUBLE_EQ(rmse(t, truth, estimate, 1), std::sqrt((9. + 16 + 0) / 3));
   EXPECT_DOUBLE_EQ(bias(t, truth, estimate, 1), (3. - 4 + 0) / 3);
   EXPECT_DOUBLE_EQ(max_error(t, truth, estimate, 1), 4);
@@ -43,15 +43,15 @@ TEST(ErrorMetrics, OfFourSamples) {
 
 TEST(Noise, IsTheDeviationOfTheDifferenceWithoutItsMean) {
   const Times t = times(4, 1);
-  const Row ideal = Row::Zero(4), noisy = (Row(4) << 7, 3, 7, 3).finished();
+  const RowVectorXd ideal = RowVectorXd::Zero(4), noisy = (RowVectorXd(4) << 7, 3, 7, 3).finished();
   EXPECT_DOUBLE_EQ(noise(t, ideal, noisy, 0), 2);
 }
 
 // the answer of a first-order filter of bandwidth K to a step from a to b at 1 s
-Row first_order(const Times& t, double K, double a, double b) {
+RowVectorXd first_order(const Times& t, double K, double a, double b) {
   return signal(t, [=](double s) { return s < 1 ? a : b + (a - b) * std::exp(-K * (s - 1)); });
 }
-Row step(const Times& t, double a, double b) {
+RowVectorXd step(const Times& t, double a, double b) {
   return signal(t, [=](double s) { return s < 1 ? a : b; });
 }
 
@@ -70,7 +70,7 @@ TEST(StepResponse, OfASecondOrderFilterOvershootsByItsDamping) {
   // zeta = 0.5: overshoot exp(-pi zeta / sqrt(1 - zeta^2)) = 16.3 %
   const Times t = times(5000);
   const double w = 10, zeta = 0.5, wd = w * std::sqrt(1 - zeta * zeta);
-  const Row x = signal(t, [=](double s) {
+  const RowVectorXd x = signal(t, [=](double s) {
     const double u = s - 1;
     return u < 0 ? 0
                  : 1 - std::exp(-zeta * w * u) *
@@ -101,21 +101,23 @@ TEST(Lag, OfADelayedSignalIsExactlyItsDelay) {
   const Times t = times(20000);
   const auto truth = [](double s) { return 10 * std::sin(s) + 5 * std::cos(2 * s); };
   for (const int delay : {0, 1, 17, 400, 1999}) {
-    const Row late = signal(t, [&](double s) { return truth(s - delay * 1e-3); });
+    const RowVectorXd late = signal(t, [&](double s) { return truth(s - delay * 1e-3); });
     EXPECT_NEAR(lag(t, signal(t, truth), late, 3), delay * 1e-3, 1e-12);
   }
 }
 
 TEST(Lag, OfAFirstOrderFilterOnARampIsOneOverItsBandwidth) {
   const Times t = times(20000);
-  const Row truth = signal(t, [](double s) { return 5 * s; });
-  const Row late = signal(t, [](double s) { return 5 * (s - (1 - std::exp(-20 * s)) / 20); });
+  const RowVectorXd truth = signal(t, [](double s) { return 5 * s; });
+  const RowVectorXd late =
+      signal(t, [](double s) { return 5 * (s - (1 - std::exp(-20 * s)) / 20); });
   EXPECT_NEAR(lag(t, truth, late, 3), 1. / 20, 1e-9);
 }
 
 TEST(Lag, OfAnAnswerThatIsNoneIsNaN) {
   const Times t = times(20000);
-  const Row moving = signal(t, [](double s) { return std::sin(s); }), still = Row::Zero(20000);
+  const RowVectorXd moving = signal(t, [](double s) { return std::sin(s); }),
+                    still = RowVectorXd::Zero(20000);
   EXPECT_TRUE(std::isnan(lag(t, moving, still, 0)));
   EXPECT_TRUE(std::isnan(lag(t, still, moving, 0)));
   EXPECT_TRUE(std::isnan(lag(times(100), moving.head(100), moving.head(100), 0)))
@@ -238,7 +240,7 @@ TEST(Bandwidth, OfAFirstOrderLowPassIsItsPole) {
 
 TEST(Bandwidth, DoesNotExistWhereNothingFallsOrNothingIsSwept) {
   const Swept s(10);
-  const Row nothing = Row::Zero(s.truth.size());
+  const RowVectorXd nothing = RowVectorXd::Zero(s.truth.size());
   EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, s.truth)));
   EXPECT_TRUE(std::isnan(bandwidth(s.t, s.truth, nothing)));
   EXPECT_TRUE(std::isnan(bandwidth(s.t, nothing, s.estimate)));

@@ -3,19 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "bench/roster/robots.h"
+#include "bench/score/score.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::study::test {
 namespace {
 
 using tauext::test::error_of;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 ParetoPoint point(const char* name, double design, double settling, double noise) {
   ParetoPoint p{.estimator = name, .design = design};

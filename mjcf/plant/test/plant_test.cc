@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 // the robot with one field changed
 template <class Change>
-Model changed(Change&& change) {
+Model changed_robot(Change&& change) {
   mjModel* const m = mj_copyModel(nullptr, load_robot("wallmobot3").get());
   change(m);
   return Model(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
@@ -55,19 +55,21 @@ TEST(Plant, APositiveTauExtPushesTheJointBack) {
 }
 
 TEST(Plant, RefusesModelsWithoutJointCoordinatesAndSaysWhy) {
-  EXPECT_NE(
-      error_of([] { Plant(changed([](mjModel* m) { m->nu = 2; })); }).find("no motor of its own"),
-      std::string::npos);
-  EXPECT_NE(
-      error_of([] { Plant(changed([](mjModel* m) { m->actuator_gainprm[0] = 2; })); }).find("tau2"),
-      std::string::npos);
   EXPECT_NE(error_of([] {
-              Plant(changed([](mjModel* m) { m->opt.integrator = mjINT_EULER; }));
+              Plant(changed_robot([](mjModel* m) { m->nu = 2; }));
+            }).find("no motor of its own"),
+            std::string::npos);
+  EXPECT_NE(error_of([] {
+              Plant(changed_robot([](mjModel* m) { m->actuator_gainprm[0] = 2; }));
+            }).find("tau2"),
+            std::string::npos);
+  EXPECT_NE(error_of([] {
+              Plant(changed_robot([](mjModel* m) { m->opt.integrator = mjINT_EULER; }));
             }).find("RK4"),
             std::string::npos);
   // two actuators on one joint: lengths that say the same
   EXPECT_NE(error_of([] {
-              Plant(changed([](mjModel* m) { m->actuator_trnid[4] = 0; }));
+              Plant(changed_robot([](mjModel* m) { m->actuator_trnid[4] = 0; }));
             }).find("move 2 degrees of freedom"),
             std::string::npos);
 }

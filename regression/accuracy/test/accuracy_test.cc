@@ -11,8 +11,6 @@
 namespace tauext::gate {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-
 Golden golden(const std::string& metric, const std::vector<double>& values,
               double tolerance = 1e-9) {
   Golden g;
@@ -34,7 +32,7 @@ MetricChange change(const std::string& metric, const std::vector<double>& before
 
 const std::vector<double> kFive = {1.00, 1.02, 0.98, 1.01, 0.99};
 
-std::vector<double> times(double factor) {
+std::vector<double> multiplied(double factor) {
   std::vector<double> v = kFive;
   for (double& x : v) x *= factor;
   return v;
@@ -42,33 +40,33 @@ std::vector<double> times(double factor) {
 
 TEST(Accuracy, TheSameIsUnchangedAndSoIsRoundOff) {
   EXPECT_EQ(change("rmse_Nm", kFive, kFive).change, Change::kUnchanged);
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1 + 5e-10)).change, Change::kUnchanged);
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1 + 5e-10)).change, Change::kUnchanged);
   EXPECT_EQ(change("rmse_Nm", {1000, 1000}, {1000 + 5e-7, 1000}).change, Change::kUnchanged)
       << "relative above 1";
 }
 
 TEST(Accuracy, T1SeesAChangeAboveTheTolerance) {
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1 + 5e-9)).change, Change::kChanged);
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1 - 5e-9)).change, Change::kChanged)
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1 + 5e-9)).change, Change::kChanged);
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1 - 5e-9)).change, Change::kChanged)
       << "better or worse";
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1 + 5e-9), 1e-6).change, Change::kUnchanged);
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1 + 5e-9), 1e-6).change, Change::kUnchanged);
   std::vector<double> one = kFive;
   one[3] += 1e-6;
   EXPECT_EQ(change("rmse_Nm", kFive, one).change, Change::kChanged) << "one seed is enough";
 }
 
 TEST(Accuracy, T2FailsAMeanThatIsWorseByHalfAPercent) {
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1.006)).change, Change::kWorse);
-  EXPECT_EQ(change("rmse_Nm", kFive, times(1.004)).change, Change::kChanged);
-  EXPECT_EQ(change("rmse_Nm", kFive, times(0.9)).change, Change::kBetter);
-  EXPECT_EQ(change("recall", kFive, times(0.9)).change, Change::kWorse) << "larger is better";
-  EXPECT_EQ(change("bandwidth_rad_s", kFive, times(1.1)).change, Change::kBetter);
-  EXPECT_EQ(change("max_at_s", kFive, times(1.1)).change, Change::kChanged) << "neither";
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1.006)).change, Change::kWorse);
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(1.004)).change, Change::kChanged);
+  EXPECT_EQ(change("rmse_Nm", kFive, multiplied(0.9)).change, Change::kBetter);
+  EXPECT_EQ(change("recall", kFive, multiplied(0.9)).change, Change::kWorse) << "larger is better";
+  EXPECT_EQ(change("bandwidth_rad_s", kFive, multiplied(1.1)).change, Change::kBetter);
+  EXPECT_EQ(change("max_at_s", kFive, multiplied(1.1)).change, Change::kChanged) << "neither";
 }
 
 TEST(Accuracy, AMetricThatIsNotInTheListIsBetterTheLessItIs) {
-  EXPECT_EQ(change("outside_Nm", kFive, times(1.1)).change, Change::kWorse);
-  EXPECT_EQ(change("outside_Nm", kFive, times(0.9)).change, Change::kBetter);
+  EXPECT_EQ(change("outside_Nm", kFive, multiplied(1.1)).change, Change::kWorse);
+  EXPECT_EQ(change("outside_Nm", kFive, multiplied(0.9)).change, Change::kBetter);
 }
 
 TEST(Accuracy, T2WantsThreeStandardErrors) {
