@@ -181,7 +181,7 @@ class DetectorClaims {
     return t < 1 || t >= 1.03 ? 0 : 400 * std::sin(3.141592653589793 * (t - 1) / 0.03);
   }
 
-  // compiled once, not into every claim
+  // not inlined: a copy in each claim would take long to compile
   [[gnu::noinline]] D made() const { return make_(); }
   [[gnu::noinline]] static Detection step(D& d, const Measurement<N>& y, double load) {
     return detect(d, y, Vec<N>(Vec<N>::Constant(load)));

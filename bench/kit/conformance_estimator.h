@@ -232,7 +232,7 @@ class EstimatorClaims {
 
   static double uniform(std::mt19937_64& g) { return static_cast<double>(g() >> 11) * 0x1p-53; }
 
-  // compiled once, not into every claim
+  // not inlined: a copy in each claim would take long to compile
   [[gnu::noinline]] static Estimate<N> step(E& e, const Measurement<N>& y) { return e.update(y); }
   [[gnu::noinline]] E made() const { return make_(); }
 

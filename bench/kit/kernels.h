@@ -259,7 +259,7 @@ inline Kernels& plugin_kernels() {
 }
 
 inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
-  static constexpr auto kernel = [](int i) { return plugin_kernels().all()[i].get(); };
+  static constexpr auto kernel = [](std::size_t i) { return plugin_kernels().all()[i].get(); };
   static const tauext_plugin plugin = [&] {
     fill(plugin_kernels());
     return tauext_plugin{

@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLongestGap = 0.05;  // [s]
-constexpr double kLeast = 1e-100;     // a column or a singular value that is none
+constexpr double kLeast = 1e-100;     // in the place of a norm or a singular value of 0
 
 double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
@@ -132,10 +132,11 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   const VectorXd norm = A.colwise().norm();
   const MatrixXd scaled = A * norm.cwiseMax(kLeast).cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::RowVectorXd s = svd.singularValues().cwiseMax(kLeast);
-  // a row of V S^-1 is a row of (A^T A)^-1's root; the inverse of its norm is what the other
-  // columns cannot imitate
-  const VectorXd root = (svd.matrixV() * s.cwiseInverse().asDiagonal()).rowwise().norm();
+  const VectorXd& s = svd.singularValues();
+  // The norm of row i of V S^-1 is the root of the i-th diagonal element of (A^T A)^-1, A with its
+  // columns scaled; its inverse is the share of column i that the others cannot imitate.
+  const VectorXd root =
+      (svd.matrixV() * s.cwiseMax(kLeast).cwiseInverse().asDiagonal()).rowwise().norm();
   id.condition = s[0] / s[n - 1];
   if (!(id.condition < 1e6)) {
     Eigen::Index least = 0;

@@ -289,9 +289,9 @@ std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model)
   return std::make_unique<detail::RobotOf<M::kDof>>(name, model);
 }
 
-/// Ours are compiled in robots.cc.
+/// That of wallmobot3 is compiled in robots.cc.
 extern template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&);
-/// Likewise.
+/// That of testbed1 is compiled in robots.cc.
 extern template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&);
 
 }  // namespace tauext

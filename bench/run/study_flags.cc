@@ -92,7 +92,8 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
   const bool seed = suite.sensors.seed != Sensors().seed;
   if ((seed || !suite.sensors.ideal()) && (f.equal_bandwidth || f.pareto)) {
     throw std::invalid_argument(
-        "--equal-bandwidth and --pareto bring their own sensors: no --sensors, no --seed");
+        "--equal-bandwidth and --pareto bring their own sensors: they take no faults and no "
+        "--seed");
   }
   if (!suite.thresholds.sets.empty() || suite.recording.Kp || suite.recording.Kd) {
     throw std::invalid_argument("a study takes no --thresholds, --kp and --kd");

@@ -39,7 +39,7 @@ bool wants_study(const StudyFlags& flags);
 /// @param suite its sensors are those of --reliability; ideal ones stand for a good and a poor
 /// encoder
 /// @returns an ExitCode
-/// @throws std::invalid_argument for sensors and model errors that a study would not use
+/// @throws std::invalid_argument for sensors, a seed and model errors that a study would not use
 int run_study(const StudyFlags& flags, const SuiteOptions& suite);
 
 }  // namespace tauext

@@ -152,7 +152,7 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
         continue;
       }
       all = false;
-      fmt::print(stderr, "{}: it fits no robot and scenario that --benchmark_filter leaves\n",
+      fmt::print(stderr, "{}: nothing ran it; see --benchmark_filter and tauext-bench --list\n",
                  name);
     }
   };
@@ -189,8 +189,9 @@ int run_suite(const SuiteRun& run) {
   print_results(run, rows);
   if (run.out) write_json(run, reporter);
   if (!tap.heard()) fmt::print(stderr, "no summary could be published\n");
-  if (!all_ran(run.selection, rows)) return kCouldNotRun;
-  return reporter.any_error() || !tap.heard() ? kAnswerIsNo : kGood;
+  const bool all = all_ran(run.selection, rows);
+  if (reporter.any_error() || !tap.heard()) return kAnswerIsNo;
+  return all ? kGood : kCouldNotRun;
 }
 
 }  // namespace tauext

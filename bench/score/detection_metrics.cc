@@ -27,7 +27,7 @@ DetectionScore detection_score(const std::vector<double>& t,
                                const std::vector<std::uint8_t>& contact,
                                const std::vector<std::uint8_t>& marks) {
   DetectionScore s;
-  s.delay = kNaN;
+  s.delay = kNoValue;
   const std::size_t n = t.size();
   for (std::size_t k = 0; k < n; ++k) {
     if (!contact[k]) {
@@ -50,7 +50,7 @@ DetectionScore detection_score(const std::vector<double>& t,
 
 double overtravel(const Trace& trace) {
   const int at = trace.stopped_at;
-  if (at < 0) return kNaN;
+  if (at < 0) return kNoValue;
   double most = 0;
   for (int j = 0; j < trace.dof(); ++j) {
     const double sense = trace.qd(j, at) < 0 ? -1 : 1;
@@ -65,7 +65,7 @@ double peak(const std::vector<double>& force) {
 }
 
 double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return kNaN;
+  if (values.empty()) return kNoValue;
   std::sort(values.begin(), values.end());
   const double rank = std::ceil(share * static_cast<double>(values.size()));
   return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];

@@ -30,7 +30,7 @@ double crossing(const Times& t, const Signal& x, Eigen::Index start, double leve
     const double part = std::clamp((level - x[k - 1]) / (x[k] - x[k - 1]), 0., 1.);
     return t[k - 1] + part * (t[k] - t[k - 1]);
   }
-  return kNaN;
+  return kNoValue;
 }
 
 // mean squared estimate(t_k) - truth(t_k-shift), every stride-th sample
@@ -60,7 +60,7 @@ double max_error(const Times& t, const Signal& truth, const Signal& estimate, do
 
 double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
   const Eigen::RowVectorXd e = error(t, truth, estimate, from).cwiseAbs();
-  if (e.size() == 0) return kNaN;
+  if (e.size() == 0) return kNoValue;
   Eigen::Index at = 0;
   e.maxCoeff(&at);
   return t[first_from(t, from) + at];
@@ -78,11 +78,11 @@ double final_error(const Times& t, const Signal& truth, const Signal& estimate) 
 StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate) {
   Eigen::Index k = 0;
   const Eigen::Index n = truth.size();
-  if (n < 2) return {kNaN, kNaN, kNaN, kNaN};
+  if (n < 2) return {kNoValue, kNoValue, kNoValue, kNoValue};
   (truth.tail(n - 1) - truth.head(n - 1)).cwiseAbs().maxCoeff(&k);
   const double a = truth[k], b = truth[k + 1], step = b - a;
   ++k;  // the first sample of level b, t_s = t[k]
-  if (step == 0) return {kNaN, kNaN, kNaN, kNaN};
+  if (step == 0) return {kNoValue, kNoValue, kNoValue, kNoValue};
 
   StepResponse r;
   const double at_10 = crossing(t, estimate, k, a + 0.1 * step, step > 0);
@@ -95,7 +95,7 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
   Eigen::Index last_outside = n - 1;
   while (last_outside >= k && std::abs(estimate[last_outside] - b) <= band) --last_outside;
   if (last_outside == n - 1) {
-    r.settling = kNaN;
+    r.settling = kNoValue;
   } else if (last_outside < k) {
     r.settling = 0;
   } else {
@@ -108,12 +108,12 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from) {
   constexpr double kLongest = 2;        // [s]
   constexpr Eigen::Index kCoarse = 16;  // samples
-  if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNaN;
-  if (estimate.maxCoeff() == estimate.minCoeff()) return kNaN;
+  if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNoValue;
+  if (estimate.maxCoeff() == estimate.minCoeff()) return kNoValue;
   const Eigen::Index first = first_from(t, t.front() + from + kLongest);
   const double Ts = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
   const auto longest = static_cast<Eigen::Index>(kLongest / Ts);
-  if (first >= truth.size() || longest > first) return kNaN;
+  if (first >= truth.size() || longest > first) return kNoValue;
 
   const auto best = [&](Eigen::Index from_shift, Eigen::Index to_shift, Eigen::Index step) {
     Eigen::Index at = from_shift;
@@ -127,7 +127,7 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
   const Eigen::Index coarse = best(0, longest, kCoarse);
   const Eigen::Index fine =
       best(std::max<Eigen::Index>(0, coarse - kCoarse), std::min(longest, coarse + kCoarse), 1);
-  return fine == longest ? kNaN : static_cast<double>(fine) * Ts;
+  return fine == longest ? kNoValue : static_cast<double>(fine) * Ts;
 }
 
 namespace {
@@ -155,7 +155,7 @@ bool evenly_spaced(const Times& t, double h) {
 
 double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
   const double h = t.size() < 2 ? 0 : (t.back() - t.front()) / static_cast<double>(t.size() - 1);
-  if (!(h > 0) || !evenly_spaced(t, h)) return kNaN;
+  if (!(h > 0) || !evenly_spaced(t, h)) return kNoValue;
   constexpr double kLeast = 0.7, kMost = 280;  // [rad/s]
   constexpr double kStep = 1.1;                // from one frequency to the next
   constexpr int kLines = 5;                    // of a band
@@ -170,9 +170,9 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
       power += std::norm(x);
     }
     // a sweep of some N m over some seconds has more than this everywhere; a step at 280 rad/s, too
-    if (!(power > 1e-6)) return kNaN;
+    if (!(power > 1e-6)) return kNoValue;
     const double gain = std::abs(cross) / power;
-    if (gain < std::numbers::sqrt2 / 2 && w == kLeast) return kNaN;
+    if (gain < std::numbers::sqrt2 / 2 && w == kLeast) return kNoValue;
     if (gain < std::numbers::sqrt2 / 2) {
       // on a straight line in the logarithms
       const double share =
@@ -182,7 +182,7 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
     w_before = w;
     gain_before = gain;
   }
-  return kNaN;
+  return kNoValue;
 }
 
 }  // namespace metrics

@@ -11,7 +11,7 @@ namespace {
 double worst(WorstJoint which, const std::vector<double>& values) {
   const auto never = [](double v) { return std::isnan(v); };
   if (values.empty() || std::any_of(values.begin(), values.end(), never)) {
-    return kNaN;
+    return kNoValue;
   }
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return which == WorstJoint::kSmallest ? *least : *most;

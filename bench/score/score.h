@@ -15,8 +15,8 @@
 
 namespace tauext {
 
-/// A value that does not exist: \"never\".
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// The value of a metric that has none ("never").
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// A value for each metric that exists for the run, NaN where it has no value ("never settles"),
 /// and the values of the joints where the metric is judged joint by joint.

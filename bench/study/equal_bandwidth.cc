@@ -67,7 +67,7 @@ struct SharedRuns : StepRuns {
 };
 
 double value(const Score& score, Metric metric) {
-  return score.get(metric).value_or(kNaN);
+  return score.get(metric).value_or(kNoValue);
 }
 
 // what the scenario of this run asks for

@@ -109,6 +109,23 @@ TEST_F(Programs, BenchPrintsATableAndWritesValidJson) {
 #endif
 }
 
+TEST_F(Programs, BenchPrintsItsTableThoughItsJsonCannotBeWritten) {
+  const Outcome o = run("tauext-bench --benchmark_filter=free/ndob --benchmark_out=/dev/full" +
+                        std::string(kQuick));
+  EXPECT_EQ(o.code, 2);
+  EXPECT_TRUE(o.says("wallmobot3/free/ndob ")) << o.text;
+  EXPECT_TRUE(o.says("/dev/full: cannot write")) << o.text;
+}
+
+TEST_F(Programs, BenchNamesTheEstimatorThatRanNowhere) {
+  const Outcome o =
+      run("tauext-bench --benchmark_filter=wallmobot3/free/ --estimator mo2,ekf_zero_start" +
+          std::string(kQuick));
+  EXPECT_EQ(o.code, 2);
+  EXPECT_TRUE(o.says("wallmobot3/free/mo2 ")) << o.text;
+  EXPECT_TRUE(o.says("ekf_zero_start: nothing ran it")) << o.text;
+}
+
 TEST_F(Programs, GoogleBenchmarksOwnFormatsStillWork) {
   const Outcome console = run(
       "tauext-bench --benchmark_filter=free/ndob --benchmark_format=console" + std::string(kQuick));
@@ -151,6 +168,7 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
       {"tauext-bench --list --list-metrics", "one at a time"},
       {"tauext-bench --seeds 1,2", "--seeds goes with --golden"},
       {"tauext-bench --pareto --estimator ekf", "--estimator goes with"},
+      {"tauext-bench --pareto --seed 3", "bring their own sensors"},
       {"tauext-detect --calibrate x.json --conditions known_0", "--conditions goes with a study"},
       {"tauext-detect --thresholds x.json --margin 2", "--margin goes with training"},
       {"tauext-live --listen --scenario step", "exactly one of"},

@@ -3,12 +3,12 @@
 include_guard(GLOBAL)
 
 # parsed once for all libraries and programs, and with GoogleTest for all tests; sources include what they use all the same
-# (not nlohmann/json.hpp: it costs a second in each of them)
+# (not nlohmann/json.hpp: each source would take a second longer)
 set(precompiled <array> <algorithm> <cmath> <functional> <map> <memory> <stdexcept> <string> <vector> <Eigen/LU> <fmt/format.h>
                 <fmt/ranges.h>)
 function(tauext_precompile target position_independent)
   add_library(${target} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/empty.cc)
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent} UNITY_BUILD OFF)
   target_link_libraries(${target} PRIVATE tauext_flags tauext_estimators fmt::fmt)
   target_precompile_headers(${target} PRIVATE ${precompiled} ${ARGN})
 endfunction()

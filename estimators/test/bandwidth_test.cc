@@ -52,7 +52,7 @@ class Bandwidth : public testing::Test {
   static constexpr int N = Arm::kDof;
   using Samples = std::vector<Measurement<N>>;
 
-  // compiled once, not into every test
+  // not inlined: a copy in each test would take long to compile, and may round differently
   [[gnu::noinline]] static Estimate<N> step(E& e, const Measurement<N>& y) { return e.update(y); }
   [[gnu::noinline]] static E estimator(double w) {
     const Arm arm = Case<Arm>::arm();

@@ -13,6 +13,8 @@
 namespace tauext {
 namespace {
 
+using Eigen::Vector3d;
+
 void check(const char* name, double value, double least, double most) {
   if (value >= least && value <= most) return;
   throw std::invalid_argument(

@@ -110,6 +110,11 @@ TEST(Identify, AMotionThatCannotTellTermsApartIsAnErrorThatNamesOne) {
   const std::string error =
       error_of_identify(log, find_terms({"coulomb", "viscous", "gravity_cos"}));
   EXPECT_NE(error.find("cannot tell '"), std::string::npos) << error;
+  for (const auto& terms :
+       {find_terms({"coulomb", "coulomb_down"}), find_terms({"coulomb_down"})}) {
+    const std::string nothing = error_of_identify(log, terms);
+    EXPECT_NE(nothing.find("cannot tell 'coulomb_down'"), std::string::npos) << nothing;
+  }
   for (int k = 0; k < log.size(); ++k) log.qd(0, k) = 0;
   EXPECT_NE(error_of_identify(log, kEquation36).find("0 usable windows"), std::string::npos);
 }

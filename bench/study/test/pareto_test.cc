@@ -55,9 +55,9 @@ TEST(Pareto, BeyondAFrontsEndsNobodyIsDominated) {
 }
 
 TEST(Pareto, APointWithoutAValueIsNotOnTheFrontAndDominatesNobody) {
-  std::vector<ParetoPoint> p = {point("a", 1, kNaN, 1),    point("a", 2, 0.1, kNaN),
-                                point("a", 4, 0.01, 1e-3), point("b", 1, 0.2, 1e-2),
-                                point("b", 2, 0.005, 5),   point("c", 0, kNaN, kNaN)};
+  std::vector<ParetoPoint> p = {point("a", 1, kNoValue, 1), point("a", 2, 0.1, kNoValue),
+                                point("a", 4, 0.01, 1e-3),  point("b", 1, 0.2, 1e-2),
+                                point("b", 2, 0.005, 5),    point("c", 0, kNoValue, kNoValue)};
   mark_dominated(p);
   for (const int i : {0, 1, 5}) {
     EXPECT_FALSE(p[i].on_front()) << i;
@@ -102,7 +102,7 @@ TEST(Pareto, ADesignIsBehindABetterOneOfTheSameEstimator) {
 }
 
 TEST(Pareto, HoldsEveryPointInEveryFormat) {
-  const std::vector<ParetoPoint> p = {point("a", 1, kNaN, 1), point("b", 0, 0.1, 2)};
+  const std::vector<ParetoPoint> p = {point("a", 1, kNoValue, 1), point("b", 0, 0.1, 2)};
   const Robot& r = *robots().front();
   const auto json = nlohmann::json::parse(format_pareto(r, p, TableFormat::kJson));
   ASSERT_EQ(json.size(), 2u);
