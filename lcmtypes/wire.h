@@ -26,7 +26,7 @@ inline constexpr int kMaxJoints = 8;
 inline constexpr int kMaxMetrics = 1000;
 /// The longest of its texts [bytes].
 inline constexpr int kMaxText = 4096;
-/// LCM_MAX_CHANNEL_NAME_LENGTH.
+/// The longest name of a channel [bytes], LCM_MAX_CHANNEL_NAME_LENGTH.
 inline constexpr std::size_t kLongestChannel = 63;
 
 /// Why a message was not decoded.

@@ -10,7 +10,7 @@ enum ExitCode : int {
   kGood = 0,          ///< done, and the answer is good
   kAnswerIsNo = 1,    ///< done, but an entry failed
   kSlower = 1,        ///< the same of tauext-gate: a step takes more time or more instructions
-  kCouldNotRun = 2,   ///< wrong flags, unreadable input, unwritable output, nothing to run
+  kCouldNotRun = 2,   ///< wrong flags, bad input or output, nothing ran, a broken harness
   kUpdateNeeded = 3,  ///< of tauext-gate: no baseline, or one that has to be looked at
   kInconclusive = 4,  ///< of tauext-gate: too noisy to say
   kLessAccurate = 5,  ///< of tauext-gate: an estimate is less accurate

@@ -55,23 +55,15 @@ TEST(Plant, APositiveTauExtPushesTheJointBack) {
 }
 
 TEST(Plant, RefusesModelsWithoutJointCoordinatesAndSaysWhy) {
-  EXPECT_NE(error_of([] {
-              Plant(changed_robot([](mjModel* m) { m->nu = 2; }));
-            }).find("no motor of its own"),
-            std::string::npos);
-  EXPECT_NE(error_of([] {
-              Plant(changed_robot([](mjModel* m) { m->actuator_gainprm[0] = 2; }));
-            }).find("tau2"),
-            std::string::npos);
-  EXPECT_NE(error_of([] {
-              Plant(changed_robot([](mjModel* m) { m->opt.integrator = mjINT_EULER; }));
-            }).find("RK4"),
-            std::string::npos);
+  const auto expect = [](auto change, const char* why) {
+    const std::string error = error_of([&] { Plant(changed_robot(change)); });
+    EXPECT_NE(error.find(why), std::string::npos) << error;
+  };
+  expect([](mjModel* m) { m->nu = 2; }, "no motor of its own");
+  expect([](mjModel* m) { m->actuator_gainprm[0] = 2; }, "tau2");
+  expect([](mjModel* m) { m->opt.integrator = mjINT_EULER; }, "RK4");
   // two actuators on one joint: lengths that say the same
-  EXPECT_NE(error_of([] {
-              Plant(changed_robot([](mjModel* m) { m->actuator_trnid[4] = 0; }));
-            }).find("move 2 degrees of freedom"),
-            std::string::npos);
+  expect([](mjModel* m) { m->actuator_trnid[4] = 0; }, "move 2 degrees of freedom");
 }
 
 TEST(Plant, TurnsAMuJoCoWarningIntoAnError) {
