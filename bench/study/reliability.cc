@@ -55,7 +55,8 @@ void add_blow(const Robot& r, const Trace& t, Reliability& row, std::vector<doub
 void add_hand(const Robot& r, const Trace& t, Reliability& row) {
   const Output out = r.runner(row.estimator, row.detector, t)->run();
   row.alarms += static_cast<int>(std::count(out.marks.begin(), out.marks.end(), 1));
-  row.hours += (t.t.back() - t.t.front()) / 3600;
+  const double n = t.size();
+  row.hours += (t.t.back() - t.t.front()) * n / (n - 1) / 3600;  // the last sample's period, too
 }
 
 std::vector<TableWriter::Column> reliability_columns() {
