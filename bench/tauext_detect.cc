@@ -16,6 +16,7 @@
 #include "bench/study/detection_study.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace {
@@ -61,23 +62,10 @@ void require_writable(const std::string& path) {
   const AtomicFile probe(path);
 }
 
-// thresholds of another tuning would be wrong in silence
-void tell_untrained(const Flags& f, const Thresholds& t) {
-  const Robot& r = robot(study::touched_runs(f.study.robot).robot);
-  for (const std::string& e : study::chosen_estimators(r, f.study.estimators)) {
-    const bool trained = std::any_of(t.sets.begin(), t.sets.end(), [&](const ThresholdSet& s) {
-      return s.robot == r.name() && s.by_estimator.contains(e);
-    });
-    if (trained) continue;
-    fmt::print(stderr, "{}: nothing was trained behind {}; its detectors keep their defaults\n",
-               f.thresholds, e);
-  }
-}
-
 int run_calibration(const Flags& f) {
   require_writable(f.calibrate_to);
   write_thresholds(calibrated(f), f.calibrate_to);
-  if (f.calibrate_to != "-") fmt::print(stderr, "{}: thresholds\n", f.calibrate_to);
+  if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
   return kGood;
 }
 
@@ -87,7 +75,6 @@ int run_study(const Flags& f) {
   study::check_study(f.study);  // before calibration takes its time
   const Thresholds thresholds =
       f.thresholds.empty() ? calibrated(f) : read_thresholds(f.thresholds);
-  tell_untrained(f, thresholds);
   const std::vector<study::Cell> cells = studied(f.study, thresholds);
   // a table for a program stands alone; so does a study on standard output
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;

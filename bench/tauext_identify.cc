@@ -84,16 +84,15 @@ int main(int argc, char** argv) {
       return kGood;
     }
     if (log.empty()) throw std::invalid_argument("a log is required; see tauext-identify --help");
-    refuse_same_file(log, out);
     const std::vector<Term> model = find_terms(names);
-    const Trace trace = read_log_or_csv(log, channel);
-    const Identification id = identify(trace, model, windows);
+    const RecordedLog recorded = read_log_or_csv(log, channel);
+    const Identification id = identify(recorded.trace, model, windows);
     if (!out.empty()) {
       AtomicFile file(out);
       file.write(as_csv(model, id));
       file.commit();
     }
     fmt::print(out == "-" ? stderr : stdout, "{}", as_table(model, id));
-    return kGood;
+    return recorded.usable() ? kGood : kAnswerIsNo;
   });
 }

@@ -10,6 +10,7 @@
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace {
 
@@ -80,9 +81,12 @@ int main(int argc, char** argv) {
     } else {
       write_csv(trace, out);
     }
-    fmt::print(stderr, "{}: {} samples of {}/{}{}\n", out, trace.size(), robot_name, scenario_name,
-               trace.stopped_at < 0 ? stop.empty() ? "" : "; nothing stopped it"
-                                    : fmt::format("; stopped at {} s", trace.t[trace.stopped_at]));
+    const std::string stopped = trace.stopped_at >= 0
+                                    ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
+                                : stop.empty() ? ""
+                                               : "; nothing stopped it";
+    say(fmt::format("{}: {} samples of {}/{}{}", out, trace.size(), robot_name, scenario_name,
+                    stopped));
     return kGood;
   });
 }

@@ -17,6 +17,7 @@
 #include "bench/score/metrics.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace {
@@ -67,20 +68,19 @@ bool report_status(const Trace& trace, const Column& c) {
   const int good = count[Status::kOk];
   const int restarts = std::max(count[Status::kStarted] - 1, 0);
   if (good + 1 >= trace.size()) return true;
-  fmt::print(stderr,
-             "{}: {} samples ignored as out of range, {} restarts after gaps, {} divergences, "
-             "{} with a singular inertia\n",
-             c.estimator, count[Status::kBadMeasurement], restarts, count[Status::kDiverged],
-             count[Status::kSingularInertia]);
+  say(fmt::format(
+      "{}: {} samples ignored as out of range, {} restarts after gaps, {} divergences, {} with a "
+      "singular inertia",
+      c.estimator, count[Status::kBadMeasurement], restarts, count[Status::kDiverged],
+      count[Status::kSingularInertia]));
   if (2 * good >= trace.size()) return true;
   std::vector<double> steps;
   for (int k = 1; k < trace.size(); ++k) steps.push_back(trace.t[k] - trace.t[k - 1]);
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  fmt::print(
-      stderr,
-      "{}: most samples could not be used, so these are no estimates. Is t in s, q in rad, qd "
-      "in rad/s, tau in N m? Samples are {:g} s apart; more than 0.05 s is a gap\n",
-      c.estimator, steps[steps.size() / 2]);
+  say(fmt::format(
+      "{}: most samples could not be used, so these are no estimates. Is t in s, q in rad, qd in "
+      "rad/s, tau in N m? Samples are {:g} s apart; more than 0.05 s is a gap",
+      c.estimator, steps[steps.size() / 2]));
   return false;
 }
 
@@ -126,8 +126,8 @@ int main(int argc, char** argv) {
       "Runs estimators over a recorded log (an LCM log, or CSV with the columns of tauext-record;\n"
       "tau_ext and contact may be missing) and writes their estimates, one row per usable sample.\n"
       "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged (old estimate held).\n"
-      "With the truth in the log, prints the errors too. Exit code 1 if most samples were "
-      "unusable.\n\n"
+      "With the truth in the log, prints the errors too. Exit code 1 if most rows or samples "
+      "were unusable.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
   std::string log, channel, robot_name, detector, out;
@@ -156,14 +156,14 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(
           "a log, --robot, --estimator and --out are required; see tauext-replay --help");
     }
-    refuse_same_file(log, out);
     if (is_lcm_log(out)) {
       throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", out));
     }
     refuse_twice("estimator", estimators);
     const Robot& r = robot(robot_name);
     for (const std::string& e : estimators) r.check(e, detector);
-    const Trace trace = read_log_or_csv(log, channel);
+    const RecordedLog recorded = read_log_or_csv(log, channel);
+    const Trace& trace = recorded.trace;
     if (!(score_from <= trace.t.back())) {
       throw std::invalid_argument(
           fmt::format("--score_from {}: the log ends at {} s", score_from, trace.t.back()));
@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
     for (const std::string& e : estimators) {
       columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
     }
-    bool good = true;
+    bool good = recorded.usable();
     for (const Column& c : columns) good = report_status(trace, c) && good;
     write_estimates(trace, columns, out);
     print_metrics(trace, columns, score_from, out == "-" ? stderr : stdout);

@@ -42,6 +42,14 @@ void end_extremes(int n, double* least, double* most) {
 
 }  // namespace
 
+std::optional<std::int64_t> messages_of(const summary_t& s, std::string_view estimator) {
+  const std::string name = "/" + std::string(estimator);
+  const bool alone = s.entry.ends_with(name);
+  const std::int64_t all = s.published + s.failed;  // those that failed had a number, too
+  if (all <= 0 || (!alone && s.entry.find(name + "+") == std::string::npos)) return {};
+  return alone ? all : all / 2;  // an estimate and a detection each time
+}
+
 Emitter::Emitter(const std::vector<Stream>& streams, double rate, Sink sink)
     : rate_(rate), sink_(std::move(sink)) {
   if (!(rate >= 0 && std::isfinite(rate))) {

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lcmtypes/reading.h"
@@ -36,6 +38,11 @@ inline constexpr const char* kDetectionChannel = "TAUEXT_DETECTION";  ///< of de
 inline constexpr const char* kSummaryChannel = "TAUEXT_SUMMARY";      ///< of summary_t
 inline constexpr const char* kSampleChannel = "TAUEXT_SAMPLE";        ///< of sample_t
 inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";   ///< and the estimator's name
+
+/// How many messages a stream's sender has numbered, on its channel of estimates and of its pair in
+/// TAUEXT_DETECTION alike: what its summary says at the end. None if the summary is of a run
+/// without a stream, or of another estimator.
+std::optional<std::int64_t> messages_of(const summary_t& summary, std::string_view estimator);
 
 /// Takes a message's channel, time [us] and bytes; false if it could not be sent.
 using Sink = std::function<bool(const char* channel, std::int64_t utime, Bytes message)>;

@@ -5,26 +5,29 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "lcmtypes/receive/group_socket.h"
 #include "lcmtypes/transport.h"
 
 namespace tauext {
 
-/// A subscription to the channels that a regular expression names.
+/// A subscription to channels. Multicast comes through a GroupSocket, everything else through LCM.
 class Listener {
  public:
-  /// Gets the channel, when the message arrived [us, this machine's wall clock], and its bytes.
-  using Handler =
-      std::function<void(std::string_view channel, std::int64_t arrived, Bytes message)>;
+  /// Gets the channel, who sent the message, and its bytes.
+  using Handler = std::function<void(std::string_view channel, Sender sender, Bytes message)>;
 
+  /// @param channels their names; one that ends in * stands for all that begin so
   /// @throws std::runtime_error if nothing can be received from that URL, with the remedy;
   /// std::invalid_argument for a URL that LCM does not know
-  Listener(const std::string& url, const std::string& channels, Handler handler);
+  Listener(const std::string& url, std::vector<std::string> channels, Handler handler);
 
   /// On an LCM that somebody else keeps (memq:// lives in one process).
-  Listener(lcm_t* lcm, const std::string& channels, Handler handler);
+  Listener(lcm_t* lcm, std::vector<std::string> channels, Handler handler);
   ~Listener();
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
@@ -35,18 +38,23 @@ class Listener {
 
   const std::string& url() const { return url_; }  ///< in full
 
-  /// The regular expression that means this channel alone.
-  static std::string expression(const std::string& channel);
+  /// What did not get through to here; zeros where LCM receives, which does not say.
+  GroupSocket::Counts refused() const;
 
  private:
-  void subscribe(const std::string& channels);
+  void subscribe();
+  bool wants(std::string_view channel) const;
+  bool take_from_group();
   void require_connection() const;
 
   std::string url_;
-  LcmHandle own_;
-  lcm_t* lcm_;
-  lcm_subscription_t* subscription_ = nullptr;
+  std::vector<std::string> channels_;
   Handler handler_;
+  std::optional<GroupSocket> group_;
+  std::int64_t unwanted_ = 0;
+  LcmHandle own_;
+  lcm_t* lcm_ = nullptr;
+  std::vector<lcm_subscription_t*> subscriptions_;
 };
 
 }  // namespace tauext

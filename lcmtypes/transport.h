@@ -10,13 +10,10 @@
 #include <memory>
 #include <string>
 
+#include "lcmtypes/lcm_url.h"
 #include "lcmtypes/wire.h"
 
 namespace tauext {
-
-/// The URL that stands for "": $LCM_DEFAULT_URL, else LCM's own group on this machine alone (ttl
-/// 0).
-std::string lcm_url(const std::string& url);
 
 /// Why nothing could be sent to or received from the URL: no multicast route, with the commands
 /// that add one. "" if there is no reason to think so. Opens a socket and sends nothing.

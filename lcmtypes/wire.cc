@@ -21,19 +21,21 @@ class Cursor {
   std::int32_t int32() { return static_cast<std::int32_t>(big_endian(4)); }
   void skip(std::size_t bytes) { take(bytes); }
 
-  // whose differences and sums cannot overflow
-  void time() {
+  // a time or a number, whose differences and sums cannot overflow
+  std::int64_t time() {
     constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
-    last_time_ = big_endian(8);
-    if (last_time_ > kLargest) reject(Reject::kWrongTime);
+    const std::uint64_t value = big_endian(8);
+    if (value > kLargest) reject(Reject::kWrongTime);
+    return static_cast<std::int64_t>(value);
   }
   // t [s], which says the same as the utime [us] before it
-  void same_time_in_seconds(double utime) {
+  void same_time_in_seconds(std::int64_t utime) {
     const double t = std::bit_cast<double>(big_endian(8));
     constexpr double kRounding = 1e-5;  // [s]
-    if (!(std::abs(t - utime * 1e-6) <= kRounding)) reject(Reject::kWrongTime);
+    if (!(std::abs(t - static_cast<double>(utime) * 1e-6) <= kRounding)) {
+      reject(Reject::kWrongTime);
+    }
   }
-  double last_time() const { return static_cast<double>(last_time_); }
 
   // a count that the message claims
   std::int32_t count(std::int32_t least, std::int32_t most) {
@@ -69,14 +71,12 @@ class Cursor {
 
   Bytes rest_;
   Reject reject_ = Reject::kNone;
-  std::uint64_t last_time_ = 0;
 };
 
 // what the body must look like, type by type
 
 void walk(Cursor& c, const sample_t&) {
-  c.time();
-  const double utime = c.last_time();
+  const std::int64_t utime = c.time();
   c.time();  // seq
   c.same_time_in_seconds(utime);
   c.count(1, kMaxJoints);
@@ -84,8 +84,7 @@ void walk(Cursor& c, const sample_t&) {
 }
 
 void walk(Cursor& c, const estimate_t&) {
-  c.time();
-  const double utime = c.last_time();
+  const std::int64_t utime = c.time();
   c.time();  // seq
   c.same_time_in_seconds(utime);
   c.count(1, kMaxJoints);
@@ -119,7 +118,7 @@ void walk(Cursor& c, const iiwa_status_t&) {
 void walk(Cursor& c, const panda_status_t&) {
   c.time();
   c.skip(static_cast<std::size_t>(c.count(1, kMaxJoints)) * 8 * 8);
-  c.skip(8 + 1 + 8 + 3);
+  c.skip(8 + 1 + 8 + 1);
 }
 
 }  // namespace
@@ -142,6 +141,21 @@ const char* describe(Reject reject) noexcept {
 
 std::int64_t hash_of(Bytes message) noexcept {
   return message.size() < 8 ? 0 : static_cast<std::int64_t>(Cursor(message).big_endian(8));
+}
+
+Stamp stamp_of(Bytes message) noexcept {
+  const std::int64_t hash = hash_of(message);
+  const bool numbered = hash == sample_t::getHash() || hash == estimate_t::getHash() ||
+                        hash == detection_t::getHash();
+  const bool timed =
+      numbered || hash == iiwa_status_t::getHash() || hash == panda_status_t::getHash();
+  const std::size_t size = numbered ? 24 : 16;
+  if (!timed || message.size() < size) return {};
+  Cursor c(message.first(size).subspan(8));
+  Stamp stamp;
+  stamp.utime = c.time();
+  if (numbered) stamp.seq = c.time();
+  return c.finish() == Reject::kNone ? stamp : Stamp{};
 }
 
 template <class Message>
@@ -183,6 +197,9 @@ const std::int8_t panda_status_t::kGuiding;
 const std::int8_t panda_status_t::kReflex;
 const std::int8_t panda_status_t::kUserStopped;
 const std::int8_t panda_status_t::kAutomaticErrorRecovery;
+const std::int8_t panda_status_t::kPosition;
+const std::int8_t panda_status_t::kVelocity;
+const std::int8_t panda_status_t::kTorque;
 
 template Reject decode(Bytes, sample_t&);
 template Reject decode(Bytes, estimate_t&);

@@ -49,6 +49,15 @@ using Bytes = std::span<const std::byte>;
 /// The hash at the head of a message; 0 if it is shorter than that.
 std::int64_t hash_of(Bytes message) noexcept;
 
+/// When a message was sent, and its number, as its head says.
+struct Stamp {
+  std::int64_t utime = -1;  ///< [us]; -1: none
+  std::int64_t seq = -1;    ///< [1] on its channel; -1: its type has none
+};
+
+/// The stamp of a message whose rest may be no good.
+Stamp stamp_of(Bytes message) noexcept;
+
 /// Decodes one of the six types. `out` is untouched unless kNone comes back; numbers may still be
 /// NaN.
 template <class Message>

@@ -12,6 +12,7 @@
 #include "bench/program/program.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 #include "regression/counts/instructions.h"
 #include "regression/host/child.h"
 #include "regression/report/explain.h"
@@ -51,7 +52,7 @@ std::function<void(const std::string&)> shown_by(Progress& progress) {
   if (progress.shown()) return [&progress](const std::string& what) { progress.show(what); };
   return [last = std::string()](const std::string& what) mutable {
     const std::string begin = what.substr(0, what.find(' '));
-    if (begin != last) fmt::print(stderr, "gate: {}\n", what.substr(0, what.find(':')));
+    if (begin != last) say("gate: " + what.substr(0, what.find(':')));
     last = begin;
   };
 }
@@ -63,7 +64,7 @@ int check(Flags& f) {
   f.gate.progress = shown_by(progress);
   const GateResult r = run_layers(f.gate);
   progress.clear();
-  fmt::print("{}", format_terminal(r, f.all));
+  fmt::print("{}", printable(format_terminal(r, f.all)));
   write(f.junit, format_junit(r));
   write(f.markdown, format_markdown(r));
   const bool timed = r.time && !r.time->kernels.empty() && !r.time->kernels[0].processes.empty();
@@ -254,7 +255,7 @@ int main(int argc, char** argv) {
   try {
     return tauext::gate::main(argc, argv);
   } catch (const std::exception& e) {  // of a child of this program, which has no flags
-    fmt::print(stderr, "tauext-gate {}: {}\n", argc > 1 ? argv[1] : "", e.what());
+    tauext::say(fmt::format("tauext-gate {}: {}", argc > 1 ? argv[1] : "", e.what()));
     return tauext::kCouldNotRun;
   }
 }

@@ -16,9 +16,9 @@
 
 #include "bench/score/metric_list.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/input_file.h"
 #include "regression/accuracy/accuracy_layer.h"
 #include "regression/counts/instructions.h"
-#include "regression/host/files.h"
 
 namespace tauext::gate {
 namespace {
@@ -38,7 +38,8 @@ void require_one_line(const std::string& what, const std::string& text) {
 class Files {
  public:
   void add(const std::string& path, const std::string& text) {
-    if (fs::exists(path) && read_file(path) == text) return;
+    if (fs::exists(path) && read_whole(path) == text) return;
+    release_input(path);  // it is made of what it was
     files_.push_back(std::make_unique<AtomicFile>(path));
     files_.back()->write(text);
     names_.push_back(path);
@@ -125,7 +126,7 @@ Changes update_golden(const UpdateOptions& o, Files& files) {
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
       (bad ? changes.worse : changes.other) += line;
     }
-    if (!o.entries.empty()) text = merged(read_file(path), text, o.entries);
+    if (!o.entries.empty()) text = merged(read_whole(path), text, o.entries);
   }
   if (!fs::exists(path)) {
     for (const auto& [key, line] : head.lines) {
@@ -157,7 +158,7 @@ UpdateResult update_baselines(const UpdateOptions& o) {
     throw std::invalid_argument("nothing to update: no --head, no --bench");
   fs::create_directories(o.baselines);
   std::string log =
-      fs::exists(o.changelog) ? read_file(o.changelog) : "# Baselines\nEach line moved them.\n\n";
+      fs::exists(o.changelog) ? read_whole(o.changelog) : "# Baselines\nEach line moved them.\n\n";
   Files files;
   const Changes counts = o.head.empty() ? Changes() : update_counts(o, files);
   const Changes metrics = o.bench.empty() ? Changes() : update_golden(o, files);

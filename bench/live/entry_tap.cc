@@ -14,6 +14,7 @@
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/transport.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -90,7 +91,7 @@ EntryTap::EntryTap(const std::optional<std::string>& url, std::string folder)
   if (!url) return;
   outlet_ = std::make_unique<Outlet>(*url);
   if (outlet_->transport.good()) return;
-  fmt::print(stderr, "streaming is off: {}\n", outlet_->transport.trouble());
+  say("streaming is off: " + outlet_->transport.trouble());
   outlet_->told = true;
 }
 
@@ -120,7 +121,7 @@ void EntryTap::publish(const Entry& entry, const Score& score) {
     return;
   }
   if (std::exchange(outlet_->told, true)) return;
-  fmt::print(stderr, "\nsummaries to {} fail; the run goes on\n", outlet_->transport.url());
+  say(fmt::format("summaries to {} fail; the run goes on", outlet_->transport.url()));
 }
 
 bool EntryTap::heard() const {

@@ -75,7 +75,7 @@ std::vector<Stream> streams_of(const std::vector<std::string>& estimators,
 }
 
 LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
-                               const std::string& detector, const ThresholdSet& thresholds,
+                               const std::string& detector, const DetectorsOf& thresholds_of,
                                const Trace& trace, LiveStream* stream)
     : stream_(stream) {
   if (robot.dof() > kMaxJoints) {
@@ -84,7 +84,8 @@ LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string
   }
   refuse_twice("estimator", estimators);
   for (const std::string& e : estimators) {
-    const DetectorSettings settings{.thresholds = trained_for(thresholds, e, detector)};
+    const DetectorSettings settings{.thresholds =
+                                        thresholds_of ? thresholds_of(e) : DetectorThresholds()};
     pairs_.push_back(std::make_unique<Pair>());
     pairs_.back()->name = e;
     pairs_.back()->stepper = robot.stepper(e, detector, trace, settings);

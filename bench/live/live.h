@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,17 +32,20 @@ struct LiveFigures {
   double rmse() const noexcept;
 };
 
+/// What training says of the detector behind an estimator.
+using DetectorsOf = std::function<DetectorThresholds(const std::string& estimator)>;
+
 /// Runs estimators, each with the same kind of detector behind it, on one sample after the other,
 /// and pushes what they say into a stream. `take` neither waits, allocates nor makes a system call.
 class LiveEstimation {
  public:
   /// @param trace what an estimator that copies the truth copies; else it may be empty
-  /// @param thresholds of each estimator's detector
+  /// @param thresholds_of what training says of the detector behind an estimator, by name
   /// @param stream may be null
   /// @throws std::invalid_argument for unknown names, an estimator named twice, or more than 8
   /// joints
   LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
-                 const std::string& detector, const ThresholdSet& thresholds, const Trace& trace,
+                 const std::string& detector, const DetectorsOf& thresholds_of, const Trace& trace,
                  LiveStream* stream);
 
   /// All estimators, on a reading of the robot's number of joints.

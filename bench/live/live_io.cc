@@ -1,23 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/live/live_io.h"
 
+#include <chrono>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/trace/printable.h"
+
 namespace tauext::live {
+namespace {
+
+// [us] of a clock that never goes back
+std::int64_t microseconds() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
 
 Outlet::Outlet(const Options& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
   if (!o.stream) return;
   transport_ = std::make_shared<Transport>(o.url);
-  if (!transport_->good()) fmt::print(stderr, "streaming is off: {}\n", transport_->trouble());
+  if (!transport_->good()) say("streaming is off: " + transport_->trouble());
   stream_.emplace(transport_, streams_, rate);
 }
 
 void Outlet::report_failures() {
   if (!stream_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
   reported_ = true;
-  notice(fmt::format("messages to {} fail ({}); the run goes on", transport_->url(),
-                     trouble_with(transport_->url()).empty() ? "send error" : "no route"));
+  say(fmt::format("messages to {} fail ({}); the run goes on", transport_->url(),
+                  trouble_with(transport_->url()).empty() ? "send error" : "no route"));
 }
 
 StreamReport Outlet::finish(std::vector<summary_t> summaries) {
@@ -48,37 +62,55 @@ Inlet::Inlet(const Options& o, const Robot& robot, LiveEstimation& estimation, L
       robot_(robot),
       estimation_(estimation),
       report_(report),
-      listener_(o.url, Listener::expression(o.subscribe),
-                [this](std::string_view, std::int64_t, Bytes message) { take(message); }) {}
+      listener_(o.url, {o.subscribe, kSummaryChannel},
+                [this](std::string_view channel, Sender sender, Bytes message) {
+                  channel == channel_ ? take(sender, message) : take_summary(message);
+                }) {}
 
 bool Inlet::wait() {
   try {
     listener_.wait(50);
   } catch (const std::runtime_error& e) {
-    notice(e.what());
+    say(e.what());
     report_.failed = true;
   }
   report_.arrivals = arrivals_.counts();
+  report_.refused = listener_.refused();
+  if (const std::string trouble = arrivals_.trouble(); !trouble.empty()) {
+    say(fmt::format("{}: {}", channel_, trouble));
+  }
   return !report_.failed;
 }
 
-void Inlet::take(Bytes message) {
+void Inlet::take(Sender sender, Bytes message) {
   Reading reading;
   const Reject reject = read(message, type_, reading);
   if (reject != Reject::kNone || reading.n != robot_.dof()) {
-    if (report_.rejected++ == 0) explain(reject, reading.n);
+    if (!explained_) explain(reject, reading.n);
+    explained_ = true;
+    arrivals_.reject(stamp_of(message));
     return;
   }
-  const Arrival arrival = arrivals_.take(reading);
-  if (arrival == Arrival::kRestart) estimation_.reset();
+  const Arrival arrival = arrivals_.take(reading, sender, microseconds());
+  if (arrival == Arrival::kRestart) {
+    say(fmt::format("{}: the sender has started anew; so do the estimators", channel_));
+    estimation_.reset();
+  }
   if (arrival == Arrival::kNext || arrival == Arrival::kRestart) estimation_.take(reading);
+}
+
+void Inlet::take_summary(Bytes message) {
+  summary_t s{};
+  if (!channel_.starts_with(kEstimateChannel) || decode(message, s) != Reject::kNone) return;
+  const std::string estimator = channel_.substr(std::strlen(kEstimateChannel));
+  if (const auto sent = messages_of(s, estimator)) arrivals_.end(*sent);
 }
 
 void Inlet::explain(Reject reject, int joints) const {
   const std::string why = reject == Reject::kNone ? fmt::format("of {} joints, and {} has {}",
                                                                 joints, robot_.name(), robot_.dof())
                                                   : describe(reject);
-  notice(fmt::format("{}: a message {}; the first that was rejected", channel_, why));
+  say(fmt::format("{}: a message {}; the first that was rejected", channel_, why));
 }
 
 }  // namespace tauext::live

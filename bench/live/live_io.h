@@ -14,8 +14,8 @@
 
 #include "bench/live/live_report.h"
 #include "bench/live/options.h"
-#include "lcmtypes/arrivals.h"
 #include "lcmtypes/listener.h"
+#include "lcmtypes/receive/arrivals.h"
 
 namespace tauext::live {
 
@@ -55,7 +55,8 @@ class Inlet {
   bool wait();
 
  private:
-  void take(Bytes message);
+  void take(Sender sender, Bytes message);
+  void take_summary(Bytes message);
   void explain(Reject reject, int joints) const;
 
   std::string channel_;
@@ -64,6 +65,7 @@ class Inlet {
   LiveEstimation& estimation_;
   LiveReport& report_;
   Arrivals arrivals_;
+  bool explained_ = false;  // the first message that was rejected
   Listener listener_;
 };
 

@@ -13,6 +13,7 @@
 #include "bench/live/stream_table.h"
 #include "bench/program/program.h"
 #include "lcmtypes/listener.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext::live {
 namespace {
@@ -21,19 +22,19 @@ namespace {
 // the end
 class Screen {
  public:
-  explicit Screen(const std::string& url) : url_(url) {}
+  explicit Screen(const Listener& listener) : listener_(listener) {}
 
   void show(StreamTable& table, double seconds, std::int64_t now) {
     take_events(table);
     if (!terminal_ || seconds - shown_ < kEvery) return;
     shown_ = seconds;
-    fmt::print("\033[H\033[2J{}  {:.0f} s\n\n{}\n{}\n{}\n", url_, seconds, table.format(now),
-               table.totals(), fmt::join(events_, "\n"));
+    fmt::print("\033[H\033[2J{}  {:.0f} s\n\n{}\n{}\n{}\n", listener_.url(), seconds,
+               table.format(now), table.totals(listener_.refused()), fmt::join(events_, "\n"));
     std::fflush(stdout);
   }
   void close(StreamTable& table, std::int64_t now) {
     take_events(table);
-    fmt::print("{}{}", terminal_ ? "\n" : table.format(now), table.totals());
+    fmt::print("{}{}", terminal_ ? "\n" : table.format(now), table.totals(listener_.refused()));
   }
 
  private:
@@ -49,7 +50,7 @@ class Screen {
     if (events_.size() > kShown) events_.erase(events_.begin(), events_.end() - kShown);
   }
 
-  std::string url_;
+  const Listener& listener_;
   bool terminal_ = is_terminal(STDOUT_FILENO);
   double shown_ = 0;  // [s]
   std::vector<std::string> events_;
@@ -61,12 +62,12 @@ int run_listen(const Options& o) {
   const auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return static_cast<std::int64_t>(seconds_since(begin) * 1e6); };
   StreamTable table;
-  Listener listener(o.url, "TAUEXT_.*", [&](std::string_view channel, std::int64_t, Bytes m) {
-    table.take(channel, now(), m);
+  Listener listener(o.url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
+    table.take(channel, sender, now(), m);
   });
   const Interrupt interrupt;
-  fmt::print(stderr, "listening to TAUEXT_* at {}; Ctrl-C ends\n", listener.url());
-  Screen screen(listener.url());
+  say(fmt::format("listening to TAUEXT_* at {}; Ctrl-C ends", listener.url()));
+  Screen screen(listener);
   bool broken = false, at_end = false;
   while (!broken && !over(interrupt, begin, o.pace.duration)) {
     try {
@@ -74,12 +75,12 @@ int run_listen(const Options& o) {
     } catch (const std::runtime_error& e) {
       broken = true;
       at_end = listener.url().starts_with("file://");  // a log is over
-      if (!at_end) fmt::print(stderr, "{}\n", e.what());
+      if (!at_end) say(e.what());
     }
     screen.show(table, seconds_since(begin), now());
   }
   screen.close(table, now());
-  return table.good() > 0 && (!broken || at_end) ? kGood : kAnswerIsNo;
+  return table.account().used > 0 && (!broken || at_end) ? kGood : kAnswerIsNo;
 }
 
 }  // namespace tauext::live

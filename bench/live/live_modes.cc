@@ -21,6 +21,7 @@
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext::live {
 namespace {
@@ -34,24 +35,26 @@ const Robot& checked_robot(const Options& o) {
   return r;
 }
 
-ThresholdSet thresholds_of(const Options& o) {
-  if (o.thresholds.empty()) return {};
-  return read_thresholds(o.thresholds).of(o.robot, o.sensors.velocity_noise);
+DetectorsOf thresholds_of(const Options& o) {
+  const Thresholds all = o.thresholds.empty() ? Thresholds() : read_thresholds(o.thresholds);
+  return [&o, all](const std::string& estimator) {
+    return trained_for(all, o.robot, o.sensors.velocity_noise, estimator, o.detector);
+  };
 }
 
 // the samples to play: simulated with everything that reacts in it, or read
-Trace recorded_trace(const Options& o, const Robot& r, const ThresholdSet& thresholds) {
+RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
   if (!o.from.empty()) return read_log_or_csv(o.from, o.channel);
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {
-    supervisor = r.supervisor(o.estimators[0], o.detector,
-                              {.thresholds = trained_for(thresholds, o.estimators[0], o.detector)});
+    supervisor =
+        r.supervisor(o.estimators[0], o.detector, {.thresholds = thresholds(o.estimators[0])});
   }
-  fmt::print(stderr, "simulating {} s of {}\n", s.duration, s.name);
-  return measure(
-      simulate(load_for(r.name(), s, o.model_error), s, o.recording, o.sensors, supervisor),
-      o.sensors);
+  say(fmt::format("simulating {} s of {}", s.duration, s.name));
+  return {
+      measure(simulate(load_for(r.name(), s, o.model_error), s, o.recording, o.sensors, supervisor),
+              o.sensors)};
 }
 
 std::string title_of(const Options& o) {
@@ -64,10 +67,16 @@ std::string title_of(const Options& o) {
 int finish(const Options& o, Outlet& outlet, const LiveEstimation& e, LiveReport report) {
   report.title = title_of(o);
   report.stream = outlet.finish(summaries_of(report, e, o.detector));
-  fmt::print("{}", format(report, e));
+  fmt::print("{}", printable(format(report, e)));
   if (report.stream.hung) {  // its thread is still in LCM
     std::fflush(stdout);
     std::_Exit(kAnswerIsNo);
+  }
+  for (int i = 0; i < e.size(); ++i) {
+    if (2 * e.figures(i).unusable <= e.samples()) continue;
+    say(e.name(i) +
+        ": most samples could not be used. Is t in s, q in rad, qd in rad/s, tau in N m?");
+    report.failed = true;
   }
   const bool silent = report.stream.asked && report.stream.counts.published == 0;
   return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
@@ -109,13 +118,14 @@ class Loop {
 
 int run_recorded(const Options& o) {
   const Robot& r = checked_robot(o);
-  const ThresholdSet thresholds = thresholds_of(o);
-  const Trace trace = recorded_trace(o, r, thresholds);
+  const DetectorsOf thresholds = thresholds_of(o);
+  const RecordedLog log = recorded_log(o, r, thresholds);
+  const Trace& trace = log.trace;
   const std::vector<Reading> readings = readings_of(trace);
   Outlet outlet(o, o.rate / o.pace.speed);  // a rate of the clock's seconds
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream());
   const Interrupt interrupt;
-  fmt::print(stderr, "playing {}{}; Ctrl-C ends\n", title_of(o), outlet.where());
+  say(fmt::format("playing {}{}; Ctrl-C ends", title_of(o), outlet.where()));
   const auto begin = Clock::now();
   StatusLine status;
   Loop loop(readings, o.pace, estimation);
@@ -127,6 +137,7 @@ int run_recorded(const Options& o) {
   loop.stop();
   status.clear();
   LiveReport report;
+  report.failed = !log.usable();
   report.seconds = seconds_since(begin);
   report.late = &loop.late();
   report.period = period_of(readings, o.pace.speed);
@@ -142,8 +153,8 @@ int run_subscribed(const Options& o) {
   report.subscribed = true;
   Inlet inlet(o, r, estimation, report);
   const Interrupt interrupt;
-  fmt::print(stderr, "listening to {} at {}{}; Ctrl-C ends\n", o.subscribe, inlet.url(),
-             o.stream ? ", streaming" : "");
+  say(fmt::format("listening to {} at {}{}; Ctrl-C ends", o.subscribe, inlet.url(),
+                  o.stream ? ", streaming" : ""));
   const auto begin = Clock::now();
   StatusLine status;
   while (!over(interrupt, begin, o.pace.duration) && inlet.wait()) {
@@ -152,12 +163,8 @@ int run_subscribed(const Options& o) {
   }
   status.clear();
   report.seconds = seconds_since(begin);
-  if (report.arrivals.late > report.arrivals.used / 10) {
-    notice(fmt::format("{} messages on {} were late: are there two senders?", report.arrivals.late,
-                       o.subscribe));
-  }
-  if (report.arrivals.used == 0 && report.rejected == 0) {
-    notice(fmt::format("nothing came on {} at {}", o.subscribe, inlet.url()));
+  if (report.arrivals.sent() == 0) {
+    say(fmt::format("nothing came on {} at {}", o.subscribe, inlet.url()));
   }
   return finish(o, outlet, estimation, report);
 }

@@ -31,10 +31,9 @@ std::string format_loop(const LiveReport& r) {
 }
 
 std::string format_arrivals(const LiveReport& r) {
-  const Arrivals::Counts& a = r.arrivals;
-  return fmt::format(
-      "input      {} used, {} lost, {} late, {} repeated, {} rejected; {} restarts of the sender\n",
-      a.used, a.lost, a.late, a.repeated, r.rejected, a.restarts);
+  const std::string refused = format(r.refused);
+  return fmt::format("input      {}; {} restarts of the sender\n{}", format(r.arrivals, r.refused),
+                     r.arrivals.restarts, refused.empty() ? "" : "refused    " + refused + "\n");
 }
 
 std::string number_or_dash(double value, int decimals = 3) {
@@ -47,10 +46,6 @@ std::string step_us(const Histogram& h, double share) {
 }
 
 }  // namespace
-
-void notice(const std::string& line) {
-  fmt::print(stderr, "{}{}\n", is_terminal(STDERR_FILENO) ? "\r\033[K" : "", line);
-}
 
 std::string format(const LiveReport& r, const LiveEstimation& e) {
   std::string out = fmt::format("{}: {} samples in {:.1f} s\n", r.title, e.samples(), r.seconds);
@@ -88,7 +83,7 @@ std::vector<summary_t> summaries_of(const LiveReport& r, const LiveEstimation& e
     m.rmse_Nm = f.compared > 0 ? f.rmse() : -1;
     m.step_ns = f.step_ns.quantile(0.5);
     m.samples = e.samples();
-    m.rejected = r.rejected;
+    m.rejected = r.arrivals.rejected;
     m.lost = r.arrivals.lost;
     const auto add = [&m](const std::string& key, double value) {
       m.key.emplace_back(key);

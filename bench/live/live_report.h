@@ -9,7 +9,7 @@
 
 #include "bench/live/live.h"
 #include "bench/program/program.h"
-#include "lcmtypes/arrivals.h"
+#include "lcmtypes/receive/arrivals.h"
 
 namespace tauext::live {
 
@@ -30,12 +30,9 @@ struct LiveReport {
   const Histogram* late = nullptr;  ///< of the cycles, if it was played
   double period = 1e6;              ///< [ns] of them
   Arrivals::Counts arrivals;        ///< if it was subscribed
-  std::int64_t rejected = 0;        ///< messages on the channel that were no good
+  GroupSocket::Counts refused;      ///< datagrams that did not get as far as that
   StreamReport stream;
 };
-
-/// Says a line on standard error, beside the line that a StatusLine has there.
-void notice(const std::string& line);
 
 /// The report as a text of some lines.
 std::string format(const LiveReport& report, const LiveEstimation& estimation);

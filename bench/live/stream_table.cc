@@ -2,10 +2,14 @@
 #include "bench/live/stream_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
+#include "lcmtypes/emitter.h"
+#include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext::live {
@@ -23,93 +27,104 @@ const char* status_name(std::int8_t status) {
   return status >= 0 && status < 5 ? kNames[status] : "?";
 }
 
-// a text from outside may hold anything; a terminal should not obey it
-std::string printable(std::string_view text) {
-  std::string out;
-  for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out;
-}
-
 }  // namespace
 
 template <class Message>
-bool StreamTable::decoded(Bytes message, Message& m) {
+bool StreamTable::decoded(Bytes message, const std::string& channel, Message& m) {
   const Reject reject = decode(message, m);
-  if (reject == Reject::kNone) {
-    ++good_;
-  } else {
-    ++rejects_[reject];
-  }
-  return reject == Reject::kNone;
+  if (reject == Reject::kNone) return true;
+  ++rejects_[reject];
+  const auto it = channels_.find(channel);
+  if (it != channels_.end()) it->second.sequence.excuse(stamp_of(message).seq);
+  return false;
 }
 
-void StreamTable::take(std::string_view channel, std::int64_t arrived, Bytes message) {
+void StreamTable::take(std::string_view channel, Sender sender, std::int64_t arrived,
+                       Bytes message) {
   const std::int64_t hash = hash_of(message);
+  Envelope envelope{printable_name(channel), sender, arrived};
   if (hash == detection_t::getHash()) {
-    if (detection_t d; decoded(message, d)) take_detection(d, arrived);
+    if (detection_t d; decoded(message, envelope.name, d)) take_detection(d, envelope);
   } else if (hash == summary_t::getHash()) {
-    if (summary_t s; decoded(message, s)) take_summary(s);
+    if (summary_t s; decoded(message, envelope.name, s)) take_summary(s);
   } else if (hash == sample_t::getHash()) {
     sample_t s{};
-    if (!decoded(message, s)) return;
-    Channel& c = of(channels_, printable(channel));
-    c.newest.n = s.n;
-    c.newest.t = s.t;
-    c.newest.reference = s.reference;
-    std::copy_n(s.tau_ext_true, kMaxJoints, c.newest.tau_ext_true);
-    count(c, s.seq, arrived);
+    if (!decoded(message, envelope.name, s)) return;
+    Channel* const c = accept(channels_, envelope, s.seq);
+    if (c == nullptr) return;
+    c->newest.n = s.n;
+    c->newest.t = s.t;
+    c->newest.reference = s.reference;
+    std::copy_n(s.tau_ext_true, kMaxJoints, c->newest.tau_ext_true);
   } else {
     estimate_t e{};
-    if (!decoded(message, e)) return;
-    Channel& c = of(channels_, printable(channel));
-    c.newest = e;
-    c.estimate = true;
-    count(c, e.seq, arrived);
+    if (!decoded(message, envelope.name, e)) return;
+    Channel* const c = accept(channels_, envelope, e.seq);
+    if (c == nullptr) return;
+    c->newest = e;
+    c->estimate = true;
   }
 }
 
-StreamTable::Channel& StreamTable::of(std::map<std::string, Channel, std::less<>>& all,
-                                      const std::string& name) {
+// the channel, if the message is the newest of its sender
+StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std::int64_t seq) {
   constexpr std::size_t kMost = 100;  // names come from outside
-  const auto it = all.find(name);
-  if (it != all.end()) return it->second;
-  return all.size() < kMost ? all[name] : others_;
+  if (all.size() >= kMost && !all.contains(e.name)) {
+    ++beyond_;
+    return nullptr;
+  }
+  Channel& c = all[e.name];
+  const Senders::Whose whose = c.senders.take(e.sender, e.arrived);
+  Order order = Order::kRepeated;
+  if (whose == Senders::Whose::kOther) {
+    ++c.others;
+  } else if (whose == Senders::Whose::kNew) {
+    c.sequence.restart(seq);
+    order = Order::kRestart;
+  } else {
+    const std::int64_t foreign = c.sequence.counts().foreign;
+    order = c.sequence.take(seq);
+    const bool in_turn = order == Order::kNext || order == Order::kRestart;
+    if (!in_turn || c.sequence.counts().foreign > foreign) c.senders.out_of_turn(e.arrived);
+  }
+  if (order == Order::kRestart) events_.push_back(e.name + ": the sender has started anew");
+  if (const std::string trouble = c.senders.trouble(); !trouble.empty()) {
+    events_.push_back(e.name + ": " + trouble);
+  }
+  if (whose == Senders::Whose::kOther) return nullptr;
+  c.arrivals.push_back(e.arrived);
+  while (c.arrivals.front() <= e.arrived - kSecond) c.arrivals.pop_front();
+  return order == Order::kNext || order == Order::kRestart ? &c : nullptr;
 }
 
-void StreamTable::count(Channel& c, std::int64_t seq, std::int64_t arrived) {
-  c.sequence.take(seq);
-  c.arrivals.push_back(arrived);
-  while (c.arrivals.front() <= arrived - kSecond) c.arrivals.pop_front();
-}
-
-template <class Count>
-std::int64_t StreamTable::sum(Count&& count) const {
-  std::int64_t sum = 0;
-  for (const auto* all : {&channels_, &pairs_}) {
-    for (const auto& [name, c] : *all) sum += count(c.sequence);
+Account StreamTable::account() const {
+  Account sum{.used = summaries_, .rejected = beyond_};
+  for (const auto& [reason, count] : rejects_) sum.rejected += count;
+  for (const Channels* all : {&channels_, &pairs_}) {
+    for (const auto& [name, c] : *all) {
+      const Sequence::Counts& n = c.sequence.counts();
+      sum.used += n.next;
+      sum.late += n.late;
+      sum.repeated += n.repeated;
+      sum.rejected += n.foreign + c.others;
+      sum.lost += n.lost;
+    }
   }
   return sum;
 }
 
-std::int64_t StreamTable::lost() const {
-  return sum([](const Sequence& s) { return s.lost(); });
-}
-
-std::int64_t StreamTable::strays() const {
-  return sum([](const Sequence& s) { return s.strays(); });
-}
-
-void StreamTable::take_detection(const detection_t& d, std::int64_t arrived) {
-  const std::string pair = printable(d.estimator) + "+" + printable(d.detector);
-  count(of(pairs_, pair), d.seq, arrived);
-  if (d.mark == 0) return;
+void StreamTable::take_detection(const detection_t& d, const Envelope& e) {
+  const std::string pair = printable_name(d.estimator) + "+" + printable_name(d.detector);
+  if (accept(pairs_, {pair, e.sender, e.arrived}, d.seq) == nullptr || d.mark == 0) return;
   events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
                                 pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
 }
 
 void StreamTable::take_summary(const summary_t& s) {
-  std::string line = printable(s.entry);
-  if (!s.error.empty()) line += "  FAILED: " + printable(s.error);
+  ++summaries_;
+  take_end(s);
+  std::string line = printable_name(s.entry);
+  if (!s.error.empty()) line += "  FAILED: " + printable_name(s.error);
   if (s.rmse_Nm >= 0) line += fmt::format("  rmse {:.4g} N m", s.rmse_Nm);
   if (s.step_ns >= 0) line += fmt::format("  step {:.4g} ns", s.step_ns);
   if (s.published > 0)
@@ -117,14 +132,22 @@ void StreamTable::take_summary(const summary_t& s) {
   events_.push_back(line);
 }
 
-std::vector<std::string> StreamTable::events() {
-  return std::exchange(events_, {});
+// the last messages may have been lost, too
+void StreamTable::take_end(const summary_t& s) {
+  for (auto& [name, c] : channels_) {
+    if (!name.starts_with(kEstimateChannel)) continue;
+    const std::string estimator = name.substr(std::strlen(kEstimateChannel));
+    if (const auto sent = messages_of(s, estimator)) c.sequence.end(*sent);
+  }
+  for (auto& [pair, c] : pairs_) {
+    if (!s.entry.ends_with("/" + pair)) continue;
+    const auto sent = messages_of(s, pair.substr(0, pair.find('+')));
+    if (sent) c.sequence.end(*sent);
+  }
 }
 
-std::int64_t StreamTable::rejected() const {
-  std::int64_t sum = 0;
-  for (const auto& [reason, count] : rejects_) sum += count;
-  return sum;
+std::vector<std::string> StreamTable::events() {
+  return std::exchange(events_, {});
 }
 
 std::string StreamTable::format(std::int64_t now) const {
@@ -147,7 +170,7 @@ std::string StreamTable::format(std::int64_t now) const {
       const bool first = j == 0,
                  says = first && c.estimate;  // what holds for all joints stands once
       table.add({first ? name : "", first ? fmt::to_string(recent) : "",
-                 first ? fmt::to_string(c.sequence.lost()) : "", fmt::to_string(j + 1),
+                 first ? fmt::to_string(c.sequence.counts().lost) : "", fmt::to_string(j + 1),
                  torque(c.estimate, e.tau_ext_hat[j]), torque(c.estimate, e.tau_ext_hat_min[j]),
                  torque(c.estimate, e.tau_ext_hat_max[j]),
                  torque(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
@@ -157,13 +180,22 @@ std::string StreamTable::format(std::int64_t now) const {
   return table.format();
 }
 
-std::string StreamTable::totals() const {
-  std::string out = fmt::format("{} messages, {} lost, {} rejected", good_, lost(), rejected());
-  for (const auto& [reason, count] : rejects_)
-    out += fmt::format("; {} {}", count, describe(reason));
-  if (strays() > 0)
-    out += fmt::format("; {} out of turn: copies, or two senders on one channel", strays());
-  return out + "\n";
+std::string StreamTable::totals(const GroupSocket::Counts& refused) const {
+  const Account all = account();
+  std::string out = tauext::format(all, refused) + "\n";
+  std::int64_t foreign = 0;
+  for (const Channels* channels : {&channels_, &pairs_}) {
+    for (const auto& [name, c] : *channels) foreign += c.sequence.counts().foreign + c.others;
+  }
+  std::vector<std::string> why;
+  for (const auto& [reason, count] : rejects_) {
+    why.push_back(fmt::format("{} {}", count, describe(reason)));
+  }
+  if (foreign > 0) why.push_back(fmt::format("{} of a second sender", foreign));
+  if (beyond_ > 0) why.push_back(fmt::format("{} of more channels than a table holds", beyond_));
+  if (!why.empty()) out += fmt::format("rejected: {}\n", fmt::join(why, ", "));
+  if (const std::string r = tauext::format(refused); !r.empty()) out += "refused: " + r + "\n";
+  return out;
 }
 
 }  // namespace tauext::live

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "lcmtypes/reading.h"
-#include "lcmtypes/sequence.h"
+#include "lcmtypes/receive/account.h"
+#include "lcmtypes/receive/senders.h"
 
 namespace tauext::live {
 
@@ -19,45 +20,49 @@ namespace tauext::live {
 class StreamTable {
  public:
   /// @param arrived [us] on a clock that never goes back
-  void take(std::string_view channel, std::int64_t arrived, Bytes message);
+  void take(std::string_view channel, Sender sender, std::int64_t arrived, Bytes message);
 
   /// A row for each joint of each channel; rates are those of the second before `now` [us, the same
   /// clock].
   std::string format(std::int64_t now) const;
-  /// "good, lost, rejected" of all channels, and why.
-  std::string totals() const;
+  /// What became of each message of all channels, and why.
+  std::string totals(const GroupSocket::Counts& refused) const;
 
-  /// Lines that are events: marks and summaries that came since the last call.
+  /// Lines that are events: marks, summaries, restarts and second senders since the last call.
   std::vector<std::string> events();
 
-  std::int64_t good() const { return good_; }
-  std::int64_t lost() const;
-  std::int64_t strays() const;  ///< copies, or another sender's on the same channel
-  std::int64_t rejected() const;
+  Account account() const;  ///< of all channels
 
  private:
   struct Channel {
     Sequence sequence;
+    Senders senders;
+    std::int64_t others = 0;            // messages of a second sender
     std::deque<std::int64_t> arrivals;  // [us] of the last second
     estimate_t newest{};                // a sample_t's fields, too
     bool estimate = false;              // else samples alone
   };
 
-  template <class Count>
-  std::int64_t sum(Count&& count) const;
-  template <class Message>
-  bool decoded(Bytes message, Message& m);
-  Channel& of(std::map<std::string, Channel, std::less<>>& all, const std::string& name);
-  static void count(Channel& c, std::int64_t seq, std::int64_t arrived);
-  void take_detection(const detection_t& d, std::int64_t arrived);
-  void take_summary(const summary_t& s);
+  using Channels = std::map<std::string, Channel, std::less<>>;
+  struct Envelope {
+    std::string name;  // of the channel, or of the pair
+    Sender sender;
+    std::int64_t arrived;  // [us]
+  };
 
-  std::map<std::string, Channel, std::less<>> channels_;
-  std::map<std::string, Channel, std::less<>> pairs_;  // detections, by estimator and detector
-  Channel others_;                                     // of more channels than a table can hold
+  template <class Message>
+  bool decoded(Bytes message, const std::string& channel, Message& m);
+  Channel* accept(Channels& all, const Envelope& e, std::int64_t seq);
+  void take_detection(const detection_t& d, const Envelope& e);
+  void take_summary(const summary_t& s);
+  void take_end(const summary_t& s);
+
+  Channels channels_;
+  Channels pairs_;  // detections, by estimator and detector
   std::map<Reject, std::int64_t> rejects_;
   std::vector<std::string> events_;
-  std::int64_t good_ = 0;
+  std::int64_t summaries_ = 0;
+  std::int64_t beyond_ = 0;  // messages of more channels than a table can hold
 };
 
 }  // namespace tauext::live

@@ -10,8 +10,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "lcmtypes/arrivals.h"
 #include "lcmtypes/emitter.h"
+#include "lcmtypes/receive/arrivals.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext {
 namespace {
@@ -64,9 +65,11 @@ Eigen::VectorXd vector(const Joints& values, int n) {
 
 Trace trace_of(const std::vector<Reading>& all) {
   const int n = all[0].n, size = static_cast<int>(all.size());
-  const bool truth = std::all_of(all.begin(), all.end(), [](const Reading& r) {
-    return r.reference == ReferenceKind::kTruth;
-  });
+  const auto all_have = [&](ReferenceKind kind) {
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Reading& r) { return r.reference == kind; });
+  };
+  const bool truth = all_have(ReferenceKind::kTruth), sender = all_have(ReferenceKind::kSender);
   constexpr double kWallClock = 1e8;  // [s]
   const double origin = all[0].t > kWallClock ? all[0].t : 0;
   Trace trace;
@@ -74,6 +77,7 @@ Trace trace_of(const std::vector<Reading>& all) {
   trace.qd.resize(n, size);
   trace.tau.resize(n, size);
   trace.tau_ext.resize(n, truth ? size : 0);
+  trace.tau_ext_of_driver.resize(n, sender ? size : 0);
   for (int k = 0; k < size; ++k) {
     const Reading& r = all[k];
     trace.t.push_back(r.t - origin);
@@ -81,6 +85,7 @@ Trace trace_of(const std::vector<Reading>& all) {
     trace.qd.col(k) = vector(r.qd, n);
     trace.tau.col(k) = vector(r.tau, n);
     if (truth) trace.tau_ext.col(k) = vector(r.tau_ext, n);
+    if (sender) trace.tau_ext_of_driver.col(k) = vector(r.tau_ext, n);
     if (truth) trace.contact.push_back(r.contact);
   }
   return trace;
@@ -102,7 +107,7 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
   Arrivals arrivals;
   std::vector<Reading> used, late;
   for (const Reading& r : recorded) {
-    const Arrival arrival = arrivals.take(r);
+    const Arrival arrival = arrivals.take(r, 0, r.utime);
     if (arrival == Arrival::kNext) {
       used.push_back(r);
       late.clear();
@@ -121,6 +126,11 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
     found.out_of_order -= static_cast<std::int64_t>(late.size());
     used.insert(used.end(), late.begin(), late.end());
     used.push_back(r);
+  }
+  if (arrivals.counts().two_arms) {
+    throw std::runtime_error(fmt::format(
+        "{}: on channel {} positions jump to and fro: two arms share it; give each a channel", path,
+        found.channel));
   }
   found.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
   found.lost = arrivals.counts().lost;
@@ -152,6 +162,9 @@ std::vector<Reading> readings_of(const Trace& trace) {
     if (trace.has_truth()) {
       r.reference = ReferenceKind::kTruth;
       Eigen::VectorXd::Map(r.tau_ext.data(), n) = trace.tau_ext.col(k);
+    } else if (trace.tau_ext_of_driver.cols() > 0) {
+      r.reference = ReferenceKind::kSender;
+      Eigen::VectorXd::Map(r.tau_ext.data(), n) = trace.tau_ext_of_driver.col(k);
     }
     if (!trace.contact.empty()) r.contact = trace.contact[k] != 0;
   }
@@ -178,6 +191,7 @@ std::string LogReport::in_words() const {
 Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report) {
   LogReport unused;
   LogReport& found = report == nullptr ? unused : *report;
+  claim_input(path);
   found.channel = choose_channel(path, channel);
   std::vector<Reading> recorded;
   found.faults = read_log(path, [&](const LogEvent& e) {

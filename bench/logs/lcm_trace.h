@@ -16,7 +16,8 @@ namespace tauext {
 /// [us] of a time [s].
 std::int64_t utime_of(double t);
 
-/// The samples of a trace as they travel; its truth, if it has one, as their reference. Times below
+/// The samples of a trace as they travel; its truth, if it has one, or else the driver's own
+/// estimate as their reference. Times below
 /// 0, which messages do not have, are shifted so that the first is 0.
 /// @throws std::invalid_argument for an arm of more than 8 joints
 std::vector<Reading> readings_of(const Trace& trace);

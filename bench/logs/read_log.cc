@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+#include <utility>
+
 #include "bench/logs/lcm_trace.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -11,33 +15,41 @@ namespace {
 // what read_csv left out, if anything
 void report_skipped(const SkippedRows& s, const std::string& log) {
   if (s.total() == 0) return;
-  fmt::print(
-      stderr,
-      "{}: skipped {} rows: {} with a wrong number of fields, {} not a number, {} not finite, "
-      "{} out of time order\n",
-      log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order);
-  for (const std::string& line : s.first) fmt::print(stderr, "  {}\n", line);
-  if (s.total() > static_cast<int>(s.first.size())) fmt::print(stderr, "  ...\n");
+  say(
+      fmt::format("{}: skipped {} rows: {} with a wrong number of fields, {} not a number, {} not "
+                  "finite, {} out of time order",
+                  log, s.total(), s.wrong_field_count, s.not_a_number, s.not_finite, s.time_order));
+  for (const std::string& line : s.first) say("  " + line);
+  if (s.total() > static_cast<int>(s.first.size())) say("  ...");
+}
+
+RecordedLog read_either(const std::string& path, const std::string& channel) {
+  if (is_lcm_log(path)) {
+    LogReport report;
+    Trace trace = read_lcm(path, channel, &report);
+    if (const std::string faults = report.in_words(); !faults.empty()) {
+      say(fmt::format("{}: channel {}: {}", path, report.channel, faults));
+    }
+    return {std::move(trace), report.rejected + report.out_of_order};
+  }
+  if (!channel.empty()) {
+    throw std::invalid_argument(fmt::format("{}: CSV has no channel '{}'", path, channel));
+  }
+  SkippedRows skipped;
+  Trace trace = read_csv(path, &skipped);
+  report_skipped(skipped, path);
+  return {std::move(trace), skipped.total()};
 }
 
 }  // namespace
 
-Trace read_log_or_csv(const std::string& path, const std::string& channel) {
-  if (!is_lcm_log(path)) {
-    if (!channel.empty()) {
-      throw std::invalid_argument(fmt::format("{}: CSV has no channel '{}'", path, channel));
-    }
-    SkippedRows skipped;
-    Trace trace = read_csv(path, &skipped);
-    report_skipped(skipped, path);
-    return trace;
+RecordedLog read_log_or_csv(const std::string& path, const std::string& channel) {
+  RecordedLog log = read_either(path, channel);
+  if (!log.usable()) {
+    say(fmt::format("{}: most of it could not be used: {} skipped, {} used", path, log.skipped,
+                    log.trace.size()));
   }
-  LogReport report;
-  Trace trace = read_lcm(path, channel, &report);
-  if (const std::string faults = report.in_words(); !faults.empty()) {
-    fmt::print(stderr, "{}: channel {}: {}\n", path, report.channel, faults);
-  }
-  return trace;
+  return log;
 }
 
 }  // namespace tauext

@@ -2,21 +2,38 @@
 #include "bench/program/program.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
+
 namespace tauext {
 
 namespace {
+
+// a program that is ended leaves no file behind that has a name, and ends as it would have
+void remove_unfinished_files_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
+    action.sa_handler = [](int which) {
+      remove_unfinished_files();
+      ::signal(which, SIG_DFL);
+      ::raise(which);
+    };
+    ::sigaction(signal, &action, nullptr);
+  }
+}
 
 // false if help or the version was asked for, which is then printed
 bool parse(CLI::App& app, int argc, char** argv) {
@@ -34,6 +51,7 @@ bool parse(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  remove_unfinished_files_on_signals();
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), TAUEXT_VERSION));
   try {
     const int code = parse(app, argc, argv) ? body() : kGood;
@@ -42,10 +60,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     }
     return code;
   } catch (const CLI::ParseError& e) {
-    fmt::print(stderr, "{0}: {1}\n{0}: see {0} --help\n", app.get_name(), e.what());
+    say(fmt::format("{0}: {1}\n{0}: see {0} --help", app.get_name(), e.what()));
     return kCouldNotRun;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
+    say(fmt::format("{}: {}", app.get_name(), e.what()));
     return kCouldNotRun;
   }
 }
@@ -83,7 +101,7 @@ void Progress::show(double share) {
 
 void Progress::show(const std::string& line) {
   if (!terminal_) return;
-  fmt::print(stderr, "\r\033[K{}", line);
+  fmt::print(stderr, "\r\033[K{}", printable_name(line, line.size()));
   std::fflush(stderr);
   dirty_ = true;
 }
@@ -95,13 +113,6 @@ void Progress::clear() {
 std::function<void(double)> Progress::callback() {
   if (!terminal_) return nullptr;
   return [this](double share) { show(share); };
-}
-
-void refuse_same_file(const std::string& log, const std::string& out) {
-  std::error_code ignored;  // a file that is not there yet is no other file
-  if (std::filesystem::equivalent(log, out, ignored)) {
-    throw std::invalid_argument(fmt::format("--out {} is the log itself", out));
-  }
 }
 
 }  // namespace tauext

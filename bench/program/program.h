@@ -59,7 +59,4 @@ std::string whole_number(const std::string& text);
 /// Whether a standard stream (STDOUT_FILENO, STDERR_FILENO) is a terminal.
 bool is_terminal(int stream);
 
-/// @throws std::invalid_argument if writing `out` would overwrite the log that is read
-void refuse_same_file(const std::string& log, const std::string& out);
-
 }  // namespace tauext

@@ -2,13 +2,16 @@
 #include "bench/roster/threshold_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <fstream>
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "bench/roster/robots.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext {
 namespace {
@@ -66,6 +69,19 @@ ThresholdSet set_of(const Json& j) {
   return set;
 }
 
+// robot/estimator+detector,detector, of all sets
+std::set<std::string> pairs_of(const Thresholds& t) {
+  std::set<std::string> pairs;
+  for (const ThresholdSet& s : t.sets) {
+    for (const auto& [estimator, detectors] : s.by_estimator) {
+      std::vector<std::string> names;
+      for (const auto& [detector, values] : detectors) names.push_back(detector);
+      pairs.insert(fmt::format("{}/{}+{}", s.robot, estimator, fmt::join(names, "|")));
+    }
+  }
+  return pairs;
+}
+
 }  // namespace
 
 void write_thresholds(const Thresholds& t, const std::string& path) {
@@ -92,10 +108,9 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
 }
 
 Thresholds read_thresholds(const std::string& path) {
+  const std::string text = read_json_text(path);
   try {
-    std::ifstream in(path);
-    if (!in) throw std::runtime_error("cannot open");
-    const Json j = Json::parse(in);
+    const Json j = Json::parse(text);
     if (j.at("format") != kFormat) {
       throw std::runtime_error(
           fmt::format("\"format\" is {}, not \"{}\"; write it with "
@@ -105,6 +120,9 @@ Thresholds read_thresholds(const std::string& path) {
     Thresholds t;
     t.trained_on = j.at("trained_on").get<std::string>();
     t.margin = j.at("margin").get<double>();
+    if (!(t.margin > 0))
+      throw std::runtime_error(fmt::format("a margin of {} is not positive", t.margin));
+    if (j.at("sets").empty()) throw std::runtime_error("there is no set of thresholds in it");
     for (const Json& set : j.at("sets")) t.sets.push_back(set_of(set));
     return t;
   } catch (const Json::exception& e) {
@@ -115,15 +133,22 @@ Thresholds read_thresholds(const std::string& path) {
   }
 }
 
-DetectorThresholds trained_for(const ThresholdSet& set, const std::string& estimator,
-                               const std::string& detector) {
-  const auto found = set.by_estimator.find(estimator);
-  if (found == set.by_estimator.end()) return {};
-  DetectorThresholds known = found->second;
-  const auto own = known.find(detector);
-  if (own != known.end())
-    known[std::string(name_of_specification(detector))] = Trained(own->second);
-  return known;
+DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name, double noise,
+                               const std::string& estimator, const std::string& detector) {
+  const std::string name(name_of_specification(detector));
+  if (t.sets.empty() || detector.empty()) return {};
+  const std::vector<std::string> calibratable = robot(robot_name).calibratable();
+  if (std::find(calibratable.begin(), calibratable.end(), name) == calibratable.end()) return {};
+  if (const ThresholdSet* const set = t.of(robot_name, noise)) {
+    const auto behind = set->by_estimator.find(estimator);
+    if (behind != set->by_estimator.end()) {
+      const auto own = behind->second.find(detector);
+      if (own != behind->second.end()) return {{name, own->second}};
+    }
+  }
+  throw std::invalid_argument(fmt::format(
+      "no thresholds for {}/{}+{}; there are those of {}: train it, tauext-detect --calibrate",
+      robot_name, estimator, detector, fmt::join(pairs_of(t), ", ")));
 }
 
 }  // namespace tauext

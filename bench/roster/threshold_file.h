@@ -19,10 +19,12 @@ void write_thresholds(const Thresholds& t, const std::string& path);
 /// detector (a metric that is none is refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 
-/// What training says of a detector behind an estimator, both by specification, by the detector's
-/// name as DetectorSettings want it. A detector whose specification was not trained has the
-/// thresholds of its name; behind an estimator that was not trained it keeps its defaults.
-DetectorThresholds trained_for(const ThresholdSet& set, const std::string& estimator,
-                               const std::string& detector);
+/// What training says of a detector behind an estimator, both by specification, as DetectorSettings
+/// want it: by the detector's name. Nothing without sets, and for a detector that has no thresholds
+/// to train.
+/// @param noise [rad/s] of the velocity
+/// @throws std::invalid_argument listing what was trained, if that pair was not on that robot
+DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot, double noise,
+                               const std::string& estimator, const std::string& detector);
 
 }  // namespace tauext

@@ -16,7 +16,7 @@ struct Trained {
   Eigen::MatrixXd metric;     ///< [1] of a detector that has one; else empty
 };
 
-/// The detectors behind one estimator. One that is not in it keeps its defaults.
+/// The detectors behind one estimator.
 using DetectorThresholds = std::map<std::string, Trained>;
 
 /// Thresholds of one robot behind sensors of one quality, by estimator.
@@ -33,11 +33,11 @@ struct Thresholds {
   std::vector<ThresholdSet> sets;  ///< in no order
 
   /// The set of this robot for sensors of this quality: the least noisy one that is as noisy, or
-  /// else the noisiest. Empty if there is none of this robot.
-  ThresholdSet of(const std::string& robot, double velocity_noise) const;
+  /// else the noisiest. Null if there is none of this robot.
+  const ThresholdSet* of(const std::string& robot, double velocity_noise) const;
 };
 
-inline ThresholdSet Thresholds::of(const std::string& robot, double velocity_noise) const {
+inline const ThresholdSet* Thresholds::of(const std::string& robot, double velocity_noise) const {
   const ThresholdSet* best = nullptr;
   for (const ThresholdSet& s : sets) {
     if (s.robot != robot) continue;
@@ -48,7 +48,7 @@ inline ThresholdSet Thresholds::of(const std::string& robot, double velocity_noi
         (enough == had_enough && (s.velocity_noise < best->velocity_noise) == enough);
     if (better) best = &s;
   }
-  return best == nullptr ? ThresholdSet{.robot = robot} : *best;
+  return best;
 }
 
 }  // namespace tauext

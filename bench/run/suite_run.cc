@@ -19,6 +19,7 @@
 #include "bench/score/table.h"
 #include "bench/study/table3.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -152,8 +153,7 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
         continue;
       }
       all = false;
-      fmt::print(stderr, "{}: nothing ran it; see --benchmark_filter and tauext-bench --list\n",
-                 name);
+      say(name + ": nothing ran it; see --benchmark_filter and tauext-bench --list");
     }
   };
   look(wanted.estimators, [](const Entry& e) { return e.estimator(); });
@@ -188,7 +188,7 @@ int run_suite(const SuiteRun& run) {
   for (Row& row : rows) add_time(reporter, row);
   print_results(run, rows);
   if (run.out) write_json(run, reporter);
-  if (!tap.heard()) fmt::print(stderr, "no summary could be published\n");
+  if (!tap.heard()) say("no summary could be published");
   const bool all = all_ran(run.selection, rows);
   if (reporter.any_error() || !tap.heard()) return kAnswerIsNo;
   return all ? kGood : kCouldNotRun;

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <tuple>
 
 #include "bench/roster/specification.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext {
 
@@ -141,12 +141,13 @@ void set_fields(const std::vector<std::string>& items, ModelError& e) {
   set_items(items, "model_error", e);
 }
 
-void read_degradation(const std::string& path, Degradation& d) try {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error("cannot open");
-  d = from_json(Json::parse(in, nullptr, true, true), d);  // comments are welcome
-} catch (const std::exception& e) {
-  throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+void read_degradation(const std::string& path, Degradation& d) {
+  const std::string text = read_json_text(path);
+  try {
+    d = from_json(Json::parse(text, nullptr, true, true), d);  // comments are welcome
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+  }
 }
 
 std::string describe(const Degradation& d) {

@@ -65,9 +65,8 @@ std::string failure(const Trace& ideal, const Output& out, double from) {
 }
 
 DetectorSettings Suite::settings(const Entry& e) const {
-  const ThresholdSet set =
-      options_.thresholds.of(e.robot().name(), options_.sensors.velocity_noise);
-  return {.thresholds = trained_for(set, e.estimator(), e.detector())};
+  return {.thresholds = trained_for(options_.thresholds, e.robot().name(),
+                                    options_.sensors.velocity_noise, e.estimator(), e.detector())};
 }
 
 const Suite::Traces& Suite::traces(const Entry& e) {

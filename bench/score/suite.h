@@ -20,7 +20,7 @@ struct SuiteOptions {
   Sensors sensors;            ///< of the scored trace
   ModelError model_error;     ///< of the robot that is scored
   Recording recording;        ///< how the robot is simulated
-  Thresholds thresholds;      ///< of the detectors; those that are not in it keep their defaults
+  Thresholds thresholds;      ///< of the detectors; without sets all keep their defaults
   double noise_probe = 1e-3;  ///< [rad/s] velocity noise behind noise_Nm when `sensors` are ideal
 };
 

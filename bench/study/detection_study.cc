@@ -43,11 +43,15 @@ std::vector<Job> jobs_of(const StudyRuns& study, const PlantKey& plant, const St
 class Study {
  public:
   Study(const StudyOptions& o, const Thresholds& thresholds)
-      : runs_(touched_runs(o.robot)),
+      : thresholds_(thresholds),
+        runs_(touched_runs(o.robot)),
         estimators_(chosen_estimators(robot(runs_.robot), o.estimators)),
         detectors_(chosen_detectors(robot(runs_.robot), o.detectors)) {
+    for (const std::string& e : estimators_) {  // before it takes its time
+      for (const std::string& d : detectors_) trained_for(thresholds, runs_.robot, 0, e, d);
+    }
     for (const std::string& name : chosen_conditions(runs_, o.conditions, condition_names(runs_))) {
-      add_condition(condition(runs_, name), thresholds);
+      add_condition(condition(runs_, name));
     }
     for (auto& [plant, model] : models_) {
       model = runs_.model(plant);
@@ -74,11 +78,10 @@ class Study {
   }
 
  private:
-  void add_condition(const Condition& c, const Thresholds& thresholds) {
+  void add_condition(const Condition& c) {
     conditions_.push_back(&c);
     if (!believers_.contains(c.believed)) believers_[c.believed] = runs_.believer(c.believed);
     models_.try_emplace(plant_of(c), nullptr);
-    sets_.push_back(thresholds.of(runs_.robot, c.degradation.sensors.velocity_noise));
     for (const std::string& e : estimators_) {
       for (const std::string& d : detectors_) {
         cells_.push_back({.condition = c.name, .estimator = e, .detector = d});
@@ -94,7 +97,10 @@ class Study {
       const bool failed = !bad_status(t, estimates).empty();
       for (const std::string& d : detectors_) {
         Cell cell{.runs = 1, .failed_runs = failed};
-        const DetectorSettings settings{trained_for(sets_[c], e, d), kStartUp};
+        const DetectorSettings settings{
+            trained_for(thresholds_, runs_.robot,
+                        conditions_[c]->degradation.sensors.velocity_noise, e, d),
+            kStartUp};
         count(job.kind, t, r.detect(d, t, estimates, settings), touches, cell);
         adds.push_back(std::move(cell));
       }
@@ -103,10 +109,10 @@ class Study {
     for (std::size_t i = 0; i < adds.size(); ++i) add(adds[i], cells_[c * adds.size() + i]);
   }
 
+  const Thresholds& thresholds_;
   const StudyRuns& runs_;
   std::vector<std::string> estimators_, detectors_;
   std::vector<const Condition*> conditions_;
-  std::vector<ThresholdSet> sets_;                            // of each condition
   std::map<double, std::unique_ptr<const Robot>> believers_;  // by the panel that they believe in
   std::map<PlantKey, Model> models_;
   std::vector<Job> jobs_;

@@ -76,7 +76,7 @@ TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   const Outcome itself =
       run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out ./log.csv");
   EXPECT_EQ(itself.code, 2);
-  EXPECT_TRUE(itself.says("is the log itself")) << itself.text;
+  EXPECT_TRUE(itself.says("is read by this program; write to another file")) << itself.text;
   EXPECT_EQ(content("log.csv"), before);
   write("empty.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\nx\n");
   write("two.csv", "t,q1,q2,qd1,qd2,tau1,tau2\n0,1,2,3,4,5,6\n");

@@ -2,6 +2,7 @@
 package tauext.spy;
 
 import java.io.IOException;
+import java.net.InetSocketAddress;
 import java.util.Arrays;
 import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
@@ -9,6 +10,7 @@ import lcm.lcm.LCMDataOutputStream;
 import lcm.lcm.LCMEncodable;
 import tauext.detection_t;
 import tauext.estimate_t;
+import tauext.summary_t;
 
 /** Claims about what lcm-spy's window draws, without a screen. Exits with 1 if one does not hold. */
 public final class PluginTest {
@@ -28,6 +30,8 @@ public final class PluginTest {
     malformedMessagesAreCountedAndIgnored();
     marksOfOtherEstimatorsAreLeftOut();
     aClosedWindowHearsNothing();
+    everyMessageIsAccountedFor();
+    ofTwoSendersTheFirstIsShown();
     nonFiniteTorquesAreLeftOut();
     System.exit(failures > 0 ? 1 : 0);
   }
@@ -68,7 +72,7 @@ public final class PluginTest {
       recording.add(estimate(i, 5000 * i, 3));
     }
     Snapshot s = recording.snapshot(kWidth);
-    expect(s.counters.late == 19 && s.counters.restarts == 0 && s.marks.size() == 1,
+    expect(s.counters.repeated == 19 && s.counters.restarts == 0 && s.marks.size() == 1,
         "some late messages are no restart");
     recording.add(estimate(19, 95000, 3));
     s = recording.snapshot(kWidth);
@@ -96,7 +100,7 @@ public final class PluginTest {
     recording.add(estimate(1L << 52, 30000, 3));
     recording.add(estimate(Long.MAX_VALUE, 35000, 3));
     Counters c = recording.snapshot(kWidth).counters;
-    expect(c.lost == 3 && c.malformed == 1, "a forged seq is no loss");
+    expect(c.lost == 3 && c.rejected == 1, "a forged seq is no loss");
   }
 
   private static void wrongJointsAreCountedAndIgnored() {
@@ -106,7 +110,7 @@ public final class PluginTest {
       recording.add(estimate(1, 5000, n));
     }
     Snapshot s = recording.snapshot(kWidth);
-    expect(s.counters.malformed == 3 && s.counters.messages == 1, "n of 0, 9 and -1 are counted");
+    expect(s.counters.rejected == 3 && s.counters.used == 1, "n of 0, 9 and -1 are counted");
     expect(s.n == 3 && s.counters.restarts == 0, "n of 0, 9 and -1 are ignored");
   }
 
@@ -124,7 +128,7 @@ public final class PluginTest {
     receive(receiver, kChannel, new byte[0]);
     receive(receiver, Receiver.kDetections, forged);
     Counters c = recording.snapshot(kWidth).counters;
-    expect(c.messages == 1 && c.malformed == 5, "what is no message is counted and ignored");
+    expect(c.used == 1 && c.rejected == 5, "what is no message is counted and ignored");
     receiver.close();
     bus.close();
   }
@@ -145,10 +149,43 @@ public final class PluginTest {
   private static void aClosedWindowHearsNothing() throws IOException {
     LCM bus = new LCM("memq://");
     Receiver receiver = new Receiver(bus, kChannel, new Recording("ekf"));
-    expect(bus.getNumSubscriptions() == 2, "a window subscribes to its channel and the detections");
+    expect(bus.getNumSubscriptions() == 3, "a window subscribes to its channel, the detections and the summaries");
     receiver.close();
     expect(bus.getNumSubscriptions() == 0, "a closed window leaves no subscription");
     bus.close();
+  }
+
+  private static void everyMessageIsAccountedFor() {
+    for (int gap : new int[] {1, 64, 65, 20000}) {
+      Recording recording = new Recording("ekf");
+      for (int k = 0; k < 200; ++k) {
+        int seq = k < 100 ? k : k + gap;
+        recording.add(estimate(seq, 5000L * seq, 3));
+        if (k % 50 == 10) {
+          recording.add(estimate(seq, 5000L * seq, 3));
+        }
+      }
+      recording.add(estimate(100, 500000, 3));  // one of those that were lost
+      summary_t s = new summary_t();
+      s.entry = "wallmobot3/step/ekf+threshold";
+      s.published = 2 * (200 + gap + 7);
+      recording.end(s);
+      Counters c = recording.snapshot(kWidth).counters;
+      expect(c.used == 200 && c.repeated == 4 && c.late == 1 && c.rejected == 0 && c.lost == gap + 6,
+          "all but the copies of " + s.published / 2 + " messages are accounted for, and those at the end");
+    }
+  }
+
+  private static void ofTwoSendersTheFirstIsShown() {
+    Senders senders = new Senders();
+    InetSocketAddress one = new InetSocketAddress("127.0.0.1", 4000);
+    InetSocketAddress two = new InetSocketAddress("127.0.0.1", 4001);
+    long ms = 1_000_000L;
+    expect(senders.take("A", one, 0) && !senders.take("A", two, ms), "the second sender is not shown");
+    expect(senders.trouble("A").isEmpty(), "it may be a restart");
+    expect(senders.take("A", one, 2 * ms) && senders.trouble("A").contains("4001"), "both speak, and are named");
+    expect(senders.take("B", one, 0) && senders.take("B", two, 600 * ms) && senders.trouble("B").isEmpty(),
+        "a sender that has started anew is shown");
   }
 
   private static void nonFiniteTorquesAreLeftOut() {

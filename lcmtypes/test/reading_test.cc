@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "lcmtypes/test/samples.h"
 
@@ -63,6 +67,42 @@ TEST(ReadingTest, EachDriverHasItsOwnSigns) {
   ASSERT_EQ(decode(write(r, MessageType::kPanda), panda), Reject::kNone);
   EXPECT_EQ(panda.joint_torque[0], 10);
   EXPECT_EQ(panda.joint_torque_external[0], -2);
+}
+
+// drake_*_status.bin: written by a program with lcm-gen's C++ of Drake's own types, lcmtypes/
+// lcmt_*_status.lcm (commit bf8ef803a732). Joint j of the type's f-th field is f + j/8
+std::vector<std::byte> written_by_drake(const std::string& name) {
+  std::ifstream file(TAUEXT_LCM_FIXTURES "/drake_" + name + "_status.bin", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+void expect_field(const Joints& values, double field, double sign = 1) {
+  for (int j = 0; j < 7; ++j) EXPECT_EQ(values[j], sign * (field + j / 8.0)) << field;
+}
+
+TEST(ReadingTest, WhatDrakesOwnTypesWroteIsRead) {
+  Reading iiwa, panda;
+  ASSERT_EQ(read(written_by_drake("iiwa"), MessageType::kIiwa, iiwa), Reject::kNone);
+  ASSERT_EQ(read(written_by_drake("panda"), MessageType::kPanda, panda), Reject::kNone);
+  for (const Reading* r : {&iiwa, &panda}) {
+    EXPECT_EQ(r->utime, 1234567);
+    EXPECT_EQ(r->n, 7);
+    expect_field(r->q, 1);
+  }
+  expect_field(iiwa.qd, 2);
+  expect_field(iiwa.tau, 5, -1);
+  expect_field(iiwa.tau_ext, 7, -1);
+  expect_field(panda.qd, 3);
+  expect_field(panda.tau, 6);
+  expect_field(panda.tau_ext, 8);
+  panda_status_t whole{};
+  ASSERT_EQ(decode(written_by_drake("panda"), whole), Reject::kNone);
+  EXPECT_EQ(whole.control_command_success_rate, 0.75);
+  EXPECT_EQ(whole.robot_mode, panda_status_t::kMove);
+  EXPECT_EQ(whole.robot_utime, 7654321);
+  EXPECT_EQ(whole.control_mode, panda_status_t::kTorque);
 }
 
 TEST(ReadingTest, AnEstimateIsAMeasurementToo) {

@@ -21,7 +21,7 @@ TEST(Wire, HashesAreThoseThatLogsWereWrittenWith) {
   EXPECT_EQ(static_cast<std::uint64_t>(detection_t::getHash()), 0x09b589357ed20fa0ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(summary_t::getHash()), 0x2fb8b5fdaf154790ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(iiwa_status_t::getHash()), 0xf16fb804284abca3ULL);
-  EXPECT_EQ(static_cast<std::uint64_t>(panda_status_t::getHash()), 0xbb48b43a6b578493ULL);
+  EXPECT_EQ(static_cast<std::uint64_t>(panda_status_t::getHash()), 0x19571cdf4d82fae6ULL);
 }
 
 TEST(Wire, NoTwoTypesHaveTheSameMembers) {

@@ -1,43 +1,153 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/trace/atomic_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
-namespace tauext {
+#include "mjcf/trace/file_claims.h"
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
-  if (path_ == "-") {
-    file_ = stdout;
-    return;
-  }
-  // a link stays a link: what it points to is replaced
-  std::error_code error;
-  for (int links = 0; links < 8 && std::filesystem::is_symlink(path_, error); ++links) {
-    const std::filesystem::path link(path_);
-    path_ = (link.parent_path() / std::filesystem::read_symlink(link)).string();
-  }
-  // a device or a pipe cannot be replaced by a file, so it is written in place
-  std::error_code ignored;
-  const bool special =
-      std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored);
-  if (!special) temporary_ = fmt::format("{}.{}.part", path_, ::getpid());
-  file_ = std::fopen(special ? path_.c_str() : temporary_.c_str(), "we");
-  if (file_ == nullptr) {
-    temporary_.clear();
-    fail("cannot open for writing");
+namespace tauext {
+namespace fs = std::filesystem;
+namespace {
+
+// names that a signal handler removes
+std::array<std::atomic<const char*>, 64> unfinished{};
+
+void remember(const char* name) {
+  for (auto& slot : unfinished) {
+    const char* free = nullptr;
+    if (slot.compare_exchange_strong(free, name)) return;
   }
 }
 
+void forget(const char* name) {
+  for (auto& slot : unfinished) {
+    const char* mine = name;
+    if (slot.compare_exchange_strong(mine, nullptr)) return;
+  }
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// .out.csv.1234-9f0c31d2a5b6e877.part beside out.csv: of process 1234
+std::string temporary_name(const fs::path& path) {
+  std::random_device random;
+  return (folder_of(path) / fmt::format(".{}.{}-{:08x}{:08x}.part", path.filename().string(),
+                                        ::getpid(), random(), random()))
+      .string();
+}
+
+// what processes that were killed have left beside a path
+void sweep(const fs::path& path) {
+  const std::string begin = "." + path.filename().string() + ".";
+  std::error_code error;
+  for (const fs::directory_entry& e : fs::directory_iterator(folder_of(path), error)) {
+    const std::string name = e.path().filename().string();
+    if (!name.starts_with(begin) || !name.ends_with(".part")) continue;
+    pid_t process = 0;
+    const char* const from = name.data() + begin.size();
+    const auto [rest, bad] = std::from_chars(from, name.data() + name.size(), process);
+    if (bad != std::errc() || *rest != '-' || process <= 0) continue;
+    struct stat file {};
+    const bool ours = ::lstat(e.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
+                      file.st_uid == ::geteuid();
+    if (ours && ::kill(process, 0) != 0 && errno == ESRCH) ::unlink(e.path().c_str());
+  }
+}
+
+// the kernel's rule for sticky folders, /proc/sys/fs/protected_symlinks
+bool may_follow(const fs::path& link) {
+  struct stat folder {
+  }, file{};
+  if (::stat(folder_of(link).c_str(), &folder) != 0 || ::lstat(link.c_str(), &file) != 0) {
+    return false;
+  }
+  const bool everybodys = (folder.st_mode & S_ISVTX) != 0 && (folder.st_mode & S_IWOTH) != 0;
+  return !everybodys || file.st_uid == ::geteuid() || file.st_uid == folder.st_uid;
+}
+
+}  // namespace
+
+void remove_unfinished_files() noexcept {
+  for (const auto& slot : unfinished) {
+    if (const char* const name = slot.load()) ::unlink(name);
+  }
+}
+
+AtomicFile::AtomicFile(std::string path, Until until) : path_(std::move(path)) {
+  if (path_ == "-") {
+    file_ = stdout;
+    in_place_ = true;
+    return;
+  }
+  follow_links();
+  const bool exists = ::stat(path_.c_str(), &replaced_) == 0;
+  in_place_ = exists && !S_ISREG(replaced_.st_mode);
+  if (in_place_) {
+    file_ = std::fopen(path_.c_str(), "we");
+    if (file_ == nullptr) fail("cannot open for writing");
+    return;
+  }
+  if (exists) claims::add_output(replaced_, path_);
+  replaces_ = exists;
+  sweep(path_);
+  open_beside(until);
+}
+
 AtomicFile::~AtomicFile() {
+  if (replaces_) claims::drop_output(replaced_);
   if (file_ != nullptr && file_ != stdout) std::fclose(file_);
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  forget(temporary_.c_str());
+}
+
+void AtomicFile::follow_links() {
+  std::error_code error;
+  for (int links = 0; links < 8 && fs::is_symlink(path_, error); ++links) {
+    const fs::path link(path_);
+    if (!may_follow(link)) {
+      throw std::runtime_error(fmt::format(
+          "{}: is somebody else's link in a folder that everybody may write: not followed", path_));
+    }
+    path_ = (folder_of(link) / fs::read_symlink(link)).string();
+  }
+}
+
+void AtomicFile::open_beside(Until until) {
+  constexpr mode_t kMode = 0666;  // less the umask
+  int fd = -1;
+  if (until == Until::kNowhere) {
+    fd = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
+  }
+  if (fd < 0) {
+    temporary_ = temporary_name(path_);
+    remember(temporary_.c_str());
+    fd = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, kMode);
+    const int reason = errno;
+    if (fd < 0) {
+      forget(temporary_.c_str());
+      temporary_.clear();
+      if (replaces_) claims::drop_output(replaced_);
+      errno = reason;
+      fail("cannot open for writing");
+    }
+  }
+  file_ = ::fdopen(fd, "w");
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -47,11 +157,53 @@ void AtomicFile::write(std::string_view text) {
 void AtomicFile::commit() {
   if (std::fflush(file_) != 0) fail("cannot write");
   if (file_ == stdout) return;
+  if (!in_place_) {
+    keep_owner();
+    if (::fsync(::fileno(file_)) != 0) fail("cannot write");
+    put_in_place();
+  }
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot write");
-  if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0)
+}
+
+// as far as we may
+void AtomicFile::keep_owner() {
+  if (!replaces_) return;
+  const int fd = ::fileno(file_);
+  const int owner = ::fchown(fd, replaced_.st_uid, replaced_.st_gid);
+  // a file that could not be given back to its group does not get the group's rights
+  const mode_t mode = replaced_.st_mode & 07777;
+  ::fchmod(fd, owner == 0 ? mode : mode & ~mode_t{S_ISUID | S_ISGID});
+}
+
+void AtomicFile::put_in_place() {
+  struct stat now {};  // the path may have become one of ours since
+  if (::stat(path_.c_str(), &now) == 0 && !replaces_) {
+    claims::add_output(now, path_);
+    claims::drop_output(now);
+  }
+  if (temporary_.empty()) {
+    const std::string nameless = fmt::format("/proc/self/fd/{}", ::fileno(file_));
+    temporary_ = temporary_name(path_);
+    remember(temporary_.c_str());
+    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) !=
+        0) {
+      const int reason = errno;
+      forget(temporary_.c_str());
+      temporary_.clear();
+      errno = reason;
+      fail("cannot name the new file");
+    }
+  }
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail("cannot rename the new file onto it");
+  }
+  forget(temporary_.c_str());
   temporary_.clear();
+  if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      folder >= 0) {
+    ::fsync(folder);
+    ::close(folder);
+  }
 }
 
 void AtomicFile::fail(const char* what) const {

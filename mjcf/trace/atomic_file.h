@@ -3,18 +3,29 @@
 /// Output files that appear whole or not at all.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace tauext {
 
-/// A file under a temporary name beside its path, renamed onto it by commit(); without commit()
-/// nothing is left. The path "-" is standard output.
+/// A file that takes its path's place by commit(); without commit(), whatever ends the program,
+/// nothing is left. It keeps mode and owner of the file that it replaces. The path "-" is standard
+/// output; devices and pipes are written in place. A link stays a link, and what it points to is
+/// replaced, unless somebody else's link lies in a folder that everybody may write.
 class AtomicFile {
  public:
-  /// @throws std::runtime_error naming the path and the system's reason
-  explicit AtomicFile(std::string path);
+  /// Where the bytes are until commit().
+  enum class Until : bool {
+    kNowhere,  ///< in no folder (O_TMPFILE), where the file system can do that; else kNamed
+    kNamed,    ///< beside the path, under a name that nobody can guess
+  };
+
+  /// @throws std::runtime_error naming the path: the system's reason, or that this program reads
+  /// that very file (input_file.h)
+  explicit AtomicFile(std::string path, Until until = Until::kNowhere);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -25,10 +36,20 @@ class AtomicFile {
   void commit();
 
  private:
+  void follow_links();
+  void open_beside(Until until);
+  void keep_owner();
+  void put_in_place();
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_, temporary_;
   std::FILE* file_ = nullptr;
+  bool in_place_ = false;  // standard output, a device or a pipe
+  bool replaces_ = false;  // a file that is there
+  struct stat replaced_ {};
 };
+
+/// Removes what AtomicFiles have under a name; safe in a signal handler.
+void remove_unfinished_files() noexcept;
 
 }  // namespace tauext

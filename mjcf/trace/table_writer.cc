@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -89,11 +90,12 @@ void TableWriter::add(std::vector<std::string> cells) {
   if (cells.size() != columns_.size()) {
     throw std::logic_error(fmt::format("{} cells for {} columns", cells.size(), columns_.size()));
   }
+  for (std::string& cell : cells) cell = printable_name(cell, cell.size());
   rows_.push_back({std::move(cells), ""});
 }
 
-void TableWriter::add_note(std::string text) {
-  rows_.push_back({{}, std::move(text)});
+void TableWriter::add_note(const std::string& text) {
+  rows_.push_back({{}, printable(text)});
 }
 
 void TableWriter::add_gap() {

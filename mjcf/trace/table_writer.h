@@ -41,7 +41,7 @@ class TableWriter {
   void add(std::vector<std::string> cells);
   /// A line across the columns, in place of a row; in text alone, as the other formats have rows
   /// only.
-  void add_note(std::string text);
+  void add_note(const std::string& text);
   /// An empty line between groups of rows; in text alone.
   void add_gap();
 

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext {
 namespace {
@@ -139,7 +140,7 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
   of_vector(s.t);
   of_vector(s.contact);
   of_vector(s.contact_force);
-  for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.qdd, &s.friction}) {
+  for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.tau_ext_of_driver, &s.qdd, &s.friction}) {
     if (m->cols() > 0) *m = Eigen::MatrixXd((*m)(Eigen::all, samples));
   }
   const auto stop = std::lower_bound(samples.begin(), samples.end(), trace.stopped_at);
@@ -175,11 +176,30 @@ void write_csv(const Trace& trace, const std::string& path) {
   file.commit();
 }
 
+namespace {
+
+// false at the end
+bool next_line(std::istream& in, std::string& line, const std::string& path, int number) {
+  constexpr std::size_t kLongest = 1 << 16;  // [bytes] of a thousand numbers
+  line.resize(kLongest);
+  in.getline(line.data(), kLongest);
+  if (in.fail() && in.gcount() == kLongest - 1) {
+    throw std::runtime_error(
+        fmt::format("{}: line {} is longer than {} bytes: no CSV of ours", path, number, kLongest));
+  }
+  // the line end was taken, and is counted, unless the file ended
+  line.resize(static_cast<std::size_t>(in.gcount()) - (in.good() ? 1 : 0));
+  return !in.fail();
+}
+
+}  // namespace
+
 Trace read_csv(const std::string& path, SkippedRows* skipped) {
+  claim_input(path);
   errno = 0;
   std::ifstream in(path);
   std::string line;
-  if (!in || !std::getline(in, line)) {
+  if (!in || !next_line(in, line, path, 1)) {
     const int reason = errno;
     throw std::runtime_error(
         fmt::format("{}: {}", path, reason == 0 ? "is empty" : std::strerror(reason)));
@@ -189,7 +209,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   std::vector<std::vector<double>> rows;
   std::vector<double> values;
   double last_t = -std::numeric_limits<double>::infinity();
-  for (int number = 2; std::getline(in, line); ++number) {
+  for (int number = 2; next_line(in, line, path, number); ++number) {
     if (line.empty() || line == "\r") continue;
     const char* reason = parse_row(line, c, last_t, values, *skipped);
     if (reason == nullptr && in.eof()) {  // no line end: the last number may be cut

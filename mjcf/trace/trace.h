@@ -30,6 +30,9 @@ struct Trace {
   Eigen::MatrixXd tau;                ///< [N m] measured
   Eigen::MatrixXd tau_ext;            ///< [N m] true; no columns if unknown
   std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
+  /// [N m] what the robot's own controller estimated, as a driver's log has it; no columns if
+  /// unknown. Never written to a CSV.
+  Eigen::MatrixXd tau_ext_of_driver;
 
   // known to the simulation alone, never written to a file
   Eigen::MatrixXd qdd;                ///< [rad/s^2] MuJoCo's acceleration at t_k

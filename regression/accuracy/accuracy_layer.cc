@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/host/child.h"
 #include "regression/host/files.h"
 
@@ -27,7 +28,7 @@ std::string run_bench(const std::string& bench, const std::string& entries,
                                    "--benchmark_filter=" + (entries.empty() ? "." : entries)};
   if (!seeds.empty()) argv.insert(argv.end(), {"--seeds", seeds});
   run_child(argv);
-  return read_file(out);
+  return read_whole(out);
 }
 
 AccuracyReport score_and_compare(const AccuracyOptions& o) {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "regression/host/files.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext::gate {
 namespace {
@@ -95,7 +95,7 @@ Golden parse_golden(const std::string& text, const std::string& path) {
 }
 
 Golden read_golden(const std::string& path) {
-  return parse_golden(read_file(path), path);
+  return parse_golden(read_whole(path), path);
 }
 
 }  // namespace tauext::gate

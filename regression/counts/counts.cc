@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "regression/host/files.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext::gate {
 namespace {
@@ -85,7 +85,7 @@ std::string format_counts(const Counts& counts) {
 }
 
 Counts read_counts(const std::string& path) {
-  std::istringstream in(read_file(path));
+  std::istringstream in(read_whole(path));
   Counts counts;
   std::string line;
   if (!std::getline(in, line) || line != kHeader) {

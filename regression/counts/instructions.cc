@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/host/child.h"
 #include "regression/host/files.h"
 #include "regression/host/plugin_host.h"
@@ -127,7 +128,7 @@ Counts count_instructions(const std::string& plugin, const std::string& filter) 
                     this_program(), "count-worker", plugin, filter});
   if (run.code != 0) {
     throw std::runtime_error(fmt::format("{}: counting failed (exit code {}): {}", plugin, run.code,
-                                         read_file(folder.path() + "/log")));
+                                         read_whole(folder.path() + "/log")));
   }
   Counts counts;
   counts.key = nlohmann::json::parse(run.output).get<Key>();
@@ -135,7 +136,7 @@ Counts count_instructions(const std::string& plugin, const std::string& filter) 
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     const std::string path = entry.path().string();
     if (!path.starts_with(out + ".")) continue;  // the last one, without a number, holds the rest
-    const CallgrindDump dump = parse_callgrind(read_file(path), path);
+    const CallgrindDump dump = parse_callgrind(read_whole(path), path);
     if (!std::regex_search(dump.trigger, wanted) || dump.trigger.empty()) continue;
     counts.kernels[dump.trigger] = dump.total;
     counts.functions[dump.trigger] = dump.functions;

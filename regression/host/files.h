@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Files that are read whole, and a folder for those that nobody keeps.
+/// A folder for files that nobody keeps.
 #pragma once
 
 #include <string>
 
 namespace tauext::gate {
-
-/// All bytes of a file.
-/// @throws std::runtime_error naming the path, if it cannot be read
-std::string read_file(const std::string& path);
 
 /// Folder of its own below the system's temporary one, removed with what is in it.
 class TemporaryFolder {

@@ -2,6 +2,7 @@
 // What is less accurate makes the gate fail; what is wrong with flags and files is said.
 #include <algorithm>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
 
 namespace tauext::gate::test {
@@ -26,7 +27,7 @@ TEST_F(AccuracyGate, NothingChangedPassesAndEveryFaultIsSeen) {
 
 TEST_F(AccuracyGate, SwappedSeedsAreSeen) {
   make_golden();
-  std::string text = read_file(golden());
+  std::string text = read_whole(golden());
   const auto seed1 = text.find("seed 1"), seed2 = text.find("seed 2");
   text[seed1 + 5] = '2', text[seed2 + 5] = '1';
   write(golden(), text);
@@ -36,10 +37,10 @@ TEST_F(AccuracyGate, SwappedSeedsAreSeen) {
 TEST_F(AccuracyGate, AFileThatIsNotWholeIsAnErrorWithItsName) {
   EXPECT_EQ(accuracy(""), kUpdateNeeded) << "none at all: " << text_;
   make_golden();
-  const std::string whole = read_file(golden());
+  const std::string whole = read_whole(golden());
   for (const std::string& bad :
        {std::string(), whole.substr(0, whole.size() / 2), std::string("t,q1,qd1,tau1\n0,0,0,0\n"),
-        read_file(make_counts())}) {
+        read_whole(make_counts())}) {
     write(golden(), bad);
     EXPECT_EQ(accuracy(""), kCouldNotRun) << text_;
     EXPECT_TRUE(says(golden())) << text_;
@@ -65,7 +66,7 @@ TEST_F(AccuracyGate, ABenchThatFailsOrSaysNothingIsAHarnessError) {
     return {"accuracy", "--bench", bench, "--baselines", baselines()};
   };
   refuses(with("/bin/false"), "/bin/false: failed with exit code 1");
-  refuses(with("/bin/true"), "golden.tsv: cannot be read");
+  refuses(with("/bin/true"), "golden.tsv: No such file or directory");
   refuses(with("/nowhere/bench"), "/nowhere/bench: cannot be run: No such file");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // More instructions make the gate fail; counts of another compiler are not compared.
+#include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
 
 namespace tauext::gate::test {
@@ -20,7 +21,7 @@ TEST_F(Instructions, OnePercentMoreFailsWhereverTheyComeFrom) {
 TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
   EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
   const std::string path = make_counts();
-  std::string other = read_file(path);
+  std::string other = read_whole(path);
   other.replace(other.find("# glibc: "), 9, "# glibc: 1");
   fs::remove(path);
   write(baselines() + "/instructions-00000000.tsv", other);
@@ -31,7 +32,7 @@ TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
 }
 
 TEST_F(Instructions, AFileThatIsNotWholeIsAnErrorWithItsName) {
-  const std::string path = make_counts(), whole = read_file(path);
+  const std::string path = make_counts(), whole = read_whole(path);
   for (const std::string& bad :
        {std::string(), whole.substr(0, whole.size() / 2), std::string("{}")}) {
     write(path, bad);

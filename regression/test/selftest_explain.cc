@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
 
 namespace tauext::gate::test {
@@ -11,7 +12,7 @@ namespace {
 
 // a CSV file's columns by name
 std::map<std::string, std::vector<double>> columns(const std::string& path) {
-  std::istringstream in(read_file(path));
+  std::istringstream in(read_whole(path));
   std::string line, cell;
   std::getline(in, line);
   std::vector<std::string> names;

@@ -2,6 +2,7 @@
 // What is slower makes the gate fail, and nothing else does.
 #include <nlohmann/json.hpp>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
 
 namespace tauext::gate::test {
@@ -48,9 +49,9 @@ TEST_F(Time, ReportsAreWrittenAndCanBeRead) {
   EXPECT_EQ(run({"time", "--base", plugin("base"), "--head", plugin("more_divides"), "--junit", j,
                  "--markdown", m, "--head-json", h}),
             kSlower);
-  EXPECT_NE(read_file(j).find("failures=\"1\""), std::string::npos) << read_file(j);
-  EXPECT_EQ(read_file(m).find("## tauext-gate: SLOWER"), 0u) << read_file(m);
-  EXPECT_GE(nlohmann::json::parse(read_file(h))["benchmarks"].size(), 20u);
+  EXPECT_NE(read_whole(j).find("failures=\"1\""), std::string::npos) << read_whole(j);
+  EXPECT_EQ(read_whole(m).find("## tauext-gate: SLOWER"), 0u) << read_whole(m);
+  EXPECT_GE(nlohmann::json::parse(read_whole(h))["benchmarks"].size(), 20u);
 }
 
 }  // namespace

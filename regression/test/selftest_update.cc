@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
 
 namespace tauext::gate::test {
@@ -17,7 +18,7 @@ class Update : public Gate {
  protected:
   Update() {
     make_golden();
-    once_ = read_file(golden());
+    once_ = read_whole(golden());
     write(baselines() + "/next.tsv", once_);
     write(bench_, "#!/bin/sh\ncp " + baselines() + "/next.tsv \"$2\"\n");
     fs::permissions(bench_, fs::perms::owner_all);
@@ -36,28 +37,28 @@ class Update : public Gate {
 TEST_F(Update, WritesTheBaselineAndTheReason) {
   next("gain=1.001");
   EXPECT_EQ(run(command("a better gain")), kGood) << text_;
-  EXPECT_EQ(read_file(golden()), read_file(baselines() + "/next.tsv"));
-  EXPECT_NE(read_file(log_).find(": a better gain\n"), std::string::npos) << read_file(log_);
+  EXPECT_EQ(read_whole(golden()), read_whole(baselines() + "/next.tsv"));
+  EXPECT_NE(read_whole(log_).find(": a better gain\n"), std::string::npos) << read_whole(log_);
   EXPECT_EQ(run(command("again")), kGood);
   EXPECT_TRUE(says("nothing was written")) << text_;
-  EXPECT_EQ(read_file(log_).find("again"), std::string::npos);
+  EXPECT_EQ(read_whole(log_).find("again"), std::string::npos);
 }
 
 TEST_F(Update, RefusesAWorseningUnlessItIsAccepted) {
   next("gain=0.9");
   EXPECT_EQ(run(command("faster")), kLessAccurate) << text_;
   EXPECT_TRUE(says("refused") && says("testbed1/hold/subject rmse_Nm")) << text_;
-  EXPECT_EQ(read_file(golden()), once_);
+  EXPECT_EQ(read_whole(golden()), once_);
   EXPECT_FALSE(fs::exists(log_));
   auto accepting = command("less noise");
   accepting.insert(accepting.end(), {"--accept-worse", "the noise matters more"});
   EXPECT_EQ(run(accepting), kGood) << text_;
-  EXPECT_NE(read_file(log_).find("less noise (worse, accepted: the noise matters more)"),
+  EXPECT_NE(read_whole(log_).find("less noise (worse, accepted: the noise matters more)"),
             std::string::npos);
 }
 
 TEST_F(Update, SaysWhetherAKernelIsSlowerOrMetricsAreLessAccurate) {
-  const std::string counts = make_counts(), before = read_file(counts);
+  const std::string counts = make_counts(), before = read_whole(counts);
   std::vector<std::string> slower = {
       "update", "--baselines",          baselines(), "--changelog", log_,
       "--head", plugin("instructions"), "--reason",  "why not",     "--bench",
@@ -68,14 +69,14 @@ TEST_F(Update, SaysWhetherAKernelIsSlowerOrMetricsAreLessAccurate) {
   slower.back() = bench_;
   EXPECT_EQ(run(slower), kSlower) << "1 counts before 5: " << text_;
   EXPECT_TRUE(says("% instructions") && says("testbed1/hold/subject rmse_Nm")) << text_;
-  EXPECT_EQ(read_file(counts), before);
-  EXPECT_EQ(read_file(golden()), once_);
+  EXPECT_EQ(read_whole(counts), before);
+  EXPECT_EQ(read_whole(golden()), once_);
 }
 
 TEST_F(Update, OfSomeEntriesLeavesTheOthers) {
   run_child({"env", "SUBJECT=", kBin + "/subject_bench", "--golden", golden(),
              "--benchmark_filter=testbed1/(hold|swing)/subject$"});
-  once_ = read_file(golden());
+  once_ = read_whole(golden());
   run_child({"env", "SUBJECT=gain=1.001", kBin + "/subject_bench", "--golden",
              baselines() + "/next.tsv", "--benchmark_filter=testbed1/hold/subject$"});
   auto some = command("hold alone");
@@ -94,12 +95,12 @@ TEST_F(Update, WantsAReason) {
   next("gain=1.001");
   refuses(command(""), "--reason: say why; it goes into the changelog");
   refuses(command("two\nlines"), "--reason: one line");
-  EXPECT_EQ(read_file(golden()), once_);
+  EXPECT_EQ(read_whole(golden()), once_);
 }
 
 TEST_F(Update, KilledAtAnyMomentLeavesAWholeBaseline) {
   next("gain=1.001");
-  const std::string then = read_file(baselines() + "/next.tsv");
+  const std::string then = read_whole(baselines() + "/next.tsv");
   int old = 0;
   for (int ms = 0; ms < 30; ++ms) {
     write(golden(), once_);
@@ -117,7 +118,7 @@ TEST_F(Update, KilledAtAnyMomentLeavesAWholeBaseline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(ms));
     ::kill(pid, SIGKILL);
     ::waitpid(pid, nullptr, 0);
-    const std::string now = read_file(golden());
+    const std::string now = read_whole(golden());
     ASSERT_TRUE(now == once_ || now == then) << "after " << ms << " ms: " << now.size() << " bytes";
     old += now == once_;
   }

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "regression/host/files.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext::gate {
 namespace {
@@ -50,7 +50,7 @@ void for_each_section(const std::string& bytes, const std::string& path, Visit&&
 // names and contents of .text, .rodata and .data, in the order of the file
 std::string code_of(const std::string& path) {
   std::string code;
-  for_each_section(read_file(path), path, [&](std::string_view name, std::string_view content) {
+  for_each_section(read_whole(path), path, [&](std::string_view name, std::string_view content) {
     if (name != ".text" && name != ".rodata" && name != ".data") return;
     code.append(name).push_back('\0');
     code.append(content);
@@ -66,7 +66,7 @@ bool identical(const std::string& a, const std::string& b) {
 }
 
 std::vector<std::string> needed_libraries(const std::string& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_whole(path);
   std::string_view names, entries;
   for_each_section(bytes, path, [&](std::string_view name, std::string_view content) {
     if (name == ".dynstr") names = content;

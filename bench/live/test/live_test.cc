@@ -123,8 +123,8 @@ TEST(Live, PlaysByTheClockAtItsSpeedAndBeginsAgain) {
   const std::vector<Reading> readings = readings_of(trace);
   const auto transport = std::make_shared<Transport>("memq://");
   std::vector<estimate_t> seen;
-  Listener listener(transport->handle(), "TAUEXT_ESTIMATE_mo1",
-                    [&](std::string_view, std::int64_t, Bytes m) {
+  Listener listener(transport->handle(), {"TAUEXT_ESTIMATE_mo1"},
+                    [&](std::string_view, Sender, Bytes m) {
                       estimate_t e{};
                       ASSERT_EQ(decode(m, e), Reject::kNone);
                       seen.push_back(e);

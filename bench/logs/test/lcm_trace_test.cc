@@ -67,6 +67,9 @@ TEST_F(LcmTrace, ADriversLogHasNoTruthAndMicroseconds) {
     put(log);
     const Trace back = get();
     EXPECT_FALSE(back.has_truth());  // what the driver estimates is none
+    EXPECT_EQ(back.tau_ext_of_driver, t.tau_ext);
+    EXPECT_EQ(readings_of(back)[1].reference, ReferenceKind::kSender);
+    EXPECT_EQ(readings_of(back)[1].tau_ext, readings_of(t)[1].tau_ext);
     EXPECT_EQ(back.tau, t.tau);
     EXPECT_EQ(back.size(), t.size());
     EXPECT_NEAR(back.t.back(), t.t.back(), 1e-6);

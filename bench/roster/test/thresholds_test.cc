@@ -68,16 +68,17 @@ TEST_F(ThresholdFile, SaysWhatIsWrongWithIt) {
   EXPECT_NE(error("2.0", "0.0").find("wallmobot3/ekf+threshold: a threshold of 0 is not positive"),
             std::string::npos);
   EXPECT_NE(error("2.0,", "").find("2 numbers for 3 joints"), std::string::npos);
-  EXPECT_EQ(error_of([] { read_thresholds("/nowhere/x"); }), "/nowhere/x: cannot open");
+  EXPECT_EQ(error_of([] { read_thresholds("/nowhere/x"); }),
+            "/nowhere/x: No such file or directory");
 }
 
 TEST(Thresholds, AreThoseOfTheLeastNoisySensorsThatAreAsNoisy) {
   const Thresholds t = some();
-  EXPECT_EQ(t.of("wallmobot3", 0).velocity_noise, 1e-4);
-  EXPECT_EQ(t.of("wallmobot3", 1e-4).velocity_noise, 1e-4);
-  EXPECT_EQ(t.of("wallmobot3", 5e-4).velocity_noise, 1e-3);
-  EXPECT_EQ(t.of("wallmobot3", 1).velocity_noise, 1e-3) << "the noisiest there is";
-  EXPECT_TRUE(t.of("testbed1", 0).by_estimator.empty());
+  EXPECT_EQ(t.of("wallmobot3", 0)->velocity_noise, 1e-4);
+  EXPECT_EQ(t.of("wallmobot3", 1e-4)->velocity_noise, 1e-4);
+  EXPECT_EQ(t.of("wallmobot3", 5e-4)->velocity_noise, 1e-3);
+  EXPECT_EQ(t.of("wallmobot3", 1)->velocity_noise, 1e-3) << "the noisiest there is";
+  EXPECT_EQ(t.of("testbed1", 0), nullptr);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST_F(DegradationFile, SaysWhatIsWrongAndKnowsBetter) {
               Degradation d;
               read_degradation("/nowhere/x.json", d);
             }),
-            "/nowhere/x.json: cannot open");
+            "/nowhere/x.json: No such file or directory");
 }
 
 TEST_F(DegradationFile, ABadOneChangesNothing) {

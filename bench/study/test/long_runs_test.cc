@@ -37,7 +37,7 @@ TEST(DetectionStudy, CalibrationDoesNotDependOnTheNumberOfThreads) {
     for (const auto& [estimator, detectors] : set.by_estimator) {
       for (const auto& [detector, trained] : detectors) {
         const Trained& other =
-            three.of(set.robot, set.velocity_noise).by_estimator.at(estimator).at(detector);
+            three.of(set.robot, set.velocity_noise)->by_estimator.at(estimator).at(detector);
         EXPECT_EQ(trained.threshold, other.threshold) << estimator << "+" << detector;
         EXPECT_EQ(trained.metric, other.metric) << estimator << "+" << detector;
       }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
@@ -44,12 +45,27 @@ TEST(StudyRuns, TakeSpecificationsAndRefuseWhatCannotBeBuilt) {
 
 TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
   const auto trained = [](double x) { return Trained{Eigen::VectorXd::Constant(3, x), {}}; };
-  ThresholdSet set;
+  ThresholdSet set{.robot = "wallmobot3"};
   set.by_estimator["mo1"] = {{"high_pass", trained(1)}, {"high_pass:w=60", trained(2)}};
-  EXPECT_EQ(trained_for(set, "mo1", "high_pass").at("high_pass").threshold[0], 1);
-  EXPECT_EQ(trained_for(set, "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
-  EXPECT_EQ(trained_for(set, "mo1", "high_pass:w=90").at("high_pass").threshold[0], 1);
-  EXPECT_TRUE(trained_for(set, "mo1:bandwidth=60", "high_pass").empty());
+  const Thresholds all{.sets = {set}};
+  const auto of = [&](const std::string& robot, const std::string& e, const std::string& d) {
+    return trained_for(all, robot, 0, e, d);
+  };
+  EXPECT_EQ(of("wallmobot3", "mo1", "high_pass").at("high_pass").threshold[0], 1);
+  EXPECT_EQ(of("wallmobot3", "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
+  EXPECT_TRUE(of("wallmobot3", "mo1", "").empty());
+  EXPECT_TRUE(of("wallmobot3", "mo1", "contact_classifier").empty());         // has none to train
+  EXPECT_TRUE(trained_for({}, "wallmobot3", 0, "mo1", "high_pass").empty());  // no file
+  for (const auto& [robot, e, d] : {std::tuple{"wallmobot3", "mo1", "high_pass:w=90"},
+                                    {"wallmobot3", "mo1:bandwidth=60", "high_pass"},
+                                    {"wallmobot3", "mo1", "cusum"},
+                                    {"testbed1", "mo1", "high_pass"}}) {
+    EXPECT_NE(error_of([&] {
+                of(robot, e, d);
+              }).find("there are those of wallmobot3/mo1+high_pass|high_pass:w=60"),
+              std::string::npos)
+        << robot << e << d;
+  }
 }
 
 }  // namespace

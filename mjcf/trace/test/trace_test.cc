@@ -122,17 +122,6 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_NE(error_of_reading("\x01\xff").find("it is '?\?'"), std::string::npos);
 }
 
-TEST_F(TraceFile, AnAbandonedFileLeavesTheOldOne) {
-  written("old");
-  { AtomicFile(path()).write("new"); }
-  std::ifstream in(path());
-  std::string text;
-  std::getline(in, text);
-  EXPECT_EQ(text, "old");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
-      << "nothing left beside it";
-}
-
 TEST_F(TraceFile, AFullDiskAndAMissingFolderAreErrors) {
   const Trace t = some_trace(3, 1000);
   EXPECT_EQ(error_of([&] { write_csv(t, "/dev/full"); }),

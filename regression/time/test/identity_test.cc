@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "mjcf/test/error_of.h"
+#include "mjcf/trace/input_file.h"
 #include "regression/host/child.h"
 #include "regression/host/files.h"
 
@@ -22,7 +23,7 @@ TEST(Identity, OfAProgramWithItselfAndWithOneByteChanged) {
   const TemporaryFolder folder;
   const std::string copy = folder.copy(this_program(), "copy");
   EXPECT_TRUE(identical(this_program(), copy));
-  std::string bytes = read_file(copy);
+  std::string bytes = read_whole(copy);
   const auto at = bytes.find(kNeedle);
   ASSERT_NE(at, std::string::npos);
   bytes[at] = 'A';
@@ -37,7 +38,7 @@ TEST(Identity, NamesTheLibrariesThatAProgramNeeds) {
 
 TEST(Identity, RefusesWhatIsNoProgramByName) {
   const TemporaryFolder folder;
-  const std::string path = folder.path() + "/x.so", whole = read_file(this_program());
+  const std::string path = folder.path() + "/x.so", whole = read_whole(this_program());
   const auto error = [&](const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
     return error_of([&] { identical(path, path); });
@@ -45,7 +46,8 @@ TEST(Identity, RefusesWhatIsNoProgramByName) {
   EXPECT_EQ(error(""), path + ": no ELF file of 64 bit");
   EXPECT_EQ(error("#!/bin/sh"), path + ": no ELF file of 64 bit");
   EXPECT_EQ(error(whole.substr(0, whole.size() / 2)), path + ": an ELF file that is cut off");
-  EXPECT_EQ(error_of([] { identical("/nowhere", "/nowhere"); }), "/nowhere: cannot be read");
+  EXPECT_EQ(error_of([] { identical("/nowhere", "/nowhere"); }),
+            "/nowhere: No such file or directory");
 }
 
 }  // namespace

@@ -3,10 +3,11 @@ package tauext.spy;
 
 /** What became of the messages since the window was opened. All in [1]. */
 final class Counters implements Cloneable {
-  long messages;   // that are well-formed
+  long used;       // that are drawn
+  long late;       // that were overtaken by a newer one; they are ignored
+  long repeated;   // that had come before
+  long rejected;   // that are no estimate or detection, have a wrong n, or are another sender's
   long lost;       // that never came: jumps of seq
-  long malformed;  // that are no estimate or detection, or have a wrong n; they are ignored
-  long late;       // older than one that was drawn; they are ignored
   long restarts;   // of the stream: utime or seq went back for long, or n changed
   long failed;     // estimates whose status says that a sample went wrong
 

@@ -23,7 +23,7 @@ final class EstimateView extends JPanel {
   private final MarkStrip marks = new MarkStrip();
   private final JPanel charts = new JPanel();
   private final TimeStrip time = new TimeStrip();
-  private final StatusLine status = new StatusLine();
+  private final StatusLine status;
   private final JCheckBox hold = new JCheckBox("hold the picture");
   private final List<Strip> strips = new ArrayList<>();
   private transient Snapshot drawn = new Snapshot();
@@ -32,6 +32,7 @@ final class EstimateView extends JPanel {
 
   EstimateView(LCM bus, String channel) {
     super(new BorderLayout());
+    status = new StatusLine(channel);
     recording = new Recording(Receiver.estimator(channel));
     receiver = new Receiver(bus, channel, recording);
     add(stack(row(legend, hold), marks), BorderLayout.NORTH);

@@ -14,6 +14,7 @@ import lcm.spy.Spy;
  */
 public final class Main {
   private static LCM bus;
+  private static Group group;  // null: on tcpq, or a log
 
   private Main() {}
 
@@ -25,16 +26,25 @@ public final class Main {
     return bus;
   }
 
-  private static synchronized void share(Spy spy) throws ReflectiveOperationException {
+  /** What receives multicast; null if nothing of ours does. */
+  static synchronized Group group() {
+    return group;
+  }
+
+  private static synchronized void share(Spy spy, String url) throws IOException, ReflectiveOperationException {
     Field field = Spy.class.getDeclaredField("lcm");
     field.setAccessible(true);
     bus = (LCM) field.get(spy);
+    if (url.startsWith("udpm://")) {
+      group = new Group(bus, url);
+      group.start();
+    }
   }
 
-  /** Argument: the URL to listen to; without one, LCM_DEFAULT_URL or LCM's own default. */
+  /** Argument: the URL to listen to. */
   public static void main(String[] args) {
     try {
-      share(new Spy(args.length > 0 ? args[0] : null));
+      share(new Spy(args[0].startsWith("udpm://") ? "memq://" : args[0]), args[0]);
     } catch (IOException | ReflectiveOperationException | RuntimeException | AWTError e) {
       System.err.println("tauext-spy: " + e);
       System.exit(1);  // lcm-spy's window is open already and would stay

@@ -8,11 +8,13 @@ import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
 import tauext.detection_t;
 import tauext.estimate_t;
+import tauext.summary_t;
 
 /** Puts every message of a channel of estimates, and the detections, into a recording until it is closed. */
 final class Receiver implements LCMSubscriber, AutoCloseable {
   static final String kEstimates = "TAUEXT_ESTIMATE_";
   static final String kDetections = "TAUEXT_DETECTION";
+  private static final String kSummaries = "TAUEXT_SUMMARY";
 
   private final LCM bus;
   private final String channel;  // as an expression
@@ -24,6 +26,7 @@ final class Receiver implements LCMSubscriber, AutoCloseable {
     this.recording = recording;
     bus.subscribe(this.channel, this);
     bus.subscribe(kDetections, this);
+    bus.subscribe(kSummaries, this);
   }
 
   /** Whose estimates a channel carries; "" if its name does not say. */
@@ -39,6 +42,8 @@ final class Receiver implements LCMSubscriber, AutoCloseable {
         detection_t detection = new detection_t(in);
         check(in);
         recording.add(detection);
+      } else if (channel.equals(kSummaries)) {
+        recording.end(new summary_t(in));
       } else {
         estimate_t estimate = new estimate_t(in);
         check(in);
@@ -53,6 +58,7 @@ final class Receiver implements LCMSubscriber, AutoCloseable {
   public void close() {
     bus.unsubscribe(channel, this);  // by name: on tcpq a null is an exception
     bus.unsubscribe(kDetections, this);
+    bus.unsubscribe(kSummaries, this);
   }
 
   private static void check(LCMDataInputStream in) throws IOException {

@@ -5,6 +5,7 @@ import java.util.ArrayDeque;
 import java.util.ArrayList;
 import tauext.detection_t;
 import tauext.estimate_t;
+import tauext.summary_t;
 
 /**
  * The last ten seconds of one channel of estimates, and of the detections that belong to it. Sign of the
@@ -15,8 +16,6 @@ final class Recording {
   private static final int kMarks = 1000;
   private static final long kNever = Long.MIN_VALUE / 2;
   private static final long kLate_us = 500000;  // a detector may be that far behind another one
-  private static final int kPatience = 20;  // messages
-  private static final long kLargestLoss = 10000;  // messages; a larger jump is another sender
 
   private final String estimator;
   private final Series[] truth = new Series[kJoints];
@@ -29,8 +28,8 @@ final class Recording {
   private long begin_us;
   private long detection_us = kNever;
   private long version;
-  private int behind;  // messages in order that are older than `last`
-  private long behind_us;
+  private final Sequence sequence = new Sequence();
+  private int others;  // messages in a row of another number of joints
 
   /** Takes the detections of this estimator; of all estimators if it is "". */
   Recording(String estimator) {
@@ -46,22 +45,22 @@ final class Recording {
       reject();
       return;
     }
-    if (last != null && (m.utime < last.utime || m.seq < last.seq || m.n != last.n)) {
-      // late, or another sender's; many in order are a sender that has started anew
-      behind = behind > 0 && m.utime > behind_us ? behind + 1 : 1;
-      behind_us = m.utime;
-      if (behind < kPatience) {
-        ++version;
-        ++counters.late;
-        return;
-      }
+    ++version;
+    if (last != null && m.n != last.n && ++others < Sequence.kPatience) {
+      sequence.excuse(m.seq);
+      reject();
+      return;
+    }
+    others = 0;
+    Sequence.Order order = sequence.take(m.seq);
+    if (order == Sequence.Order.LATE || order == Sequence.Order.REPEATED) {
+      return;
+    }
+    if (last != null && (order == Sequence.Order.RESTART || m.n != last.n || m.utime < last.utime)) {
       restart();
     }
-    behind = 0;
     if (last == null) {
       begin_us = m.utime;
-    } else if (m.seq > last.seq + 1 && m.seq - last.seq <= kLargestLoss) {
-      counters.lost += m.seq - last.seq - 1;
     }
     for (int i = 0; i < m.n; ++i) {
       estimate[i].add(m.utime, m.tau_ext_hat[i], m.tau_ext_hat_min[i], m.tau_ext_hat_max[i]);
@@ -103,7 +102,19 @@ final class Recording {
 
   synchronized void reject() {
     ++version;
-    ++counters.malformed;
+    ++counters.rejected;
+  }
+
+  /** The sender's summary: the last messages may have been lost, too. */
+  synchronized void end(summary_t s) {
+    boolean alone = s.entry.endsWith("/" + estimator);
+    long all = s.published + s.failed;
+    if (estimator.isEmpty() || impossible(s.published) || impossible(s.failed) || all == 0
+        || !alone && !s.entry.contains("/" + estimator + "+")) {
+      return;
+    }
+    ++version;
+    sequence.end(alone ? all : all / 2);  // with a detector, an estimate and a detection each time
   }
 
   /** Grows with whatever arrives. */
@@ -130,13 +141,16 @@ final class Recording {
     s.marks = new ArrayList<>(marks);
     s.marks.removeIf(m -> m.utime < end - Series.kWindow_us || m.utime > end);
     s.counters = counters.clone();
+    s.counters.used = sequence.next;
+    s.counters.late = sequence.late;
+    s.counters.repeated = sequence.repeated;
+    s.counters.rejected += sequence.foreign;
+    s.counters.lost = sequence.lost;
     s.longest_us = new Columns(step, end, 1).max();
     return s;
   }
 
   private void count(estimate_t m) {
-    ++version;
-    ++counters.messages;
     counters.status = m.status;
     counters.step_us = m.step_us;
     if (m.status != estimate_t.kOk && m.status != estimate_t.kStarted) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+package tauext.spy;
+
+import java.net.SocketAddress;
+import java.util.HashMap;
+import java.util.Map;
+
+/** Whose a channel is: its first sender's, until that one is silent. As lcmtypes/receive/senders.h. */
+final class Senders {
+  private static final long kSilence_ns = 500_000_000L;
+  private static final int kMost = 1000;  // channels, whose names come from outside
+
+  private static final class Channel {
+    SocketAddress current;
+    SocketAddress before;
+    SocketAddress other;
+    long heard_ns;
+    boolean other_spoke;
+    boolean crowded;
+  }
+
+  private final Map<String, Channel> channels = new HashMap<>();
+
+  /** Whether to use a message; false for a second sender's, and for channels beyond the thousandth. */
+  synchronized boolean take(String name, SocketAddress sender, long now_ns) {
+    Channel c = channels.get(name);
+    if (c == null) {
+      if (channels.size() >= kMost) {
+        return false;
+      }
+      c = new Channel();
+      c.current = sender;
+      channels.put(name, c);
+    }
+    if (sender.equals(c.current)) {
+      c.crowded |= c.other_spoke;
+      c.other_spoke = false;
+      c.heard_ns = now_ns;
+      return true;
+    }
+    c.other = sender;
+    if (now_ns - c.heard_ns < kSilence_ns) {
+      c.other_spoke = true;
+      return false;
+    }
+    c.crowded |= sender.equals(c.before);
+    c.before = c.current;
+    c.other = c.before;
+    c.current = sender;
+    c.other_spoke = false;
+    c.heard_ns = now_ns;
+    return true;
+  }
+
+  /** Who both send on a channel, in words; "" if there is one sender alone. */
+  synchronized String trouble(String name) {
+    Channel c = channels.get(name);
+    return c == null || !c.crowded ? "" : "two senders: " + c.current + " is shown, and not " + c.other;
+  }
+}

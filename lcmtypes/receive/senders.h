@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Whose messages a channel carries: one sender's, until that one is silent.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lcmtypes/receive/sequence.h"
+
+namespace tauext {
+
+/// Who sent a message: IPv4 address and port. 0: unknown (memq, tcpq and logs do not say).
+using Sender = std::uint64_t;
+
+/// "127.0.0.1:40123".
+std::string name_of(Sender sender);
+
+/// Two arms on one channel look like one arm that jumps to and fro. So a channel is its first
+/// sender's until that one has been silent for half a second, and two that speak in turns are told.
+/// Where senders are unknown, messages out of turn betray them: kPatience within a second.
+class Senders {
+ public:
+  /// Whose a message is.
+  enum class Whose : std::uint8_t {
+    kOurs,   ///< of the sender that the channel belongs to
+    kNew,    ///< of another, to which the channel belongs from now on: the old one is silent
+    kOther,  ///< of another one, while the first still speaks: not to be used
+  };
+
+  /// @param now [us] on a clock that never goes back
+  Whose take(Sender sender, std::int64_t now) noexcept;
+  /// A message came late, twice, or from where the stream did not go on.
+  void out_of_turn(std::int64_t now) noexcept;
+
+  /// Once: "127.0.0.1:4000 and 127.0.0.1:4001 send on the same channel; ..."; "" if there is
+  /// nothing new to say.
+  std::string trouble();
+
+ private:
+  static constexpr std::int64_t kSilence = 500'000, kSecond = 1'000'000;  // [us]
+
+  void crowded(Sender other) noexcept;
+
+  Sender current_ = 0, before_ = 0, other_ = 0;
+  std::int64_t heard_ = 0;  // [us] from the current one
+  bool other_spoke_ = false;
+  std::int64_t out_since_ = 0;  // [us]
+  int out_ = 0;                 // messages out of turn since then
+  bool crowded_ = false, told_ = false;
+};
+
+}  // namespace tauext

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a program reads and what it writes.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "mjcf/test/error_of.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/input_file.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Until = AtomicFile::Until;
+
+class Files : public testing::Test {
+ protected:
+  Files() : folder_(fs::temp_directory_path() / ("tauext_files_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Files() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name = "out") const { return (folder_ / name).string(); }
+  void put(const std::string& text, const std::string& name = "out") const {
+    std::ofstream(path(name)) << text;
+  }
+  std::string get(const std::string& name = "out") const {
+    std::ostringstream out;
+    out << std::ifstream(path(name)).rdbuf();
+    return out.str();
+  }
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& e : fs::directory_iterator(folder_)) all.insert(e.path().filename().string());
+    return all;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Files, AppearWholeOrNotAtAll) {
+  for (const Until until : {Until::kNowhere, Until::kNamed}) {
+    put("old");
+    {
+      AtomicFile file(path(), until);
+      file.write("new");
+      EXPECT_EQ(get(), "old");
+    }
+    EXPECT_EQ(get(), "old");
+    AtomicFile file(path(), until);
+    file.write("new");
+    file.commit();
+    EXPECT_EQ(get(), "new");
+    EXPECT_EQ(names(), std::set<std::string>{"out"});
+  }
+}
+
+TEST_F(Files, KeepTheModeOfWhatTheyReplace) {
+  put("old");
+  ::chmod(path().c_str(), 0640);
+  AtomicFile file(path());
+  file.commit();
+  struct stat now {};
+  ::stat(path().c_str(), &now);
+  EXPECT_EQ(now.st_mode & 07777, 0640u);
+}
+
+// a child that is in the middle of a file when a signal comes; its exit is the signal's
+TEST_F(Files, NothingIsLeftByASignalAndWhatAKillLeavesIsSwept) {
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    for (const Until until : {Until::kNowhere, Until::kNamed}) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        std::signal(SIGTERM, [](int) {
+          remove_unfinished_files();
+          ::_exit(7);
+        });
+        AtomicFile file(path(), until);
+        file.write("half");
+        ::raise(signal);
+        ::_exit(0);
+      }
+      int status = 0;
+      ::waitpid(child, &status, 0);
+      const bool left = signal == SIGKILL && until == Until::kNamed;
+      EXPECT_EQ(names().size(), left ? 1u : 0u) << signal;
+    }
+  }
+  put("of a process that lives", ".out." + std::to_string(::getpid()) + "-0.part");
+  put("of another file", ".other.1-0.part");
+  { const AtomicFile next(path()); }
+  EXPECT_EQ(names().size(), 2u);  // the two that are not ours to sweep
+}
+
+TEST_F(Files, APlantedLinkIsNotFollowed) {
+  put("precious", "victim");
+  // in a folder like /tmp a link that belongs to somebody else; only root can make one for a test
+  if (::geteuid() == 0) {
+    ::chmod(folder_.c_str(), 01777);
+    fs::create_symlink("victim", path());
+    ASSERT_EQ(::lchown(path().c_str(), 12345, 12345), 0);
+    EXPECT_NE(error_of([&] { AtomicFile{path()}; }).find("somebody else's link"),
+              std::string::npos);
+    fs::remove(path());
+  }
+  // our own stays a link
+  fs::create_symlink("victim", path());
+  AtomicFile file(path());
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(path()));
+  EXPECT_EQ(get("victim"), "new");
+}
+
+TEST_F(Files, AnOutputNeverReplacesAnInput) {
+  put("{}", "in");
+  fs::create_hard_link(path("in"), path("alias"));
+  fs::create_symlink("in", path("link"));
+  EXPECT_EQ(read_json_text(path("in")), "{}");
+  for (const char* name : {"in", "alias", "link", "../tauext_files_x"}) {
+    if (std::string(name).find("..") != std::string::npos) continue;
+    EXPECT_NE(error_of([&] { AtomicFile{path(name)}; }).find("is read by this program"),
+              std::string::npos)
+        << name;
+  }
+  put("old", "later");
+  {
+    const AtomicFile begun(path("later"));
+    EXPECT_NE(error_of([&] { read_whole(path("later")); }).find("is to replace it"),
+              std::string::npos);
+  }
+  EXPECT_EQ(read_whole(path("later")), "old");
+  EXPECT_EQ(get("in"), "{}");
+}
+
+TEST_F(Files, JsonThatWouldEndItsParserIsRefused) {
+  for (const char* bracket : {"[", "{\"a\":"}) {
+    std::string deep;
+    for (int i = 0; i < 100'000; ++i) deep += bracket;
+    put(deep);
+    EXPECT_NE(error_of([&] { read_json_text(path()); }).find("nest deeper than 64"),
+              std::string::npos);
+  }
+  put(R"({"brackets": "[[[[\"[[", "list": [[[]]]})");
+  EXPECT_EQ(read_json_text(path()), get());
+  EXPECT_NE(error_of([&] { read_whole(path(), 10); }).find("longer than 10 bytes"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { read_whole(path("none")); }).find("No such file"), std::string::npos);
+}
+
+TEST_F(Files, ACsvWithoutLineEndsIsNotTakenWhole) {
+  put("t,q1,qd1,tau1\n0,1,2," + std::string(1 << 20, '1'), "long.csv");
+  SkippedRows skipped;
+  EXPECT_NE(error_of([&] { read_csv(path("long.csv"), &skipped); }).find("line 2 is longer than"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tauext::test
