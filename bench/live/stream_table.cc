@@ -85,7 +85,8 @@ StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std:
     const std::int64_t foreign = c.sequence.counts().foreign;
     order = c.sequence.take(seq);
     const bool in_turn = order == Order::kNext || order == Order::kRestart;
-    if (!in_turn || c.sequence.counts().foreign > foreign) c.senders.out_of_turn(e.arrived);
+    const bool followed = c.sequence.counts().foreign == foreign;
+    in_turn&& followed ? c.senders.in_turn(e.arrived) : c.senders.out_of_turn(e.arrived);
   }
   if (order == Order::kRestart) events_.push_back(e.name + ": the sender has started anew");
   if (const std::string trouble = c.senders.trouble(); !trouble.empty()) {

@@ -26,6 +26,7 @@ Arrival Arrivals::take(const Reading& r, Sender sender, std::int64_t now) noexce
   const bool newer = !any_ || r.utime > newest_;
   if (r.seq >= 0 && (newer || r.utime < newest_)) sequence_.take(r.seq);
   if (newer) {
+    senders_.in_turn(now);
     look_for_jumps(r);
     return accept(r, Arrival::kNext);
   }

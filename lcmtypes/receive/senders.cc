@@ -4,6 +4,8 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace tauext {
 
 std::string name_of(Sender sender) {
@@ -16,11 +18,13 @@ std::string name_of(Sender sender) {
 }
 
 Senders::Whose Senders::take(Sender sender, std::int64_t now) noexcept {
-  if (current_ == 0) current_ = sender;
-  if (sender == current_) {
-    if (other_spoke_) crowded(other_);
-    other_spoke_ = false;
+  if (current_ == 0) {
+    current_ = sender;
     heard_ = now;
+  }
+  if (sender == current_) {
+    crowded_ = crowded_ || other_spoke_;
+    other_spoke_ = false;
     return Whose::kOurs;
   }
   if (now - heard_ < kSilence) {
@@ -28,17 +32,12 @@ Senders::Whose Senders::take(Sender sender, std::int64_t now) noexcept {
     other_spoke_ = true;
     return Whose::kOther;
   }
-  if (sender == before_) crowded(current_);  // slower than our patience, but both speak
-  before_ = current_;
+  crowded_ = crowded_ || sender == before_;  // slower than our patience, but both speak
+  other_ = before_ = current_;
   current_ = sender;
   other_spoke_ = false;
   heard_ = now;
   return Whose::kNew;
-}
-
-void Senders::crowded(Sender other) noexcept {
-  other_ = other;
-  crowded_ = true;
 }
 
 void Senders::out_of_turn(std::int64_t now) noexcept {
@@ -46,18 +45,19 @@ void Senders::out_of_turn(std::int64_t now) noexcept {
     out_since_ = now;
     out_ = 0;
   }
-  if (++out_ >= Sequence::kPatience) crowded_ = true;
+  disorder_ = disorder_ || ++out_ >= Sequence::kPatience;
 }
 
 std::string Senders::trouble() {
-  if (!crowded_ || told_) return "";
-  told_ = true;
-  if (other_ == 0) {
+  if (crowded_ && !std::exchange(told_, true)) {
+    return fmt::format("{} and {} both send on the channel; only the first is used",
+                       name_of(current_), name_of(other_));
+  }
+  if (disorder_ && !crowded_ && !std::exchange(said_, true)) {
     return "messages come out of turn: there are two senders on the channel, or each message comes "
            "twice";
   }
-  return fmt::format("{} and {} both send on the channel; only the first is used",
-                     name_of(current_), name_of(other_));
+  return "";
 }
 
 }  // namespace tauext

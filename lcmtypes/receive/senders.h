@@ -30,24 +30,25 @@ class Senders {
 
   /// @param now [us] on a clock that never goes back
   Whose take(Sender sender, std::int64_t now) noexcept;
-  /// A message came late, twice, or from where the stream did not go on.
+  /// A message of ours was the next one. Whoever only repeats himself is silent.
+  void in_turn(std::int64_t now) noexcept { heard_ = now; }
+  /// A message of ours came late, twice, or from where the stream did not go on.
   void out_of_turn(std::int64_t now) noexcept;
 
-  /// Once: "127.0.0.1:4000 and 127.0.0.1:4001 send on the same channel; ..."; "" if there is
-  /// nothing new to say.
+  /// Once for each pair: "127.0.0.1:4000 and 127.0.0.1:4001 both send on the channel; ...", or that
+  /// there must be two; "" if there is nothing new to say.
   std::string trouble();
 
  private:
   static constexpr std::int64_t kSilence = 500'000, kSecond = 1'000'000;  // [us]
 
-  void crowded(Sender other) noexcept;
-
   Sender current_ = 0, before_ = 0, other_ = 0;
   std::int64_t heard_ = 0;  // [us] from the current one
   bool other_spoke_ = false;
-  std::int64_t out_since_ = 0;  // [us]
-  int out_ = 0;                 // messages out of turn since then
-  bool crowded_ = false, told_ = false;
+  std::int64_t out_since_ = 0;            // [us]
+  int out_ = 0;                           // messages out of turn since then
+  bool crowded_ = false, told_ = false;   // by two who are known
+  bool disorder_ = false, said_ = false;  // by messages out of turn
 };
 
 }  // namespace tauext

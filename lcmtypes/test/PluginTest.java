@@ -181,11 +181,15 @@ public final class PluginTest {
     InetSocketAddress one = new InetSocketAddress("127.0.0.1", 4000);
     InetSocketAddress two = new InetSocketAddress("127.0.0.1", 4001);
     long ms = 1_000_000L;
-    expect(senders.take("A", one, 0) && !senders.take("A", two, ms), "the second sender is not shown");
+    expect(senders.take("A", one, 1, ms) && !senders.take("A", two, 1, 2 * ms), "the second sender is not shown");
     expect(senders.trouble("A").isEmpty(), "it may be a restart");
-    expect(senders.take("A", one, 2 * ms) && senders.trouble("A").contains("4001"), "both speak, and are named");
-    expect(senders.take("B", one, 0) && senders.take("B", two, 600 * ms) && senders.trouble("B").isEmpty(),
+    expect(senders.take("A", one, 2, 3 * ms) && senders.trouble("A").contains("4001"), "both speak, and are named");
+    expect(senders.take("B", one, 1, ms) && senders.take("B", two, 1, 600 * ms) && senders.trouble("B").isEmpty(),
         "a sender that has started anew is shown");
+    for (int k = 1; k <= 600; ++k) {
+      senders.take("C", one, 1, k * ms);
+    }
+    expect(senders.take("C", two, 1, 601 * ms), "who only repeats himself does not keep a channel");
   }
 
   private static void nonFiniteTorquesAreLeftOut() {

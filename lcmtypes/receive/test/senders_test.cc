@@ -17,6 +17,18 @@ TEST(SendersTest, AChannelIsItsFirstSendersUntilThatOneIsSilent) {
   EXPECT_EQ(s.trouble(), "");  // a restart
 }
 
+TEST(SendersTest, WhoOnlyRepeatsHimselfDoesNotKeepAChannel) {
+  Senders s;
+  s.take(7, 0);
+  for (int k = 1; k < 1000; ++k) {
+    EXPECT_EQ(s.take(7, 1000 * k), k <= 500 ? Whose::kOurs : Whose::kOther) << k;
+    s.out_of_turn(1000 * k);
+    const Whose real = s.take(8, 1000 * k);
+    EXPECT_EQ(real, k < 500 ? Whose::kOther : k == 500 ? Whose::kNew : Whose::kOurs) << k;
+    if (real != Whose::kOther) s.in_turn(1000 * k);
+  }
+}
+
 TEST(SendersTest, TwoThatSpeakInTurnsAreNamedHoweverSlow) {
   for (const std::int64_t period : {1'000, 100'000, 2'000'000}) {
     Senders s;

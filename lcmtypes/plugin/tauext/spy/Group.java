@@ -134,7 +134,8 @@ final class Group extends Thread {
       return;
     }
     String channel = new String(in.array(), kHead, end - kHead, StandardCharsets.ISO_8859_1);
-    if (!senders.take(channel, packet.getSocketAddress(), System.nanoTime())) {
+    int content = ByteBuffer.wrap(in.array(), end + 1, in.limit() - end - 1).hashCode();
+    if (!senders.take(channel, packet.getSocketAddress(), content, System.nanoTime())) {
       refuse(senders.trouble(channel));
       return;
     }

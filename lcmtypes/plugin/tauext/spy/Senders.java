@@ -17,12 +17,13 @@ final class Senders {
     long heard_ns;
     boolean other_spoke;
     boolean crowded;
+    int content;  // of its last message
   }
 
   private final Map<String, Channel> channels = new HashMap<>();
 
-  /** Whether to use a message; false for a second sender's, and for channels beyond the thousandth. */
-  synchronized boolean take(String name, SocketAddress sender, long now_ns) {
+  /** Whether to use a message with this hash of its content; false for a second sender's, and for channels beyond the thousandth. */
+  synchronized boolean take(String name, SocketAddress sender, int content, long now_ns) {
     Channel c = channels.get(name);
     if (c == null) {
       if (channels.size() >= kMost) {
@@ -35,7 +36,10 @@ final class Senders {
     if (sender.equals(c.current)) {
       c.crowded |= c.other_spoke;
       c.other_spoke = false;
-      c.heard_ns = now_ns;
+      if (content != c.content || c.heard_ns == 0) {  // whoever only repeats himself is silent
+        c.heard_ns = now_ns;
+      }
+      c.content = content;
       return true;
     }
     c.other = sender;
@@ -49,6 +53,7 @@ final class Senders {
     c.current = sender;
     c.other_spoke = false;
     c.heard_ns = now_ns;
+    c.content = content;
     return true;
   }
 
