@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# Draws Figs. 10 to 15 from what ci/figures recorded; `data` and `folder` are set there.
+# Draws Figs. 10 to 15 from what ci/figures recorded, in the folder where that lies, into the folder
+# that is its argument.
+folder = ARG1
 set datafile separator ','
 set terminal pngcairo size 800,560 font 'sans,10' background '#ffffff'
 set grid lc rgb '#dddddd'
 set key outside top center horizontal samplen 2
 set lmargin 10
 set rmargin 2
-file(name) = data.'/'.name.'.csv'
-est(name) = data.'/'.name.'_est.csv'
+file(name) = name.'.csv'
+est(name) = name.'_est.csv'
 TRUTH = '#000000'; EKF = '#d95f02'; NDOB = '#1b7a9e'; OTHER = '#7570b3'
 
 # tau_ext of a run: truth and both estimators; every: samples between two points

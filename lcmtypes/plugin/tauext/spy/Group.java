@@ -135,7 +135,7 @@ final class Group extends Thread {
     }
     String channel = new String(in.array(), kHead, end - kHead, StandardCharsets.ISO_8859_1);
     int content = ByteBuffer.wrap(in.array(), end + 1, in.limit() - end - 1).hashCode();
-    if (!senders.take(channel, packet.getSocketAddress(), content, System.nanoTime())) {
+    if (!senders.take(channel, (InetSocketAddress) packet.getSocketAddress(), content, System.nanoTime())) {
       refuse(senders.trouble(channel));
       return;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 package tauext.spy;
 
-import java.net.SocketAddress;
+import java.net.InetSocketAddress;
 import java.util.HashMap;
 import java.util.Map;
 
@@ -11,9 +11,9 @@ final class Senders {
   private static final int kMost = 1000;  // channels, whose names come from outside
 
   private static final class Channel {
-    SocketAddress current;
-    SocketAddress before;
-    SocketAddress other;
+    InetSocketAddress current;
+    InetSocketAddress before;
+    InetSocketAddress other;
     long heard_ns;
     boolean other_spoke;
     boolean crowded;
@@ -23,7 +23,7 @@ final class Senders {
   private final Map<String, Channel> channels = new HashMap<>();
 
   /** Whether to use a message with this hash of its content; false for a second sender's, and for channels beyond the thousandth. */
-  synchronized boolean take(String name, SocketAddress sender, int content, long now_ns) {
+  synchronized boolean take(String name, InetSocketAddress sender, int content, long now_ns) {
     Channel c = channels.get(name);
     if (c == null) {
       if (channels.size() >= kMost) {
@@ -60,6 +60,10 @@ final class Senders {
   /** Who both send on a channel, in words; "" if there is one sender alone. */
   synchronized String trouble(String name) {
     Channel c = channels.get(name);
-    return c == null || !c.crowded ? "" : "two senders: " + c.current + " is shown, and not " + c.other;
+    return c == null || !c.crowded ? "" : "two senders: " + name(c.current) + " is shown, and not " + name(c.other);
+  }
+
+  private static String name(InetSocketAddress sender) {
+    return sender.getAddress().getHostAddress() + ":" + sender.getPort();
   }
 }
