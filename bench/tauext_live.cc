@@ -5,11 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "bench/live/live_listen.h"
 #include "bench/live/live_modes.h"
 #include "bench/program/program.h"
+#include "bench/program/realtime.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
 
@@ -44,6 +46,12 @@ void add_run_flags(CLI::App& app, live::Options& o) {
       ->expected(0, 1);
   app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
       ->capture_default_str();
+  app.add_option("--realtime", o.realtime,
+                 "schedule the loop before all ordinary programs and keep its memory in RAM; "
+                 "priority 1 to 99, else 20")
+      ->type_name("[PRIORITY]")
+      ->expected(0, 1)
+      ->default_str(std::to_string(Realtime::kUsual));
   app.add_option("--speed", o.pace.speed, "simulated seconds in a second")->capture_default_str();
   app.add_flag("--loop", o.pace.again, "begin again at the end");
   app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")
@@ -84,6 +92,7 @@ int main(int argc, char** argv) {
     require_mode(app, !o.subscribe.empty(), "--subscribe", {"--type"});
     require_mode(app, o.subscribe.empty() && !listen, "--scenario and --from",
                  {"--speed", "--loop"});
+    require_mode(app, !listen, "--scenario, --from and --subscribe", {"--realtime"});
     require_mode(app, o.stream && !listen, "--lcm", {"--rate"});
     live::check(o, listen);
     if (listen) return live::run_listen(o);

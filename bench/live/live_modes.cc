@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
@@ -18,6 +19,7 @@
 #include "bench/logs/lcm_trace.h"
 #include "bench/logs/read_log.h"
 #include "bench/program/program.h"
+#include "bench/program/realtime.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
@@ -82,6 +84,10 @@ int finish(const Options& o, Outlet& outlet, const LiveEstimation& e, LiveReport
   return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
 }
 
+std::unique_ptr<Realtime> realtime_of(const Options& o) {
+  return o.realtime ? std::make_unique<Realtime>(*o.realtime) : nullptr;
+}
+
 // [ns] from one sample to the next, as most are
 double period_of(const std::vector<Reading>& all, double speed) {
   std::vector<double> steps;
@@ -128,7 +134,9 @@ int run_recorded(const Options& o) {
   say(fmt::format("playing {}{}; Ctrl-C ends", title_of(o), outlet.where()));
   const auto begin = Clock::now();
   StatusLine status;
+  std::unique_ptr<Realtime> first = realtime_of(o);
   Loop loop(readings, o.pace, estimation);
+  first.reset();  // this thread only looks on
   while (!loop.ended() && !interrupt.seen()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     outlet.report_failures();
@@ -155,6 +163,7 @@ int run_subscribed(const Options& o) {
   const Interrupt interrupt;
   say(fmt::format("listening to {} at {}{}; Ctrl-C ends", o.subscribe, inlet.url(),
                   o.stream ? ", streaming" : ""));
+  const std::unique_ptr<Realtime> first = realtime_of(o);  // this thread is the loop
   const auto begin = Clock::now();
   StatusLine status;
   while (!over(interrupt, begin, o.pace.duration) && inlet.wait()) {

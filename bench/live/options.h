@@ -3,6 +3,7 @@
 /// What tauext-live's command line says.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Options {
   std::string url;      ///< "": the default
   double rate = 200;    ///< [1/s] messages of each channel; 0: every sample
   Pace pace;
+  std::optional<int> realtime;  ///< [1] priority of the loop; none: an ordinary thread
   Sensors sensors;
   ModelError model_error;
   Recording recording;

@@ -202,6 +202,31 @@ TEST_F(LivePrograms, InterruptedItSumsUp) {
   }
 }
 
+TEST_F(LivePrograms, RealtimeIsTakenOrRefusedWithItsRemedy) {
+  const std::string rest =
+      "tauext-live --robot wallmobot3 --scenario free --estimator mo1 --duration 1 --realtime";
+  const Outcome forbidden = run_script(
+      "ulimit -r 0; ulimit -l 64; exec setpriv --reuid 65534 --clear-groups "
+      "--bounding-set -all " +
+      rest + " 2>&1");
+  if (forbidden.code != 127) {
+    EXPECT_EQ(forbidden.code, 2) << forbidden.text;
+    EXPECT_TRUE(forbidden.says("--realtime: cannot ")) << forbidden.text;
+    EXPECT_TRUE(forbidden.says("sudo setcap cap_sys_nice,cap_ipc_lock+ep")) << forbidden.text;
+  }
+  const Outcome wrong = run(rest + " 100");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(wrong.says("a priority is 1 to 99")) << wrong.text;
+  const Outcome o =
+      run_script(rest +
+                 " 30 > out 2>&1 & live=$!\nsays out playing; sleep 0.3\n"
+                 "chrt -a -p $live | grep -c 'SCHED_FIFO' | sed 's/$/ threads first/'\n"
+                 "wait $live; code=$?; cat out; exit $code");
+  if (o.says("--realtime: cannot")) GTEST_SKIP() << "not allowed here: " << o.text;
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("1 threads first")) << o.text;  // the loop, and no other
+}
+
 TEST_F(LivePrograms, AConnectionThatIsNotThereIsAnErrorAndNoAbort) {
   for (const char* flags : {"--listen", "--robot wallmobot3 --estimator mo1 --subscribe ARM"}) {
     const Outcome o = run(std::string("tauext-live ") + flags + " --lcm tcpq://127.0.0.1:1");

@@ -20,6 +20,7 @@ Order Sequence::take(std::int64_t seq) noexcept {
 }
 
 Order Sequence::take_ahead(std::int64_t seq) noexcept {
+  if (jump_.size() > 0 && seq - next_ > kSmall) refuse_jump();  // nor did it go on from there
   settle_jump();
   const Gap gap{next_, seq};
   if (gap.size() > kSmall) {

@@ -79,6 +79,19 @@ TEST(SequenceTest, AForgedNumberFarAheadIsForeign) {
   EXPECT_EQ(s.counts().next, 1000);
 }
 
+TEST(SequenceTest, RandomNumbersMakeNoLoss) {
+  std::mt19937_64 random(6);
+  Sequence s;
+  for (int k = 0; k < 10'000; ++k) {
+    s.take(k);
+    for (int forged = 0; forged < 3; ++forged) {
+      s.take(static_cast<std::int64_t>(random() >> (12 + random() % 32)));
+    }
+  }
+  EXPECT_LT(s.counts().lost, 100);
+  EXPECT_GE(s.counts().next, 9'900);
+}
+
 TEST(SequenceTest, TheEndIsTheSendersWord) {
   Sequence s;
   for (int k = 5; k < 90; ++k) s.take(k);

@@ -73,6 +73,9 @@ final class Sequence {
   }
 
   private Order takeAhead(long seq) {
+    if (jump != null && seq - expected > kSmall) {
+      refuseJump();  // nor did it go on from there
+    }
     settleJump();
     if (seq - expected > kSmall) {
       jump = new long[] {expected, seq};
