@@ -71,10 +71,11 @@ int run_calibration(const Flags& f) {
 
 int run_study(const Flags& f) {
   const TableFormat format = table_format(f.format);
-  if (!f.out.empty()) require_writable(f.out);
   study::check_study(f.study);  // before calibration takes its time
-  const Thresholds thresholds =
-      f.thresholds.empty() ? calibrated(f) : read_thresholds(f.thresholds);
+  Thresholds thresholds;
+  if (!f.thresholds.empty()) thresholds = read_thresholds(f.thresholds);
+  if (!f.out.empty()) require_writable(f.out);
+  if (f.thresholds.empty()) thresholds = calibrated(f);
   const std::vector<study::Cell> cells = studied(f.study, thresholds);
   // a table for a program stands alone; so does a study on standard output
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;

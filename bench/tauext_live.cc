@@ -47,8 +47,7 @@ void add_run_flags(CLI::App& app, live::Options& o) {
   app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
       ->capture_default_str();
   app.add_option("--realtime", o.realtime,
-                 "schedule the loop before all ordinary programs and keep its memory in RAM; "
-                 "priority 1 to 99, else 20")
+                 "the loop before all ordinary programs (1 to 99), its memory in RAM")
       ->type_name("[PRIORITY]")
       ->expected(0, 1)
       ->default_str(std::to_string(Realtime::kUsual));
@@ -62,11 +61,9 @@ void add_run_flags(CLI::App& app, live::Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Runs a scenario, a recorded log (--from) or a robot on LCM (--subscribe) through "
-      "estimators\n"
-      "in real time and streams what they say, or shows a stream (--listen). Opens no socket "
-      "without\n"
-      "--lcm, --subscribe or --listen. Ctrl-C ends it with a summary.\n\n"
+      "Runs a scenario, a log (--from) or a robot on LCM (--subscribe) through estimators in real\n"
+      "time, or shows a stream (--listen). Opens no socket without --lcm, --subscribe or "
+      "--listen.\n\n"
       "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
       "tauext-live");
   live::Options o;

@@ -104,7 +104,8 @@ void walk(Cursor& c, const detection_t&) {
 void walk(Cursor& c, const summary_t&) {
   c.time();
   for (int i = 0; i < 3; ++i) c.text();
-  c.skip(8 * 8);
+  c.skip(2 * 8);
+  for (int i = 0; i < 6; ++i) c.time();  // counts
   const int n = c.count(0, kMaxMetrics);
   for (int i = 0; i < n; ++i) c.text();
   c.skip(static_cast<std::size_t>(n) * 8);

@@ -22,6 +22,7 @@ std::int64_t microseconds() {
 
 Outlet::Outlet(const Options& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
   if (!o.stream) return;
+  refuse_input_as_log(o.url);
   transport_ = std::make_shared<Transport>(o.url);
   if (!transport_->good()) say("streaming is off: " + transport_->trouble());
   stream_.emplace(transport_, streams_, rate);
@@ -64,7 +65,11 @@ Inlet::Inlet(const Options& o, const Robot& robot, LiveEstimation& estimation, L
       report_(report),
       listener_(o.url, {o.subscribe, kSummaryChannel},
                 [this](std::string_view channel, Sender sender, Bytes message) {
-                  channel == channel_ ? take(sender, message) : take_summary(message);
+                  if (channel == channel_) {
+                    take(sender, message);
+                  } else {
+                    take_summary(sender, message);
+                  }
                 }) {}
 
 bool Inlet::wait() {
@@ -88,7 +93,7 @@ void Inlet::take(Sender sender, Bytes message) {
   if (reject != Reject::kNone || reading.n != robot_.dof()) {
     if (!explained_) explain(reject, reading.n);
     explained_ = true;
-    arrivals_.reject(stamp_of(message));
+    arrivals_.reject(stamp_of(message), sender);
     return;
   }
   const Arrival arrival = arrivals_.take(reading, sender, microseconds());
@@ -99,11 +104,11 @@ void Inlet::take(Sender sender, Bytes message) {
   if (arrival == Arrival::kNext || arrival == Arrival::kRestart) estimation_.take(reading);
 }
 
-void Inlet::take_summary(Bytes message) {
+void Inlet::take_summary(Sender sender, Bytes message) {
   summary_t s{};
   if (!channel_.starts_with(kEstimateChannel) || decode(message, s) != Reject::kNone) return;
   const std::string estimator = channel_.substr(std::strlen(kEstimateChannel));
-  if (const auto sent = messages_of(s, estimator)) arrivals_.end(*sent);
+  if (const auto sent = messages_of(s, estimator)) arrivals_.end(*sent, sender);
 }
 
 void Inlet::explain(Reject reject, int joints) const {

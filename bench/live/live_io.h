@@ -56,7 +56,7 @@ class Inlet {
 
  private:
   void take(Sender sender, Bytes message);
-  void take_summary(Bytes message);
+  void take_summary(Sender sender, Bytes message);
   void explain(Reject reject, int joints) const;
 
   std::string channel_;

@@ -84,8 +84,10 @@ int finish(const Options& o, Outlet& outlet, const LiveEstimation& e, LiveReport
   return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
 }
 
-std::unique_ptr<Realtime> realtime_of(const Options& o) {
-  return o.realtime ? std::make_unique<Realtime>(*o.realtime) : nullptr;
+// so far below the loop
+std::unique_ptr<Realtime> realtime_of(const Options& o, int below = 0) {
+  if (!o.realtime) return nullptr;
+  return std::make_unique<Realtime>(*o.realtime > below ? *o.realtime - below : *o.realtime);
 }
 
 // [ns] from one sample to the next, as most are
@@ -128,13 +130,15 @@ int run_recorded(const Options& o) {
   const RecordedLog log = recorded_log(o, r, thresholds);
   const Trace& trace = log.trace;
   const std::vector<Reading> readings = readings_of(trace);
-  Outlet outlet(o, o.rate / o.pace.speed);  // a rate of the clock's seconds
+  std::unique_ptr<Realtime> first = realtime_of(o, 1);  // who sends comes behind the loop
+  Outlet outlet(o, o.rate / o.pace.speed);              // a rate of the clock's seconds
+  first.reset();
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream());
   const Interrupt interrupt;
   say(fmt::format("playing {}{}; Ctrl-C ends", title_of(o), outlet.where()));
   const auto begin = Clock::now();
   StatusLine status;
-  std::unique_ptr<Realtime> first = realtime_of(o);
+  first = realtime_of(o);
   Loop loop(readings, o.pace, estimation);
   first.reset();  // this thread only looks on
   while (!loop.ended() && !interrupt.seen()) {

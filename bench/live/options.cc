@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/reading.h"
 #include "lcmtypes/transport.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext::live {
 
@@ -29,6 +31,7 @@ void check(const Options& o, bool listen) {
             "--listen shows streams and estimates nothing");
     return;
   }
+  require(!o.subscribe.ends_with('*'), fmt::format("--subscribe {}: one channel", o.subscribe));
   require(!o.robot.empty() && !o.estimators.empty(), "--robot and --estimator are required");
   require(o.pace.speed >= 1e-3 && o.pace.speed <= 1e3,
           fmt::format("--speed {}: 0.001 to 1000", o.pace.speed));
@@ -38,6 +41,12 @@ void check(const Options& o, bool listen) {
     require(o.subscribe != kEstimateChannel + e,
             fmt::format("--subscribe {}: its own estimates would come back to it", o.subscribe));
   }
+}
+
+void refuse_input_as_log(const std::string& url) {
+  constexpr std::string_view kScheme = "file://";
+  if (!url.starts_with(kScheme)) return;
+  refuse_input(url.substr(kScheme.size(), url.find('?') - kScheme.size()));
 }
 
 }  // namespace tauext::live

@@ -30,26 +30,28 @@ const char* status_name(std::int8_t status) {
 }  // namespace
 
 template <class Message>
-bool StreamTable::decoded(Bytes message, const std::string& channel, Message& m) {
+bool StreamTable::decoded(Bytes message, const Envelope& e, Message& m) {
   const Reject reject = decode(message, m);
   if (reject == Reject::kNone) return true;
   ++rejects_[reject];
-  const auto it = channels_.find(channel);
-  if (it != channels_.end()) it->second.sequence.excuse(stamp_of(message).seq);
+  const auto it = channels_.find(e.name);
+  if (it != channels_.end() && it->second.senders.is_ours(e.sender)) {
+    it->second.sequence.excuse(stamp_of(message).seq);
+  }
   return false;
 }
 
 void StreamTable::take(std::string_view channel, Sender sender, std::int64_t arrived,
                        Bytes message) {
   const std::int64_t hash = hash_of(message);
-  Envelope envelope{printable_name(channel), sender, arrived};
+  Envelope envelope{std::string(channel.substr(0, kLongestChannel)), sender, arrived};
   if (hash == detection_t::getHash()) {
-    if (detection_t d; decoded(message, envelope.name, d)) take_detection(d, envelope);
+    if (detection_t d; decoded(message, envelope, d)) take_detection(d, envelope);
   } else if (hash == summary_t::getHash()) {
-    if (summary_t s; decoded(message, envelope.name, s)) take_summary(s);
+    if (summary_t s; decoded(message, envelope, s)) take_summary(s, envelope);
   } else if (hash == sample_t::getHash()) {
     sample_t s{};
-    if (!decoded(message, envelope.name, s)) return;
+    if (!decoded(message, envelope, s)) return;
     Channel* const c = accept(channels_, envelope, s.seq);
     if (c == nullptr) return;
     c->newest.n = s.n;
@@ -58,7 +60,7 @@ void StreamTable::take(std::string_view channel, Sender sender, std::int64_t arr
     std::copy_n(s.tau_ext_true, kMaxJoints, c->newest.tau_ext_true);
   } else {
     estimate_t e{};
-    if (!decoded(message, envelope.name, e)) return;
+    if (!decoded(message, envelope, e)) return;
     Channel* const c = accept(channels_, envelope, e.seq);
     if (c == nullptr) return;
     c->newest = e;
@@ -86,11 +88,16 @@ StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std:
     order = c.sequence.take(seq);
     const bool in_turn = order == Order::kNext || order == Order::kRestart;
     const bool followed = c.sequence.counts().foreign == foreign;
-    in_turn&& followed ? c.senders.in_turn(e.arrived) : c.senders.out_of_turn(e.arrived);
+    if (in_turn && followed) {
+      c.senders.in_turn(e.arrived);
+    } else {
+      c.senders.out_of_turn(e.arrived);
+    }
   }
-  if (order == Order::kRestart) events_.push_back(e.name + ": the sender has started anew");
+  if (order == Order::kRestart)
+    events_.push_back(printable_name(e.name) + ": the sender has started anew");
   if (const std::string trouble = c.senders.trouble(); !trouble.empty()) {
-    events_.push_back(e.name + ": " + trouble);
+    events_.push_back(printable_name(e.name) + ": " + trouble);
   }
   if (whose == Senders::Whose::kOther) return nullptr;
   c.arrivals.push_back(e.arrived);
@@ -121,9 +128,9 @@ void StreamTable::take_detection(const detection_t& d, const Envelope& e) {
                                 pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
 }
 
-void StreamTable::take_summary(const summary_t& s) {
+void StreamTable::take_summary(const summary_t& s, const Envelope& e) {
   ++summaries_;
-  take_end(s);
+  take_end(s, e);
   std::string line = printable_name(s.entry);
   if (!s.error.empty()) line += "  FAILED: " + printable_name(s.error);
   if (s.rmse_Nm >= 0) line += fmt::format("  rmse {:.4g} N m", s.rmse_Nm);
@@ -133,17 +140,22 @@ void StreamTable::take_summary(const summary_t& s) {
   events_.push_back(line);
 }
 
+void StreamTable::end(Channel& c, std::int64_t sent) {
+  c.sequence.end(sent);
+  c.senders.end();
+}
+
 // the last messages may have been lost, too
-void StreamTable::take_end(const summary_t& s) {
+void StreamTable::take_end(const summary_t& s, const Envelope& e) {
   for (auto& [name, c] : channels_) {
-    if (!name.starts_with(kEstimateChannel)) continue;
+    if (!name.starts_with(kEstimateChannel) || !c.senders.is_ours(e.sender)) continue;
     const std::string estimator = name.substr(std::strlen(kEstimateChannel));
-    if (const auto sent = messages_of(s, estimator)) c.sequence.end(*sent);
+    if (const auto sent = messages_of(s, estimator)) end(c, *sent);
   }
   for (auto& [pair, c] : pairs_) {
-    if (!s.entry.ends_with("/" + pair)) continue;
+    if (!s.entry.ends_with("/" + pair) || !c.senders.is_ours(e.sender)) continue;
     const auto sent = messages_of(s, pair.substr(0, pair.find('+')));
-    if (sent) c.sequence.end(*sent);
+    if (sent) end(c, *sent);
   }
 }
 

@@ -51,11 +51,12 @@ class StreamTable {
   };
 
   template <class Message>
-  bool decoded(Bytes message, const std::string& channel, Message& m);
+  bool decoded(Bytes message, const Envelope& e, Message& m);
   Channel* accept(Channels& all, const Envelope& e, std::int64_t seq);
   void take_detection(const detection_t& d, const Envelope& e);
-  void take_summary(const summary_t& s);
-  void take_end(const summary_t& s);
+  void take_summary(const summary_t& s, const Envelope& e);
+  void take_end(const summary_t& s, const Envelope& e);
+  static void end(Channel& c, std::int64_t sent);
 
   Channels channels_;
   Channels pairs_;  // detections, by estimator and detector

@@ -127,11 +127,7 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
     used.insert(used.end(), late.begin(), late.end());
     used.push_back(r);
   }
-  if (arrivals.counts().two_arms) {
-    throw std::runtime_error(fmt::format(
-        "{}: on channel {} positions jump to and fro: two arms share it; give each a channel", path,
-        found.channel));
-  }
+  found.two_arms = arrivals.counts().two_arms;
   found.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
   found.lost = arrivals.counts().lost;
   return used;
@@ -185,6 +181,10 @@ std::string LogReport::in_words() const {
   add(lost, "lost");
   add(faults.junk_bytes, "bytes of junk between events");
   add(faults.truncated, "event cut off at the end");
+  if (two_arms) {
+    text += fmt::format("{}positions jump to and fro: do two arms share the channel?",
+                        text.empty() ? "" : "; ");
+  }
   return text;
 }
 

@@ -31,6 +31,7 @@ struct LogReport {
   std::int64_t rejected = 0;  ///< messages on it that were no good, or of another number of joints
   std::int64_t out_of_order = 0;  ///< late or repeated
   std::int64_t lost = 0;          ///< never recorded
+  bool two_arms = false;          ///< as Arrivals says
   LogFaults faults;               ///< of the file
   /// "" if there was nothing of that, else in words.
   std::string in_words() const;

@@ -69,7 +69,7 @@ ThresholdSet set_of(const Json& j) {
   return set;
 }
 
-// robot/estimator+detector,detector, of all sets
+// robot/estimator+detector|detector, of all sets
 std::set<std::string> pairs_of(const Thresholds& t) {
   std::set<std::string> pairs;
   for (const ThresholdSet& s : t.sets) {

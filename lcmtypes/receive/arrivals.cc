@@ -24,23 +24,43 @@ Arrival Arrivals::take(const Reading& r, Sender sender, std::int64_t now) noexce
   }
   if (whose == Senders::Whose::kNew && any_) return start_anew(r);
   const bool newer = !any_ || r.utime > newest_;
-  if (r.seq >= 0 && (newer || r.utime < newest_)) sequence_.take(r.seq);
+  if (r.seq >= 0) sequence_.take(r.seq);
   if (newer) {
     senders_.in_turn(now);
     look_for_jumps(r);
     return accept(r, Arrival::kNext);
   }
-  senders_.out_of_turn(now);
   if (r.utime == newest_) {
+    senders_.out_of_turn(now);
     ++counts_.repeated;
+    count_lost();
     return Arrival::kRepeated;
   }
   late_in_order_ = late_in_order_ > 0 && r.utime > last_late_ ? late_in_order_ + 1 : 1;
   last_late_ = r.utime;
-  if (late_in_order_ >= Sequence::kPatience) return start_anew(r);
+  if (late_in_order_ >= Sequence::kPatience) {
+    senders_.in_turn(now);
+    return start_anew(r);
+  }
+  senders_.out_of_turn(now);
+  if (r.seq < 0) find_again(r.utime);
   ++counts_.late;
-  counts_.lost = lost_ + sequence_.counts().lost;
+  count_lost();
   return Arrival::kLate;
+}
+
+void Arrivals::count_lost() noexcept {
+  counts_.lost = lost_ + sequence_.counts().lost;
+}
+
+// one of a gap that came late after all
+void Arrivals::find_again(std::int64_t utime) noexcept {
+  for (Gap& gap : gaps_) {
+    if (gap.missing == 0 || utime <= gap.from || utime >= gap.to) continue;
+    --gap.missing;
+    --lost_;
+    return;
+  }
 }
 
 Arrival Arrivals::start_anew(const Reading& r) noexcept {
@@ -48,13 +68,14 @@ Arrival Arrivals::start_anew(const Reading& r) noexcept {
   if (r.seq >= 0) sequence_.restart(r.seq);
   any_ = false;
   doubtful_ = excused_ = 0;
+  gaps_.fill({});
   periods_known_ = 0;
   return accept(r, Arrival::kRestart);
 }
 
 Arrival Arrivals::accept(const Reading& r, Arrival as) noexcept {
-  if (any_ && r.seq < 0) count_period(r.utime - newest_);
-  counts_.lost = lost_ + sequence_.counts().lost;
+  if (any_ && r.seq < 0) count_period(r.utime);
+  count_lost();
   any_ = true;
   newest_ = r.utime;
   late_in_order_ = 0;
@@ -63,22 +84,26 @@ Arrival Arrivals::accept(const Reading& r, Arrival as) noexcept {
   return as;
 }
 
-void Arrivals::reject(const Stamp& stamp) noexcept {
+void Arrivals::reject(const Stamp& stamp, Sender sender) noexcept {
   ++counts_.rejected;
+  if (!senders_.is_ours(sender)) return;
   if (stamp.seq >= 0) {
     sequence_.excuse(stamp.seq);
-    counts_.lost = lost_ + sequence_.counts().lost;
+    count_lost();
   } else if (any_ && stamp.utime > newest_) {
     ++excused_;
   }
 }
 
-void Arrivals::end(std::int64_t sent) noexcept {
+void Arrivals::end(std::int64_t sent, Sender sender) noexcept {
+  if (!senders_.is_ours(sender)) return;
   sequence_.end(sent);
-  counts_.lost = lost_ + sequence_.counts().lost;
+  senders_.end();
+  count_lost();
 }
 
-void Arrivals::count_period(std::int64_t step) noexcept {
+void Arrivals::count_period(std::int64_t utime) noexcept {
+  const std::int64_t step = utime - newest_;
   constexpr std::size_t kEnough = 5;
   constexpr std::int64_t kSmall = 64;  // periods
   lost_ += doubtful_;                  // time went on from there
@@ -86,7 +111,13 @@ void Arrivals::count_period(std::int64_t step) noexcept {
   if (periods_known_ >= kEnough) {
     const std::int64_t missing =
         std::max<std::int64_t>((step + period() / 2) / period() - 1 - excused_, 0);
-    (missing <= kSmall ? lost_ : doubtful_) += missing;
+    if (missing > kSmall) {
+      doubtful_ += missing;
+    } else if (missing > 0) {
+      lost_ += missing;
+      gaps_[oldest_gap_] = {newest_, utime, missing};
+      oldest_gap_ = (oldest_gap_ + 1) % gaps_.size();
+    }
   }
   periods_[periods_known_++ % periods_.size()] = step;
 }

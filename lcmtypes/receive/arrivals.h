@@ -45,10 +45,11 @@ class Arrivals {
   Arrival take(const Reading& reading, Sender sender, std::int64_t now) noexcept;
 
   /// A message came and was no good; where it says its number and time, that one is not lost.
-  void reject(const Stamp& stamp) noexcept;
+  void reject(const Stamp& stamp, Sender sender) noexcept;
 
-  /// The sender says that it has ended, and how many messages it has sent.
-  void end(std::int64_t sent) noexcept;
+  /// A sender says that it has ended, and how many messages it has sent; believed if the channel is
+  /// its own.
+  void end(std::int64_t sent, Sender sender) noexcept;
 
   const Counts& counts() const { return counts_; }  ///< since the begin
 
@@ -59,7 +60,9 @@ class Arrivals {
   Arrival accept(const Reading& r, Arrival as) noexcept;
   Arrival start_anew(const Reading& r) noexcept;
   void look_for_jumps(const Reading& r) noexcept;
-  void count_period(std::int64_t step) noexcept;
+  void count_lost() noexcept;
+  void find_again(std::int64_t utime) noexcept;
+  void count_period(std::int64_t utime) noexcept;
   std::int64_t period() const noexcept;
 
   Counts counts_;
@@ -73,6 +76,12 @@ class Arrivals {
   std::int64_t lost_ = 0, doubtful_ = 0;    // readings without a number; in a jump not yet believed
   std::array<std::int64_t, 31> periods_{};  // [us]
   std::size_t periods_known_ = 0;
+  struct Gap {
+    std::int64_t from = 0, to = 0;  // [us] between these
+    std::int64_t missing = 0;       // readings without a number
+  };
+  std::array<Gap, 16> gaps_;  // the newest
+  std::size_t oldest_gap_ = 0;
   std::array<Joints, 2> before_{};  // [rad] q of the newest, and of the one before
   std::int64_t jumps_since_ = 0;    // [us] of the sender's clock
   int jumps_ = 0;                   // since then

@@ -115,13 +115,10 @@ Refusal GroupSocket::judge(Bytes datagram, std::uint32_t address, Datagram& out)
 }
 
 bool GroupSocket::is_ours(std::uint32_t address) {
-  const auto known = [&] { return std::find(ours_.begin(), ours_.end(), address) != ours_.end(); };
-  if (known()) return true;
   if (address == INADDR_ANY) return zero_is_ours_;
-  constexpr std::int64_t kEvery = 1'000'000;  // [us] an interface may have got another one
-  if (now_us() - addresses_read_ < kEvery) return false;
-  read_addresses();
-  return known();
+  constexpr std::int64_t kEvery = 1'000'000;  // [us] interfaces get and lose addresses
+  if (now_us() - addresses_read_ > kEvery) read_addresses();
+  return std::find(ours_.begin(), ours_.end(), address) != ours_.end();
 }
 
 void GroupSocket::read_addresses() {

@@ -54,7 +54,7 @@ class GroupSocket {
   int descriptor() const { return socket_; }  ///< readable when a datagram is there
 
   /// The next datagram that is there; what it says is good until the next call. False: none.
-  /// Where it is refused, `out.message` is empty.
+  /// Where it is refused, `out.channel` is empty.
   bool take(Datagram& out, Sender& sender);
 
   Counts counts() const;  ///< since the begin
@@ -66,7 +66,7 @@ class GroupSocket {
 
   int socket_;
   bool everybody_;
-  bool zero_is_ours_;  // where lo has the route and nothing else an address, senders have none
+  bool zero_is_ours_;  // a sender has no address where the route leads to lo, and lo alone has one
   std::vector<std::byte> buffer_;
   std::vector<std::uint32_t> ours_;        // IPv4 addresses of this machine, in network order
   std::int64_t addresses_read_ = 0;        // [us] when

@@ -23,7 +23,7 @@ Senders::Whose Senders::take(Sender sender, std::int64_t now) noexcept {
     heard_ = now;
   }
   if (sender == current_) {
-    crowded_ = crowded_ || other_spoke_;
+    two_known_ = two_known_ || other_spoke_;
     other_spoke_ = false;
     return Whose::kOurs;
   }
@@ -32,7 +32,7 @@ Senders::Whose Senders::take(Sender sender, std::int64_t now) noexcept {
     other_spoke_ = true;
     return Whose::kOther;
   }
-  crowded_ = crowded_ || sender == before_;  // slower than our patience, but both speak
+  two_known_ = two_known_ || sender == before_;  // slower than our patience, but both speak
   other_ = before_ = current_;
   current_ = sender;
   other_spoke_ = false;
@@ -49,11 +49,11 @@ void Senders::out_of_turn(std::int64_t now) noexcept {
 }
 
 std::string Senders::trouble() {
-  if (crowded_ && !std::exchange(told_, true)) {
+  if (two_known_ && !std::exchange(reported_two_, true)) {
     return fmt::format("{} and {} both send on the channel; only the first is used",
                        name_of(current_), name_of(other_));
   }
-  if (disorder_ && !crowded_ && !std::exchange(said_, true)) {
+  if (disorder_ && !two_known_ && !std::exchange(reported_disorder_, true)) {
     return "messages come out of turn: there are two senders on the channel, or each message comes "
            "twice";
   }

@@ -10,11 +10,11 @@ Order Sequence::take(std::int64_t seq) noexcept {
     any_ = true;
     next_ = seq;
   }
-  if (ended_ && seq < next_) {
+  if (ended_ && seq < next_ - 1 && !is_missing(seq)) {
     restart(seq);
     return Order::kRestart;
   }
-  ended_ = false;
+  ended_ = ended_ && seq < next_;
   if (jump_.has(seq) && seq - jump_.from < kSmall) refuse_jump();
   return seq >= next_ ? take_ahead(seq) : take_behind(seq);
 }
@@ -94,7 +94,8 @@ void Sequence::refuse_jump() noexcept {
 
 void Sequence::miss(Gap gap) noexcept {
   if (gap.size() == 0) return;
-  counts_.lost += gap.size();
+  constexpr std::int64_t kMost = std::int64_t{1} << 58;  // whose sums cannot overflow
+  counts_.lost = std::min(counts_.lost + gap.size(), kMost);
   keep(gap);
   for (const std::int64_t seq : excused_) {
     if (gap.has(seq)) fill(seq);
@@ -104,6 +105,10 @@ void Sequence::miss(Gap gap) noexcept {
 void Sequence::keep(Gap gap) noexcept {
   missing_[oldest_] = gap;
   oldest_ = (oldest_ + 1) % missing_.size();
+}
+
+bool Sequence::is_missing(std::int64_t seq) const noexcept {
+  return std::any_of(missing_.begin(), missing_.end(), [&](const Gap& g) { return g.has(seq); });
 }
 
 bool Sequence::fill(std::int64_t seq) noexcept {

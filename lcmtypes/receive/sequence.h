@@ -62,6 +62,7 @@ class Sequence {
   void refuse_jump() noexcept;
   void miss(Gap gap) noexcept;
   void keep(Gap gap) noexcept;
+  bool is_missing(std::int64_t seq) const noexcept;
   bool fill(std::int64_t seq) noexcept;
 
   Counts counts_;
@@ -76,7 +77,8 @@ class Sequence {
     return none;
   }();
   std::size_t oldest_excuse_ = 0;
-  int behind_ = 0, behind_late_ = 0;  // in order, since the last that was next; late ones of them
+  int behind_ = 0;       // in order, since the last that was next
+  int behind_late_ = 0;  // of those, the late ones
   std::int64_t last_behind_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mjcf/plant/robots.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -115,6 +116,7 @@ Model load_robot(std::string_view name, std::string_view scene) {
 }
 
 Model load_mjcf(const std::string& path) {
+  claim_input(path);
   install_handlers();
   char error[1000] = "";
   mjModel* const m = mj_loadXML(path.c_str(), nullptr, error, sizeof error);

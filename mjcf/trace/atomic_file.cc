@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <random>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "mjcf/trace/file_claims.h"
@@ -43,29 +44,44 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+// a name may have 255 bytes
+std::string begin_of_temporary(const fs::path& path) {
+  return "." + path.filename().string().substr(0, 150) + ".";
+}
+
 // .out.csv.1234-9f0c31d2a5b6e877.part beside out.csv: of process 1234
 std::string temporary_name(const fs::path& path) {
   std::random_device random;
-  return (folder_of(path) / fmt::format(".{}.{}-{:08x}{:08x}.part", path.filename().string(),
+  return (folder_of(path) / fmt::format("{}{}-{:08x}{:08x}.part", begin_of_temporary(path),
                                         ::getpid(), random(), random()))
       .string();
 }
 
+// the process whose temporary that is; 0 if it is none of this path's
+pid_t owner_of(const std::string& name, const std::string& begin) {
+  constexpr std::string_view kEnd = "-0123456789abcdef.part";
+  if (!name.starts_with(begin) || name.size() < begin.size() + kEnd.size()) return 0;
+  pid_t process = 0;
+  const auto [end, bad] =
+      std::from_chars(name.data() + begin.size(), name.data() + name.size(), process);
+  const std::string_view rest(end, static_cast<std::size_t>(name.data() + name.size() - end));
+  const bool fits = bad == std::errc() && rest.size() == kEnd.size() && rest[0] == '-' &&
+                    rest.ends_with(".part") &&
+                    rest.substr(1, 16).find_first_not_of("0123456789abcdef") == rest.npos;
+  return fits ? process : 0;
+}
+
 // what processes that were killed have left beside a path
 void sweep(const fs::path& path) {
-  const std::string begin = "." + path.filename().string() + ".";
+  const std::string begin = begin_of_temporary(path);
   std::error_code error;
-  for (const fs::directory_entry& e : fs::directory_iterator(folder_of(path), error)) {
-    const std::string name = e.path().filename().string();
-    if (!name.starts_with(begin) || !name.ends_with(".part")) continue;
-    pid_t process = 0;
-    const char* const from = name.data() + begin.size();
-    const auto [rest, bad] = std::from_chars(from, name.data() + name.size(), process);
-    if (bad != std::errc() || *rest != '-' || process <= 0) continue;
+  for (fs::directory_iterator e(folder_of(path), error), end; !error && e != end;
+       e.increment(error)) {
+    const pid_t process = owner_of(e->path().filename().string(), begin);
     struct stat file {};
-    const bool ours = ::lstat(e.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
-                      file.st_uid == ::geteuid();
-    if (ours && ::kill(process, 0) != 0 && errno == ESRCH) ::unlink(e.path().c_str());
+    const bool ours = process > 0 && ::lstat(e->path().c_str(), &file) == 0 &&
+                      S_ISREG(file.st_mode) && file.st_uid == ::geteuid();
+    if (ours && ::kill(process, 0) != 0 && errno == ESRCH) ::unlink(e->path().c_str());
   }
 }
 
@@ -94,8 +110,10 @@ AtomicFile::AtomicFile(std::string path, Until until) : path_(std::move(path)) {
     in_place_ = true;
     return;
   }
+  if (path_.empty()) throw std::runtime_error("an output has no name");
   follow_links();
   const bool exists = ::stat(path_.c_str(), &replaced_) == 0;
+  if (!exists && errno != ENOENT) fail("cannot open for writing");
   in_place_ = exists && !S_ISREG(replaced_.st_mode);
   if (in_place_) {
     file_ = std::fopen(path_.c_str(), "we");
@@ -104,21 +122,34 @@ AtomicFile::AtomicFile(std::string path, Until until) : path_(std::move(path)) {
   }
   if (exists) claims::add_output(replaced_, path_);
   replaces_ = exists;
-  sweep(path_);
-  open_beside(until);
+  try {
+    sweep(path_);
+    open_beside(until);
+  } catch (...) {
+    leave_nothing();
+    throw;
+  }
 }
 
 AtomicFile::~AtomicFile() {
-  if (replaces_) claims::drop_output(replaced_);
+  leave_nothing();
+}
+
+void AtomicFile::leave_nothing() {
+  if (std::exchange(replaces_, false)) claims::drop_output(replaced_);
   if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+  file_ = nullptr;
   if (temporary_.empty()) return;
   ::unlink(temporary_.c_str());
   forget(temporary_.c_str());
+  temporary_.clear();
 }
 
 void AtomicFile::follow_links() {
   std::error_code error;
   for (int links = 0; links < 8 && fs::is_symlink(path_, error); ++links) {
+    struct stat target {};  // /dev/fd/N is a link to what has no name
+    if (::stat(path_.c_str(), &target) == 0 && !S_ISREG(target.st_mode)) return;
     const fs::path link(path_);
     if (!may_follow(link)) {
       throw std::runtime_error(fmt::format(
@@ -135,19 +166,16 @@ void AtomicFile::open_beside(Until until) {
     fd = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
   }
   if (fd < 0) {
-    temporary_ = temporary_name(path_);
+    const std::string name = temporary_name(path_);
+    fd = ::open(name.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, kMode);
+    if (fd < 0) fail("cannot open for writing");
+    temporary_ = name;
     remember(temporary_.c_str());
-    fd = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, kMode);
-    const int reason = errno;
-    if (fd < 0) {
-      forget(temporary_.c_str());
-      temporary_.clear();
-      if (replaces_) claims::drop_output(replaced_);
-      errno = reason;
-      fail("cannot open for writing");
-    }
   }
   file_ = ::fdopen(fd, "w");
+  if (file_ != nullptr) return;
+  ::close(fd);
+  fail("cannot open for writing");
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -163,16 +191,19 @@ void AtomicFile::commit() {
     put_in_place();
   }
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot write");
+  if (std::exchange(replaces_, false)) claims::drop_output(replaced_);
 }
 
-// as far as we may
+// as far as the user may; whom the file could not be given to does not get his rights either
 void AtomicFile::keep_owner() {
   if (!replaces_) return;
   const int fd = ::fileno(file_);
-  const int owner = ::fchown(fd, replaced_.st_uid, replaced_.st_gid);
-  // a file that could not be given back to its group does not get the group's rights
-  const mode_t mode = replaced_.st_mode & 07777;
-  ::fchmod(fd, owner == 0 ? mode : mode & ~mode_t{S_ISUID | S_ISGID});
+  mode_t mode = replaced_.st_mode & 07777;
+  if (::fchown(fd, replaced_.st_uid, replaced_.st_gid) != 0) {
+    mode &= ~mode_t{S_ISUID | S_ISGID};
+    if (::fchown(fd, static_cast<uid_t>(-1), replaced_.st_gid) != 0) mode &= ~mode_t{S_IRWXG};
+  }
+  ::fchmod(fd, mode);
 }
 
 void AtomicFile::put_in_place() {
@@ -183,16 +214,12 @@ void AtomicFile::put_in_place() {
   }
   if (temporary_.empty()) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", ::fileno(file_));
-    temporary_ = temporary_name(path_);
-    remember(temporary_.c_str());
-    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) !=
-        0) {
-      const int reason = errno;
-      forget(temporary_.c_str());
-      temporary_.clear();
-      errno = reason;
+    const std::string name = temporary_name(path_);
+    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
       fail("cannot name the new file");
     }
+    temporary_ = name;
+    remember(temporary_.c_str());
   }
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail("cannot rename the new file onto it");

@@ -12,9 +12,10 @@
 namespace tauext {
 
 /// A file that takes its path's place by commit(); without commit(), whatever ends the program,
-/// nothing is left. It keeps mode and owner of the file that it replaces. The path "-" is standard
-/// output; devices and pipes are written in place. A link stays a link, and what it points to is
-/// replaced, unless somebody else's link lies in a folder that everybody may write.
+/// nothing is left. It keeps mode and owner of the file that it replaces, as far as the user may.
+/// The path "-" is standard output; devices and pipes are written in place. A link stays a link,
+/// and what it points to is replaced, unless somebody else's link lies in a folder that everybody
+/// may write.
 class AtomicFile {
  public:
   /// Where the bytes are until commit().
@@ -36,6 +37,7 @@ class AtomicFile {
   void commit();
 
  private:
+  void leave_nothing();
   void follow_links();
   void open_beside(Until until);
   void keep_owner();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/trace/file_claims.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <mutex>
@@ -16,7 +18,9 @@ using Identity = std::pair<dev_t, ino_t>;
 
 struct Claims {
   std::mutex mutex;
-  std::vector<Identity> inputs, outputs;
+  // an input with a descriptor that keeps its number from being given to another file
+  std::vector<std::pair<Identity, int>> inputs;
+  std::vector<Identity> outputs;
 };
 
 Claims& claims() {
@@ -28,16 +32,13 @@ Identity identity(const struct stat& file) {
   return {file.st_dev, file.st_ino};
 }
 
-bool has(const std::vector<Identity>& all, const Identity& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
+auto input(Claims& c, const struct stat& file) {
+  return std::find_if(c.inputs.begin(), c.inputs.end(),
+                      [&](const auto& known) { return known.first == identity(file); });
 }
 
-void drop(std::vector<Identity> Claims::*which, const struct stat& file) {
-  Claims& c = claims();
-  const std::lock_guard lock(c.mutex);
-  auto& all = c.*which;
-  const auto it = std::find(all.begin(), all.end(), identity(file));
-  if (it != all.end()) all.erase(it);
+auto output(Claims& c, const struct stat& file) {
+  return std::find(c.outputs.begin(), c.outputs.end(), identity(file));
 }
 
 }  // namespace
@@ -45,17 +46,18 @@ void drop(std::vector<Identity> Claims::*which, const struct stat& file) {
 void add_input(const struct stat& file, const std::string& path) {
   Claims& c = claims();
   const std::lock_guard lock(c.mutex);
-  if (has(c.outputs, identity(file))) {
+  if (output(c, file) != c.outputs.end()) {
     throw std::runtime_error(
         fmt::format("{}: it is to be read, and an output of this program is to replace it", path));
   }
-  if (!has(c.inputs, identity(file))) c.inputs.push_back(identity(file));
+  if (input(c, file) != c.inputs.end()) return;
+  c.inputs.emplace_back(identity(file), ::open(path.c_str(), O_PATH | O_CLOEXEC));
 }
 
 void add_output(const struct stat& file, const std::string& path) {
   Claims& c = claims();
   const std::lock_guard lock(c.mutex);
-  if (has(c.inputs, identity(file))) {
+  if (input(c, file) != c.inputs.end()) {
     throw std::runtime_error(
         fmt::format("{}: is read by this program; write to another file", path));
   }
@@ -63,11 +65,19 @@ void add_output(const struct stat& file, const std::string& path) {
 }
 
 void drop_input(const struct stat& file) {
-  drop(&Claims::inputs, file);
+  Claims& c = claims();
+  const std::lock_guard lock(c.mutex);
+  const auto it = input(c, file);
+  if (it == c.inputs.end()) return;
+  ::close(it->second);
+  c.inputs.erase(it);
 }
 
 void drop_output(const struct stat& file) {
-  drop(&Claims::outputs, file);
+  Claims& c = claims();
+  const std::lock_guard lock(c.mutex);
+  const auto it = output(c, file);
+  if (it != c.outputs.end()) c.outputs.erase(it);
 }
 
 }  // namespace tauext::claims

@@ -2,6 +2,7 @@
 #include "mjcf/trace/input_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -39,7 +40,17 @@ bool nests_deeper(const std::string& text, int most) {
 
 void claim_input(const std::string& path) {
   struct stat file {};
-  if (::stat(path.c_str(), &file) == 0 && S_ISREG(file.st_mode)) claims::add_input(file, path);
+  if (::stat(path.c_str(), &file) != 0 || ::access(path.c_str(), R_OK) != 0) {
+    throw std::runtime_error(fmt::format("{}: {}", path, std::strerror(errno)));
+  }
+  if (S_ISREG(file.st_mode)) claims::add_input(file, path);
+}
+
+void refuse_input(const std::string& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0 || !S_ISREG(file.st_mode)) return;
+  claims::add_output(file, path);
+  claims::drop_output(file);
 }
 
 void release_input(const std::string& path) {

@@ -10,8 +10,13 @@ namespace tauext {
 
 /// Says that a file is read, for those who read it themselves. From then on an AtomicFile refuses
 /// to replace it, under whatever name.
-/// @throws std::runtime_error naming the path, if an output that is not finished is to replace it
+/// @throws std::runtime_error naming the path, if it cannot be read, or if an output that is not
+/// finished is to replace it
 void claim_input(const std::string& path);
+
+/// For who writes a file by other means than an AtomicFile.
+/// @throws std::runtime_error naming the path, if this program reads that very file
+void refuse_input(const std::string& path);
 
 /// Says that a file that was read is to be replaced by what became of it.
 void release_input(const std::string& path);

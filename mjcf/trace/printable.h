@@ -9,7 +9,8 @@
 
 namespace tauext {
 
-/// The text with ? for every control character and every byte that is no UTF-8; line ends stay.
+/// The text with ? for every control character, also those that turn the direction of writing, and
+/// for every byte that is no UTF-8; line ends stay.
 std::string printable(std::string_view text);
 
 /// The same of a name: in one line, and at most so many bytes of it.

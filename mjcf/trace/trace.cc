@@ -178,19 +178,33 @@ void write_csv(const Trace& trace, const std::string& path) {
 
 namespace {
 
-// false at the end
-bool next_line(std::istream& in, std::string& line, const std::string& path, int number) {
-  constexpr std::size_t kLongest = 1 << 16;  // [bytes] of a thousand numbers
-  line.resize(kLongest);
-  in.getline(line.data(), kLongest);
-  if (in.fail() && in.gcount() == kLongest - 1) {
-    throw std::runtime_error(
-        fmt::format("{}: line {} is longer than {} bytes: no CSV of ours", path, number, kLongest));
+// lines up to a length; a file without line ends is not taken whole
+class Lines {
+ public:
+  Lines(std::istream& in, const std::string& path) : in_(in), path_(path), buffer_(kLongest + 1) {}
+
+  // false at the end
+  bool next(std::string& line) {
+    ++number_;
+    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    const auto size = static_cast<std::size_t>(in_.gcount());
+    if (in_.fail() && size == kLongest) {
+      throw std::runtime_error(fmt::format("{}: line {} is longer than {} bytes: no CSV of ours",
+                                           path_, number_, kLongest));
+    }
+    // the line end was taken, and is counted, unless the file ended
+    line.assign(buffer_.data(), size - (in_.good() ? 1 : 0));
+    return !in_.fail();
   }
-  // the line end was taken, and is counted, unless the file ended
-  line.resize(static_cast<std::size_t>(in.gcount()) - (in.good() ? 1 : 0));
-  return !in.fail();
-}
+  int number() const { return number_; }
+
+ private:
+  static constexpr std::size_t kLongest = (1 << 16) - 1;  // [bytes] of a thousand numbers
+  std::istream& in_;
+  const std::string& path_;
+  std::vector<char> buffer_;
+  int number_ = 0;
+};
 
 }  // namespace
 
@@ -198,8 +212,9 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   claim_input(path);
   errno = 0;
   std::ifstream in(path);
+  Lines lines(in, path);
   std::string line;
-  if (!in || !next_line(in, line, path, 1)) {
+  if (!in || !lines.next(line)) {
     const int reason = errno;
     throw std::runtime_error(
         fmt::format("{}: {}", path, reason == 0 ? "is empty" : std::strerror(reason)));
@@ -209,7 +224,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   std::vector<std::vector<double>> rows;
   std::vector<double> values;
   double last_t = -std::numeric_limits<double>::infinity();
-  for (int number = 2; next_line(in, line, path, number); ++number) {
+  while (lines.next(line)) {
     if (line.empty() || line == "\r") continue;
     const char* reason = parse_row(line, c, last_t, values, *skipped);
     if (reason == nullptr && in.eof()) {  // no line end: the last number may be cut
@@ -218,7 +233,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
     }
     if (reason != nullptr) {
       if (skipped->first.size() < 3)
-        skipped->first.push_back(fmt::format("line {}: {}", number, reason));
+        skipped->first.push_back(fmt::format("line {}: {}", lines.number(), reason));
       continue;
     }
     last_t = values[c.t];

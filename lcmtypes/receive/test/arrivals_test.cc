@@ -118,7 +118,7 @@ TEST(ArrivalsTest, WhatWasRejectedIsNotLost) {
     for (int k = 0; k < 1000; ++k) {
       const Reading r = at(k, numbered ? k : -1);
       if (k % 100 == 50) {
-        a.reject({r.utime, r.seq});
+        a.reject({r.utime, r.seq}, 0);
       } else if (k % 100 != 70) {
         take(a, r);
       }
@@ -127,6 +127,35 @@ TEST(ArrivalsTest, WhatWasRejectedIsNotLost) {
     EXPECT_EQ(a.counts().lost, 10) << numbered;
     EXPECT_EQ(a.counts().sent(), 1000) << numbered;
   }
+}
+
+TEST(ArrivalsTest, SwappedOnesAreLateAndNotLostWithANumberOrWithout) {
+  for (const bool numbered : {true, false}) {
+    Arrivals a;
+    for (int k = 0; k < 1000; ++k) {
+      const int swapped = k % 10 == 5 ? k + 1 : k % 10 == 6 ? k - 1 : k;
+      take(a, at(5 * swapped, numbered ? swapped : -1));
+    }
+    EXPECT_EQ(a.counts().late, 100) << numbered;
+    EXPECT_EQ(a.counts().lost, 0) << numbered;
+    EXPECT_EQ(a.counts().sent(), 1000) << numbered;
+  }
+}
+
+TEST(ArrivalsTest, TwoOfOneTimeAreRepeatedAndNotLost) {
+  Arrivals a;
+  for (int k = 0; k < 1000; ++k) take(a, at(k / 2, k));
+  EXPECT_EQ(a.counts().used, 500);
+  EXPECT_EQ(a.counts().repeated, 500);
+  EXPECT_EQ(a.counts().sent(), 1000);
+}
+
+TEST(ArrivalsTest, ARestartIsNotTwoSenders) {
+  Arrivals a;
+  for (int k = 0; k < 100; ++k) a.take(at(1000 + k), 0, 1000 * k);
+  for (int k = 0; k < 100; ++k) a.take(at(k), 0, 1000 * (100 + k));
+  EXPECT_EQ(a.counts().restarts, 1);
+  EXPECT_EQ(a.trouble(), "");
 }
 
 TEST(ArrivalsTest, OfTwoSendersTheFirstIsUsedAndTheOtherIsNamed) {
@@ -176,7 +205,7 @@ TEST(ArrivalsTest, ANewSenderTakesOverWhenTheOldOneIsSilent) {
 TEST(ArrivalsTest, WhatIsLostAtTheEndIsToldByTheSender) {
   Arrivals a;
   for (int k = 0; k < 90; ++k) take(a, at(k, k));
-  a.end(100);
+  a.end(100, 0);
   EXPECT_EQ(a.counts().lost, 10);
   EXPECT_EQ(a.counts().sent(), 100);
 }

@@ -17,6 +17,14 @@ TEST(SendersTest, AChannelIsItsFirstSendersUntilThatOneIsSilent) {
   EXPECT_EQ(s.trouble(), "");  // a restart
 }
 
+TEST(SendersTest, WhoHasEndedLeavesTheChannelToTheNext) {
+  Senders s;
+  s.take(7, 0);
+  s.end();
+  EXPECT_EQ(s.take(8, 1), Whose::kOurs);
+  EXPECT_EQ(s.take(7, 2), Whose::kOther);
+}
+
 TEST(SendersTest, WhoOnlyRepeatsHimselfDoesNotKeepAChannel) {
   Senders s;
   s.take(7, 0);

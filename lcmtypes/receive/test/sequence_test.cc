@@ -106,6 +106,18 @@ TEST(SequenceTest, TheEndIsTheSendersWord) {
   EXPECT_EQ(s.take(50), Order::kNext);
 }
 
+TEST(SequenceTest, WhatComesLateAfterTheEndIsNoRestart) {
+  Sequence s;
+  for (int k = 0; k < 98; ++k) s.take(k);
+  s.end(100);
+  EXPECT_EQ(s.take(98), Order::kLate);
+  EXPECT_EQ(s.take(99), Order::kLate);
+  EXPECT_EQ(s.take(99), Order::kRepeated);
+  EXPECT_EQ(sum(s.counts()), 101);
+  EXPECT_EQ(s.counts().restarts + s.counts().lost, 0);
+  EXPECT_EQ(s.take(0), Order::kRestart);
+}
+
 TEST(SequenceTest, AnExcusedNumberIsNotLostWhetherItComesBeforeOrAfterTheGap) {
   Sequence s;
   s.take(0);

@@ -38,8 +38,7 @@ final class Group extends Thread {
   private final String place;  // of the socket, as in /proc/net/udp
   private final Set<InetAddress> ours = new HashSet<>();
   private long addresses_ns;
-  private boolean told;
-  private volatile long refused;
+  private final Set<String> told = new HashSet<>();  // kinds of refusals
 
   /** Where a URL udpm://GROUP:PORT?ttl=N says. */
   Group(LCM bus, String url) throws IOException {
@@ -89,11 +88,6 @@ final class Group extends Thread {
     return senders.trouble(channel);
   }
 
-  /** Datagrams that were not taken, whatever their channel. */
-  long refused() {
-    return refused;
-  }
-
   /** Datagrams that came faster than they were taken, whatever their channel. */
   long dropped() {
     try {
@@ -120,7 +114,7 @@ final class Group extends Thread {
 
   private void take(DatagramPacket packet) {
     if (!everybody && !isOurs(packet.getAddress())) {
-      refuse("a datagram from " + packet.getAddress().getHostAddress() + ", outside this machine (ttl=1 takes it)");
+      refuse("datagrams from " + packet.getAddress().getHostAddress() + ", outside this machine (ttl=1 takes them)");
       return;
     }
     ByteBuffer in = ByteBuffer.wrap(packet.getData(), 0, packet.getLength());
@@ -136,7 +130,7 @@ final class Group extends Thread {
     String channel = new String(in.array(), kHead, end - kHead, StandardCharsets.ISO_8859_1);
     int content = ByteBuffer.wrap(in.array(), end + 1, in.limit() - end - 1).hashCode();
     if (!senders.take(channel, (InetSocketAddress) packet.getSocketAddress(), content, System.nanoTime())) {
-      refuse(senders.trouble(channel));
+      refuse("a message of a second sender, or of more channels than can be shown");
       return;
     }
     bus.receiveMessage(channel, in.array(), end + 1, in.limit() - end - 1);
@@ -161,11 +155,10 @@ final class Group extends Thread {
     return ours.contains(address);
   }
 
+  /** Says each kind once. */
   private void refuse(String what) {
-    ++refused;
-    if (!told) {
-      System.err.println("tauext-spy: refused " + what + "; the first of a kind that is counted from now on");
+    if (told.size() < 100 && told.add(what)) {
+      System.err.println("tauext-spy: refused " + what);
     }
-    told = true;
   }
 }

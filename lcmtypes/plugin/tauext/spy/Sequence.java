@@ -37,10 +37,10 @@ final class Sequence {
       any = true;
       expected = seq;
     }
-    if (ended && seq < expected) {
+    if (ended && seq < expected - 1 && missing.stream().noneMatch(g -> seq >= g[0] && seq < g[1])) {
       return restart(seq);
     }
-    ended = false;
+    ended = ended && seq < expected;
     if (jump != null && seq >= jump[0] && seq < Math.min(jump[1], jump[0] + kSmall)) {
       refuseJump();
     }
