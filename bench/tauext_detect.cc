@@ -79,8 +79,8 @@ int run_study(const Flags& f) {
   const std::vector<study::Cell> cells = studied(f.study, thresholds);
   // a table for a program stands alone; so does a study on standard output
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
-  fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n", thresholds.trained_on,
-             thresholds.margin, f.study.first_seed);
+  fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n",
+             printable(thresholds.trained_on), thresholds.margin, f.study.first_seed);
   fmt::print(f.out == "-" ? stderr : stdout, "{}",
              study::format_study(f.study.robot, cells, format));
   if (f.out.empty()) return kGood;

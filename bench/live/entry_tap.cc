@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/live/options.h"
 #include "bench/logs/lcm_trace.h"
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/transport.h"
@@ -90,7 +89,7 @@ EntryTap::EntryTap(const std::optional<std::string>& url, std::string folder)
     }
   }
   if (!url) return;
-  live::refuse_input_as_log(*url);
+  refuse_input_as_log(lcm_url(*url));
   outlet_ = std::make_unique<Outlet>(*url);
   if (outlet_->transport.good()) return;
   say("streaming is off: " + outlet_->transport.trouble());

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 
 namespace tauext::live {
 
@@ -30,6 +31,13 @@ class Interrupt {
 /// [s] since then.
 inline double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// [us] since then.
+inline std::int64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() -
+                                                               begin)
+      .count();
 }
 
 /// Whether a run is over: interrupted, or `duration` [s] after its begin, if that is not 0.

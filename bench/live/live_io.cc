@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/live/live_io.h"
 
-#include <chrono>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include "bench/live/interrupt.h"
+#include "bench/logs/lcm_trace.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::live {
-namespace {
-
-// [us] of a clock that never goes back
-std::int64_t microseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 Outlet::Outlet(const Options& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
   if (!o.stream) return;
-  refuse_input_as_log(o.url);
+  refuse_input_as_log(lcm_url(o.url));
   transport_ = std::make_shared<Transport>(o.url);
   if (!transport_->good()) say("streaming is off: " + transport_->trouble());
   stream_.emplace(transport_, streams_, rate);
@@ -96,7 +87,7 @@ void Inlet::take(Sender sender, Bytes message) {
     arrivals_.reject(stamp_of(message), sender);
     return;
   }
-  const Arrival arrival = arrivals_.take(reading, sender, microseconds());
+  const Arrival arrival = arrivals_.take(reading, sender, microseconds_since(begin_));
   if (arrival == Arrival::kRestart) {
     say(fmt::format("{}: the sender has started anew; so do the estimators", channel_));
     estimation_.reset();

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -66,6 +67,7 @@ class Inlet {
   LiveReport& report_;
   Arrivals arrivals_;
   bool explained_ = false;  // the first message that was rejected
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   Listener listener_;
 };
 

@@ -60,7 +60,7 @@ class Screen {
 
 int run_listen(const Options& o) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto now = [&] { return static_cast<std::int64_t>(seconds_since(begin) * 1e6); };
+  const auto now = [&] { return microseconds_since(begin); };
   StreamTable table;
   Listener listener(o.url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
     table.take(channel, sender, now(), m);

@@ -84,7 +84,7 @@ int finish(const Options& o, Outlet& outlet, const LiveEstimation& e, LiveReport
   return silent || report.failed || e.samples() == 0 ? kAnswerIsNo : kGood;
 }
 
-// so far below the loop
+// the priority of the loop, or of a thread that comes `below` it
 std::unique_ptr<Realtime> realtime_of(const Options& o, int below = 0) {
   if (!o.realtime) return nullptr;
   return std::make_unique<Realtime>(*o.realtime > below ? *o.realtime - below : *o.realtime);

@@ -5,12 +5,10 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <string_view>
 
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/reading.h"
 #include "lcmtypes/transport.h"
-#include "mjcf/trace/input_file.h"
 
 namespace tauext::live {
 
@@ -41,12 +39,6 @@ void check(const Options& o, bool listen) {
     require(o.subscribe != kEstimateChannel + e,
             fmt::format("--subscribe {}: its own estimates would come back to it", o.subscribe));
   }
-}
-
-void refuse_input_as_log(const std::string& url) {
-  constexpr std::string_view kScheme = "file://";
-  if (!url.starts_with(kScheme)) return;
-  refuse_input(url.substr(kScheme.size(), url.find('?') - kScheme.size()));
 }
 
 }  // namespace tauext::live

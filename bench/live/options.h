@@ -31,7 +31,4 @@ struct Options {
 /// @throws std::invalid_argument for options that are missing, out of range or do not go together
 void check(const Options& options, bool listen);
 
-/// @throws std::runtime_error if a URL means a log in the place of a file that this program reads
-void refuse_input_as_log(const std::string& url);
-
 }  // namespace tauext::live

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/receive/arrivals.h"
@@ -216,6 +217,12 @@ Trace read_lcm(const std::string& path, const std::string& channel, LogReport* r
 bool is_lcm_log(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   return name.ends_with(".lcm") || name.starts_with("lcmlog-");
+}
+
+void refuse_input_as_log(const std::string& url) {
+  constexpr std::string_view kScheme = "file://";
+  if (!url.starts_with(kScheme)) return;
+  refuse_input(url.substr(kScheme.size(), url.find('?') - kScheme.size()));
 }
 
 }  // namespace tauext

@@ -44,6 +44,9 @@ struct LogReport {
 /// choose from
 Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report);
 
+/// @throws std::runtime_error if a URL means a log in the place of a file that this program reads
+void refuse_input_as_log(const std::string& url);
+
 /// Whether a path names an LCM log: it ends in .lcm, or is lcm-logger's lcmlog-DATE.
 bool is_lcm_log(const std::string& path);
 

@@ -117,7 +117,7 @@ Thresholds read_thresholds(const std::string& path) {
                       "tauext-detect --calibrate",
                       j.at("format").dump(), kFormat));
     }
-    Thresholds t;
+    Thresholds t{.path = path};
     t.trained_on = j.at("trained_on").get<std::string>();
     t.margin = j.at("margin").get<double>();
     if (!(t.margin > 0))
@@ -133,13 +133,14 @@ Thresholds read_thresholds(const std::string& path) {
   }
 }
 
-DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name, double noise,
-                               const std::string& estimator, const std::string& detector) {
+DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name,
+                               double velocity_noise, const std::string& estimator,
+                               const std::string& detector) {
   const std::string name(name_of_specification(detector));
   if (t.sets.empty() || detector.empty()) return {};
   const std::vector<std::string> calibratable = robot(robot_name).calibratable();
   if (std::find(calibratable.begin(), calibratable.end(), name) == calibratable.end()) return {};
-  if (const ThresholdSet* const set = t.of(robot_name, noise)) {
+  if (const ThresholdSet* const set = t.of(robot_name, velocity_noise)) {
     const auto behind = set->by_estimator.find(estimator);
     if (behind != set->by_estimator.end()) {
       const auto own = behind->second.find(detector);
@@ -147,7 +148,7 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
     }
   }
   throw std::invalid_argument(fmt::format(
-      "no thresholds for {}/{}+{}; there are those of {}: train it, tauext-detect --calibrate",
+      "{}: no thresholds for {}/{}+{}, but for {}; tauext-detect --calibrate makes them", t.path,
       robot_name, estimator, detector, fmt::join(pairs_of(t), ", ")));
 }
 

@@ -22,9 +22,10 @@ Thresholds read_thresholds(const std::string& path);
 /// What training says of a detector behind an estimator, both by specification, as DetectorSettings
 /// want it: by the detector's name. Nothing without sets, and for a detector that has no thresholds
 /// to train.
-/// @param noise [rad/s] of the velocity
+/// @param velocity_noise [rad/s] of the sensors behind which it runs
 /// @throws std::invalid_argument listing what was trained, if that pair was not on that robot
-DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot, double noise,
-                               const std::string& estimator, const std::string& detector);
+DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot,
+                               double velocity_noise, const std::string& estimator,
+                               const std::string& detector);
 
 }  // namespace tauext

@@ -28,6 +28,7 @@ struct ThresholdSet {
 
 /// A parameter file.
 struct Thresholds {
+  std::string path;        ///< of the file; "" before there is one
   std::string trained_on;  ///< in words
   double margin = 1;       ///< [1] threshold over the largest value in training, as an amplitude
   std::vector<ThresholdSet> sets;  ///< in no order

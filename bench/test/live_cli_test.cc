@@ -38,11 +38,8 @@ TEST_F(LivePrograms, OpensNoSocketUnlessAsked) {
 
 TEST_F(LivePrograms, AListenerGetsEveryMessageOfOneKilohertz) {
   SKIP_WITHOUT_NAMESPACE();
-  const Outcome o =
-      in_network("tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n" +
-                 std::string(kRun) +
-                 "--detector pan_tompkins --lcm --rate 0 --duration 3\n"
-                 "sleep 0.5; kill -INT $listener; wait; cat heard");
+  const Outcome o = in_network(listening("--listen") + kRun +
+                               "--detector pan_tompkins --lcm --rate 0 --duration 3\n" + kSumUp);
   EXPECT_EQ(o.code, 0) << o.text;
   // three estimators, an estimate and a detection each
   EXPECT_TRUE(o.says("18000 messages published, 0 failed; 0 samples dropped")) << o.text;
@@ -101,10 +98,8 @@ TEST_F(LivePrograms, ForgedAndForeignMessagesAreRejectedAndCounted) {
     log.append("SOMETHING_ELSE", 3000 * k + 2500, foreign);
   }
   put_log("forged.lcm", log);
-  const Outcome o = in_network(
-      "tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n"
-      "lcm-logplayer forged.lcm > /dev/null\n"
-      "sleep 0.5; kill -INT $listener; wait $listener; code=$?; cat heard; exit $code");
+  const Outcome o =
+      in_network(listening("--listen") + "lcm-logplayer forged.lcm > /dev/null\n" + kSumUp);
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(
       o.says("150 sent = 50 used + 0 late + 0 repeated + 100 rejected + 0 lost + 0 dropped by the "
@@ -119,12 +114,10 @@ TEST_F(LivePrograms, EstimatesARobotOnTheAir) {
   for (const auto& [type, channel] : channels) {
     const Outcome o = in_network(
         "tauext-record --robot wallmobot3 --scenario contact --type " + type +
-        " --out robot.lcm 2> /dev/null\n"
-        "tauext-live --robot wallmobot3 --estimator mo1 --detector pan_tompkins --subscribe " +
-        channel + " --type " + type +
-        " --lcm > heard 2>&1 & live=$!\nsays heard listening\n"
-        "lcm-logplayer --speed=4 robot.lcm > /dev/null\n"
-        "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code");
+        " --out robot.lcm 2> /dev/null\n" +
+        listening("--robot wallmobot3 --estimator mo1 --detector pan_tompkins --subscribe " +
+                  channel + " --type " + type + " --lcm") +
+        "lcm-logplayer --speed=4 robot.lcm > /dev/null\n" + kSumUp);
     EXPECT_EQ(o.code, 0) << o.text;
     // on a busy machine the first few of UDP may not arrive, and nobody can know that they were
     // sent
@@ -153,10 +146,8 @@ TEST_F(LivePrograms, WhatANetworkDoesToMessagesIsHandledAndCounted) {
     if (k % 100 == 80) add(k, 2);     // 5 of another arm
   }
   put_log("bad.lcm", log);
-  const Outcome o = in_network(
-      "tauext-live --robot wallmobot3 --estimator mo1 --subscribe ARM > heard 2>&1 & live=$!\n"
-      "says heard listening; lcm-logplayer bad.lcm > /dev/null\n"
-      "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code");
+  const Outcome o = in_network(listening("--robot wallmobot3 --estimator mo1 --subscribe ARM") +
+                               "lcm-logplayer bad.lcm > /dev/null\n" + kSumUp);
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(o.says("ARM: a message of 2 joints, and wallmobot3 has 3")) << o.text;
   EXPECT_TRUE(o.says(
@@ -183,10 +174,10 @@ TEST_F(LivePrograms, ARobotFromAFileEstimatesWhatTheClosedFormDoes) {
 TEST_F(LivePrograms, TheBenchmarkIsOnTheAirAsEntriesFinish) {
   SKIP_WITHOUT_NAMESPACE();
   const Outcome o = in_network(
-      "tauext-live --listen > heard 2>&1 & listener=$!\nsays heard listening\n"
+      listening("--listen") +
       "tauext-bench --benchmark_filter='testbed1/hold/mo.$' --lcm --benchmark_min_time=0.01 > "
-      "/dev/null\n"
-      "sleep 0.5; kill -INT $listener; wait; cat heard");
+      "/dev/null\n" +
+      kSumUp);
   EXPECT_TRUE(o.says("testbed1/hold/mo1  rmse ")) << o.text;
   EXPECT_TRUE(o.says("testbed1/hold/mo3  rmse ")) << o.text;
   EXPECT_TRUE(o.says("3 sent = 3 used")) << o.text;

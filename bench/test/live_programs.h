@@ -33,6 +33,14 @@ class LivePrograms : public Programs {
     return run_system(inside + "timeout 90 bash script");
   }
 
+  // tauext-live in the background, listening
+  static std::string listening(const std::string& flags) {
+    return "tauext-live " + flags + " > heard 2>&1 & live=$!\nsays heard listening\n";
+  }
+  // and its end, with what it said and its exit code
+  static constexpr const char* kSumUp =
+      "sleep 0.5; kill -INT $live; wait $live; code=$?; cat heard; exit $code";
+
   bool forbidden() const { return std::system("unshare -rn true 2>/dev/null") != 0; }
 
   // the number before a word

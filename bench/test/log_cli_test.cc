@@ -70,14 +70,44 @@ TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
   EXPECT_TRUE(twice.says("'ndob' is named twice")) << twice.text;
 }
 
+TEST_F(Programs, NoneReplacesAFileThatItReads) {
+  run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
+  run("tauext-record --robot testbed1 --scenario model_check --out one.csv");
+  run("tauext-record --robot wallmobot3 --scenario free --out log.lcm");
+  run_system("ln log.csv hard.csv; ln -s log.csv soft.csv; cp " TAUEXT_MJCF
+             "/wallmobot3.xml arm.xml");
+  run("tauext-detect --calibrate t.json --estimator mo1 --detector threshold --runs 1");
+  write("d.json", R"({"velocity_noise": 1e-4})");
+  const std::string replay = "tauext-replay log.csv --estimator mo1 --robot ";
+  const std::string live = "tauext-live --robot wallmobot3 --estimator mo1 --from log.lcm --lcm ";
+  for (const auto& [file, command] : std::vector<std::pair<std::string, std::string>>{
+           {"log.csv", replay + "wallmobot3 --out ./log.csv"},
+           {"log.csv", replay + "wallmobot3 --out hard.csv"},
+           {"log.csv", replay + "wallmobot3 --out soft.csv"},
+           {"arm.xml", replay + "arm.xml --out arm.xml"},
+           {"one.csv", "tauext-identify one.csv --out one.csv"},
+           {"log.lcm", live + "'file://log.lcm?mode=w'"},
+           {"t.json", live + "'file://t.json?mode=w' --detector threshold --thresholds t.json"},
+           {"t.json",
+            "tauext-detect --thresholds t.json --out t.json --estimator mo1 --detector "
+            "threshold --collisions 1 --hours 0"},
+           {"d.json", "tauext-bench --degrade d.json --benchmark_out=d.json"},
+           {"d.json",
+            "tauext-record --robot wallmobot3 --scenario free --degrade d.json --out "
+            "d.json"}}) {
+    const std::string before = content(file);
+    ASSERT_FALSE(before.empty()) << file;
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2) << command << o.text;
+    EXPECT_TRUE(o.says("is read by this program; write to another file")) << command << o.text;
+    EXPECT_TRUE(content(file) == before) << command;
+  }
+  const Outcome o = run_system("LCM_DEFAULT_URL='file://log.lcm?mode=w' " TAUEXT_BIN "/" + live);
+  EXPECT_TRUE(o.says("log.lcm: is read by this program")) << o.text;
+}
+
 TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
-  const std::string before = content("log.csv");
-  const Outcome itself =
-      run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out ./log.csv");
-  EXPECT_EQ(itself.code, 2);
-  EXPECT_TRUE(itself.says("is read by this program; write to another file")) << itself.text;
-  EXPECT_EQ(content("log.csv"), before);
   write("empty.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\nx\n");
   write("two.csv", "t,q1,q2,qd1,qd2,tau1,tau2\n0,1,2,3,4,5,6\n");
   const Outcome empty =

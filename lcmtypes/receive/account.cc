@@ -6,7 +6,6 @@
 #include <algorithm>
 
 namespace tauext {
-
 namespace {
 
 // what the kernel dropped is ours as far as messages are missing, and all of it where nothing else

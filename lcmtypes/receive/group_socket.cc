@@ -23,12 +23,6 @@ constexpr std::size_t kLargest = 65536;  // [bytes] of a datagram
 // 224.0.0.0/24, to which the kernel lets others send without an address of their own
 constexpr std::uint32_t kLocalControl = 0xe00000;
 
-std::uint32_t big_endian(Bytes four) {
-  std::uint32_t value = 0;
-  for (const std::byte b : four) value = value << 8 | std::to_integer<std::uint32_t>(b);
-  return value;
-}
-
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
@@ -56,19 +50,15 @@ bool join(int socket, in_addr group, int interface) {
 }  // namespace
 
 Refusal parse(Bytes datagram, Datagram& out) noexcept {
-  constexpr std::uint32_t kShort = 0x4c433032, kFragment = 0x4c433033;  // LC02, LC03
-  constexpr std::size_t kHead = 8;  // magic, and a number of which we make no use
+  constexpr std::size_t kHead = 8;  // LC02 or LC03, and a number of which we make no use
   if (datagram.size() < kHead) return Refusal::kMalformed;
-  const std::uint32_t magic = big_endian(datagram.first(4));
-  if (magic == kFragment) return Refusal::kFragment;
-  if (magic != kShort) return Refusal::kMalformed;
-  const Bytes rest = datagram.subspan(kHead);
-  const Bytes name = rest.first(std::min(rest.size(), kLongestChannel + 1));
-  const auto end = std::find(name.begin(), name.end(), std::byte{0});
-  if (end == name.begin() || end == name.end()) return Refusal::kMalformed;
-  const auto size = static_cast<std::size_t>(end - name.begin());
-  out.channel = {reinterpret_cast<const char*>(name.data()), size};
-  out.message = rest.subspan(size + 1);
+  const std::string_view text(reinterpret_cast<const char*>(datagram.data()), datagram.size());
+  if (text.starts_with("LC03")) return Refusal::kFragment;
+  if (!text.starts_with("LC02")) return Refusal::kMalformed;
+  const std::size_t size = text.substr(kHead, kLongestChannel + 1).find('\0');
+  if (size == 0 || size == text.npos) return Refusal::kMalformed;
+  out.channel = text.substr(kHead, size);
+  out.message = datagram.subspan(kHead + size + 1);
   return Refusal::kNone;
 }
 

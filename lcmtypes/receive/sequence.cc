@@ -84,7 +84,7 @@ void Sequence::settle_jump() noexcept {
   jump_ = {};
 }
 
-// the old stream goes on: what jumped was another's
+// the stream did not follow it: what jumped was another's
 void Sequence::refuse_jump() noexcept {
   next_ = jump_.from;
   jump_ = {};

@@ -87,8 +87,8 @@ void sweep(const fs::path& path) {
 
 // the kernel's rule for sticky folders, /proc/sys/fs/protected_symlinks
 bool may_follow(const fs::path& link) {
-  struct stat folder {
-  }, file{};
+  struct stat folder {};
+  struct stat file {};
   if (::stat(folder_of(link).c_str(), &folder) != 0 || ::lstat(link.c_str(), &file) != 0) {
     return false;
   }
@@ -194,7 +194,7 @@ void AtomicFile::commit() {
   if (std::exchange(replaces_, false)) claims::drop_output(replaced_);
 }
 
-// as far as the user may; whom the file could not be given to does not get his rights either
+// as far as the user may; an owner or a group that cannot be kept does not leave its rights to ours
 void AtomicFile::keep_owner() {
   if (!replaces_) return;
   const int fd = ::fileno(file_);
@@ -207,7 +207,7 @@ void AtomicFile::keep_owner() {
 }
 
 void AtomicFile::put_in_place() {
-  struct stat now {};  // the path may have become one of ours since
+  struct stat now {};  // a file that this program reads may have come there since
   if (::stat(path_.c_str(), &now) == 0 && !replaces_) {
     claims::add_output(now, path_);
     claims::drop_output(now);

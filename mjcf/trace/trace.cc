@@ -128,6 +128,34 @@ Eigen::MatrixXd gather(const std::vector<std::vector<double>>& rows,
   return m;
 }
 
+// lines up to a length; a file without line ends is not taken whole
+class Lines {
+ public:
+  Lines(std::istream& in, const std::string& path) : in_(in), path_(path), buffer_(kLongest + 1) {}
+
+  // false at the end
+  bool next(std::string& line) {
+    ++number_;
+    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    const auto size = static_cast<std::size_t>(in_.gcount());
+    if (in_.fail() && size == kLongest) {
+      throw std::runtime_error(fmt::format("{}: line {} is longer than {} bytes: no CSV of ours",
+                                           path_, number_, kLongest));
+    }
+    // the line end was taken, and is counted, unless the file ended
+    line.assign(buffer_.data(), size - (in_.good() ? 1 : 0));
+    return !in_.fail();
+  }
+  int number() const { return number_; }
+
+ private:
+  static constexpr std::size_t kLongest = (1 << 16) - 1;  // [bytes] of a thousand numbers
+  std::istream& in_;
+  const std::string& path_;
+  std::vector<char> buffer_;
+  int number_ = 0;
+};
+
 }  // namespace
 
 Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
@@ -175,38 +203,6 @@ void write_csv(const Trace& trace, const std::string& path) {
   file.write({out.data(), out.size()});
   file.commit();
 }
-
-namespace {
-
-// lines up to a length; a file without line ends is not taken whole
-class Lines {
- public:
-  Lines(std::istream& in, const std::string& path) : in_(in), path_(path), buffer_(kLongest + 1) {}
-
-  // false at the end
-  bool next(std::string& line) {
-    ++number_;
-    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    const auto size = static_cast<std::size_t>(in_.gcount());
-    if (in_.fail() && size == kLongest) {
-      throw std::runtime_error(fmt::format("{}: line {} is longer than {} bytes: no CSV of ours",
-                                           path_, number_, kLongest));
-    }
-    // the line end was taken, and is counted, unless the file ended
-    line.assign(buffer_.data(), size - (in_.good() ? 1 : 0));
-    return !in_.fail();
-  }
-  int number() const { return number_; }
-
- private:
-  static constexpr std::size_t kLongest = (1 << 16) - 1;  // [bytes] of a thousand numbers
-  std::istream& in_;
-  const std::string& path_;
-  std::vector<char> buffer_;
-  int number_ = 0;
-};
-
-}  // namespace
 
 Trace read_csv(const std::string& path, SkippedRows* skipped) {
   claim_input(path);

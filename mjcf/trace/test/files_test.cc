@@ -66,14 +66,17 @@ TEST_F(Files, AppearWholeOrNotAtAll) {
   }
 }
 
-TEST_F(Files, KeepTheModeOfWhatTheyReplace) {
+TEST_F(Files, KeepModeAndOwnerOfWhatTheyReplace) {
   put("old");
   ::chmod(path().c_str(), 0640);
+  constexpr uid_t kSomebody = 12345;
+  const bool may_give = ::chown(path().c_str(), kSomebody, kSomebody) == 0;  // root may
   AtomicFile file(path());
   file.commit();
   struct stat now {};
   ::stat(path().c_str(), &now);
   EXPECT_EQ(now.st_mode & 07777, 0640u);
+  EXPECT_EQ(now.st_uid, may_give ? kSomebody : ::geteuid());
 }
 
 // a child that is in the middle of a file when a signal comes; its exit is the signal's
@@ -97,10 +100,13 @@ TEST_F(Files, NothingIsLeftByASignalAndWhatAKillLeavesIsSwept) {
       EXPECT_EQ(names().size(), left ? 1u : 0u) << signal;
     }
   }
-  put("of a process that lives", ".out." + std::to_string(::getpid()) + "-0.part");
-  put("of another file", ".other.1-0.part");
+  constexpr const char* kEnd = "-0123456789abcdef.part";
+  const std::string lives = ".out." + std::to_string(::getpid()) + kEnd;
+  const std::string others = std::string(".other.4000000") + kEnd;  // beyond all processes' numbers
+  const std::string users = ".out.4000000.part";
+  for (const std::string& name : {lives, others, users}) put("", name);
   { const AtomicFile next(path()); }
-  EXPECT_EQ(names().size(), 2u);  // the two that are not ours to sweep
+  EXPECT_EQ(names(), (std::set<std::string>{lives, others, users}));
 }
 
 TEST_F(Files, APlantedLinkIsNotFollowed) {

@@ -37,6 +37,7 @@ final class Group extends Thread {
   private final Senders senders = new Senders();
   private final String place;  // of the socket, as in /proc/net/udp
   private final Set<InetAddress> ours = new HashSet<>();
+  private final boolean zeroIsOurs;  // 224.0.0.x alone may be sent to without an address
   private long addresses_ns;
   private final Set<String> told = new HashSet<>();  // kinds of refusals
 
@@ -54,6 +55,7 @@ final class Group extends Thread {
     socket.setReceiveBufferSize(2 * 1024 * 1024);
     socket.bind(new InetSocketAddress(group, port));  // so nothing sent to an address arrives
     byte[] a = group.getAddress();
+    zeroIsOurs = (a[0] & 0xff) != 224 || a[1] != 0 || a[2] != 0;
     place = String.format("%02X%02X%02X%02X:%04X", a[3], a[2], a[1], a[0], port);
     boolean joined = false;
     for (NetworkInterface i : Collections.list(NetworkInterface.getNetworkInterfaces())) {
@@ -67,6 +69,7 @@ final class Group extends Thread {
     if (!joined) {
       throw new IOException("no interface for multicast");
     }
+    readAddresses();
     setDaemon(true);
   }
 
@@ -137,12 +140,16 @@ final class Group extends Thread {
   }
 
   private boolean isOurs(InetAddress address) {
-    if (address.isAnyLocalAddress() || address.isLoopbackAddress() || ours.contains(address)) {
-      return true;
+    if (address.isAnyLocalAddress()) {
+      return zeroIsOurs;
     }
-    if (addresses_ns != 0 && System.nanoTime() - addresses_ns < kSecond_ns) {
-      return false;
+    if (System.nanoTime() - addresses_ns > kSecond_ns) {
+      readAddresses();
     }
+    return ours.contains(address);
+  }
+
+  private void readAddresses() {
     addresses_ns = System.nanoTime();
     ours.clear();
     try {
@@ -150,9 +157,8 @@ final class Group extends Thread {
         ours.addAll(Collections.list(i.getInetAddresses()));
       }
     } catch (IOException e) {
-      return false;
+      refuse("all until this machine's addresses can be read: " + e);
     }
-    return ours.contains(address);
   }
 
   /** Says each kind once. */

@@ -19,7 +19,8 @@ final class StatusLine extends JLabel {
   private long arrived_ns = ticked_ns;
   private long counted;
   private long out_of_turn;
-  private long dropped;    // by the kernel, whatever their channel
+  private long dropped;    // by the kernel since the window was opened, whatever their channel
+  private final long dropped_before = Main.group() == null ? 0 : Main.group().dropped();
   private double rate;     // [1/s] messages, over the last second of the viewer's clock
   private String trouble = "";
 
@@ -74,7 +75,7 @@ final class StatusLine extends JLabel {
     Group group = Main.group();
     long out = c.late + c.repeated + c.rejected;
     if (group != null) {
-      dropped = group.dropped();
+      dropped = group.dropped() - dropped_before;
       trouble = group.trouble(channel);
     } else if (out - out_of_turn >= Sequence.kPatience) {
       trouble = "messages come out of turn: two senders?";
