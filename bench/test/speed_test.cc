@@ -119,8 +119,8 @@ TEST(Push, CostsTheLoopNextToNothing) {
     median = std::min(median, push_ns.quantile(0.5));
     rare = std::min(rare, push_ns.quantile(0.99));
   }
-  std::printf("a push: %.0f ns (median), %.0f ns (99 %%), the clock's own time included\n",
-              median, rare);
+  std::printf("a push: %.0f ns (median), %.0f ns (99 %%), the clock's own time included\n", median,
+              rare);
   EXPECT_LT(median, 150);
   EXPECT_LT(rare, 10'000);
 }

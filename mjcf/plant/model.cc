@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/robots.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
@@ -118,9 +119,11 @@ Model load_robot(std::string_view name, std::string_view scene) {
 Model load_mjcf(const std::string& path) {
   claim_input(path);
   install_handlers();
-  char error[1000] = "";
-  mjModel* const m = mj_loadXML(path.c_str(), nullptr, error, sizeof error);
-  if (m == nullptr) throw std::runtime_error(fmt::format("{}: {}", path, error));
+  const char* const name = "robot.mjb";
+  Vfs files;
+  add(files, name, compiled_mjcf(path));
+  mjModel* const m = mj_loadModel(name, files.vfs.get());
+  if (m == nullptr) throw std::runtime_error(fmt::format("{}: MuJoCo cannot take it back", path));
   return own(m);
 }
 

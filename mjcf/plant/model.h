@@ -41,8 +41,10 @@ std::vector<std::string> robot_names();
 /// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
 Model load_robot(std::string_view name, std::string_view scene = "");
 
-/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says.
-/// @throws std::runtime_error naming the path, with MuJoCo's own message
+/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says. It is compiled and
+/// tried in a child process with limits.
+/// @throws std::runtime_error naming the path, with MuJoCo's own message, what crashed, or the
+/// element whose numbers are not physical
 Model load_mjcf(const std::string& path);
 
 /// From now on load_robot(name) gives the robot of this MJCF file; it stands in no scene.

@@ -18,6 +18,15 @@ void check(const char* name, double value, double largest) {
   throw std::invalid_argument(fmt::format("{} must be 0 to {:g}, not {}", name, largest, value));
 }
 
+// below a millionth of a millionth nothing is left of a double's digits
+void check_step(const char* name, double step, double largest) {
+  constexpr double kSmallest = 1e-12;
+  check(name, step, largest);
+  if (step == 0 || step >= kSmallest) return;
+  throw std::invalid_argument(
+      fmt::format("{} must be 0 for none, or {:g} or more, not {}", name, kSmallest, step));
+}
+
 void check(const Loadcell& l) {
   constexpr double kLargest = 1e6;
   check("loadcell scale [1]", l.scale, 1e3);
@@ -25,7 +34,7 @@ void check(const Loadcell& l) {
   check("loadcell hysteresis [of full scale]", l.hysteresis, 1);
   check("loadcell |nonlinearity| [of full scale]", std::abs(l.nonlinearity), 1);
   check("loadcell noise [N]", l.noise, kLargest);
-  check("loadcell step [N]", l.step, kLargest);
+  check_step("loadcell step [N]", l.step, kLargest);
   check("loadcell full_scale [N]", l.full_scale, kLargest);
 }
 
@@ -53,7 +62,7 @@ SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& 
       stamp_(-std::numeric_limits<double>::infinity()) {
   // beyond these no arm is left to be seen
   check("velocity noise [rad/s]", s.velocity_noise, 1e9);
-  check("encoder step [rad]", s.encoder_step, 1);
+  check_step("encoder step [rad]", s.encoder_step, 1);
   check("loadcell noise [N m]", s.loadcell_noise, 1e5);
   check("latency [s]", s.latency, 1);
   check("tau_latency [s]", s.tau_latency, 1);

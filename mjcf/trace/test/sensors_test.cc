@@ -223,6 +223,9 @@ TEST(RepeatedSamples, RepeatTheValuesBeforeThemUnderANewTimeStamp) {
 TEST(Sensors, RefusesALinkThatLosesEverything) {
   EXPECT_EQ(error_of([] { measure(still(2), {.dropped = 1}); }),
             "dropped [1] must be 0 to 0.99, not 1");
+  // q / step would be infinite
+  EXPECT_EQ(error_of([] { measure(still(3), {.encoder_step = 1e-320}); }),
+            "encoder step [rad] must be 0 for none, or 1e-12 or more, not 1e-320");
 }
 
 }  // namespace
