@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+#if defined(TAUEXT_SANITIZED) || !defined(__GLIBC__)
 #define TAUEXT_COUNTS 0
 #else
 #define TAUEXT_COUNTS 1

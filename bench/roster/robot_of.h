@@ -63,7 +63,7 @@ class RobotOf final : public Robot {
       refuse_keys(s);
       return std::make_unique<Stage>(make(trace));
     };
-    if constexpr (requires(typename E::Parameters p) { E(model, p); }) {
+    if constexpr (requires { E(model, std::declval<typename E::Parameters>()); }) {
       using P = typename E::Parameters;
       constexpr bool kTunable = requires {
         P::for_bandwidth(model, 1.);

@@ -168,7 +168,7 @@ TEST(EmitterTest, WhatCouldNotBeSentIsCountedAndLeavesAGapInTheNumbers) {
   EXPECT_EQ(decoded<estimate_t>(sent[4]).seq, 6);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
+#ifndef TAUEXT_SANITIZED  // which brings its own malloc
 TEST(EmitterTest, NothingIsAllocated) {
   std::size_t bytes = 0;
   Emitter emitter({{"ekf", "pan_tompkins"}, {"mo1", ""}}, 200,

@@ -63,7 +63,7 @@ TEST(LiveStreamTest, WithoutATransportMessagesFailAndTheLoopGoesOn) {
   EXPECT_NEAR(static_cast<double>(stream.counts().failed), 200, 2);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
+#ifndef TAUEXT_SANITIZED  // which brings its own malloc
 TEST(LiveStreamTest, APushAllocatesNothing) {
   LiveStream stream(nullptr, {{"ekf", "pan_tompkins"}}, 200, 1 << 14);
   const LiveSample s = live_sample(1);
@@ -131,7 +131,7 @@ TEST(TransportTest, AChannelsNameMeansItselfAloneUnlessItEndsInAStar) {
   EXPECT_EQ(all, (std::vector<std::string>{"ARM1", "ARM(1)"}));
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
+#ifndef TAUEXT_SANITIZED  // which brings its own malloc
 TEST(TransportTest, APublishOverMulticastAllocatesNothing) {
   enum : int { kNothing = 0, kAllocates = 1, kFails = 2 };
   const int code = in_own_network([] {

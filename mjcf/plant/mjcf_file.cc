@@ -8,11 +8,20 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string_view>
 
 namespace tauext {
 namespace {
+
+// MuJoCo's own handler writes a log file, waits for a key and exits; its callbacks are global
+[[noreturn]] void throw_error(const char* message) {
+  throw std::runtime_error(fmt::format("MuJoCo: {}", message));
+}
+
+// warnings are counted in mjData, where Plant::step looks for them
+void ignore_warning(const char*) {}
 
 using Owned = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 
@@ -118,7 +127,16 @@ std::string compiled(const std::string& path) {
 
 }  // namespace
 
+void throw_mujoco_errors() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = throw_error;
+    mju_user_warning = ignore_warning;
+  });
+}
+
 std::string compiled_mjcf(const std::string& path, const Limits& limits) {
+  throw_mujoco_errors();
   try {
     return confined(limits, [&] { return compiled(path); });
   } catch (const Unfinished& e) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -18,22 +17,6 @@
 
 namespace tauext {
 namespace {
-
-// MuJoCo's own handler writes a log file, waits for a key and exits; its callbacks are global
-[[noreturn]] void throw_error(const char* message) {
-  throw std::runtime_error(fmt::format("MuJoCo: {}", message));
-}
-
-// warnings are counted in mjData, where Plant::step looks for them
-void ignore_warning(const char*) {}
-
-void install_handlers() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    mju_user_error = throw_error;
-    mju_user_warning = ignore_warning;
-  });
-}
 
 Model own(mjModel* m) {
   return Model(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
@@ -92,7 +75,7 @@ std::vector<std::string> robot_names() {
 }
 
 Model load_robot(std::string_view name, std::string_view scene) {
-  install_handlers();
+  throw_mujoco_errors();
   if (const auto own = registered().find(name); own != registered().end()) {
     if (scene.empty()) return own->second;
     throw std::invalid_argument(
@@ -118,7 +101,6 @@ Model load_robot(std::string_view name, std::string_view scene) {
 
 Model load_mjcf(const std::string& path) {
   claim_input(path);
-  install_handlers();
   const char* const name = "robot.mjb";
   Vfs files;
   add(files, name, compiled_mjcf(path));

@@ -176,7 +176,7 @@ TEST_P(Testbed, ManualIsLeftInPeace) {
 
 // the same over many blows, and an hour of a human's hand (less without optimisation)
 TEST(TestbedDetection, MissesNoBlowIsLateForNoneAndLeavesAnHourOfManualInPeace) {
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#if defined(NDEBUG) && !defined(TAUEXT_SANITIZED)
   const study::Trials trials{.sensors = {.velocity_noise = 1e-4}};
 #else
   const study::Trials trials{.blows = 20, .manual_runs = 2, .sensors = {.velocity_noise = 1e-4}};

@@ -47,7 +47,7 @@ TEST(Live, EstimatesAndMarksAreThoseOfTheSuite) {
   }
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
+#ifndef TAUEXT_SANITIZED  // which brings its own malloc
 TEST(Live, ACycleAllocatesNothing) {
   const Trace trace = blow();
   const Robot& r = robot("wallmobot3");

@@ -11,31 +11,15 @@
 
 #include "bench/kit/allocations.h"
 #include "bench/roster/baselines.h"
+#include "bench/roster/test/hinge_arm.h"
 #include "bench/score/metrics.h"
 #include "mjcf/plant/arm_dynamics.h"
 
 namespace tauext {
 namespace {
 
+using test::hinge_arm;
 namespace fs = std::filesystem;
-
-// an arm of n hinges about z and y in turn, in space, with rotors and friction; position servos
-// instead of motors make it one that can only be watched
-std::string arm(int n, bool motors = true) {
-  std::string bodies, ends, actuators;
-  for (int j = 1; j <= n; ++j) {
-    bodies += fmt::format(
-        "<body pos='0 0 0.3'><joint name='j{0}' axis='{1}' damping='0.4' armature='0.1'/>"
-        "<geom type='capsule' fromto='0 0 0 0.05 0.02 0.3' size='0.05' mass='{2}'/>",
-        j, j % 2 == 1 ? "0.3 0 1" : "0 1 0.2", 4.0 / j);
-    ends += "</body>";
-    actuators += motors ? fmt::format("<motor joint='j{}'/>", j)
-                        : fmt::format("<position joint='j{}' kp='100'/>", j);
-  }
-  return "<mujoco><option integrator='RK4' timestep='0.001'/><worldbody>" + bodies +
-         "<site name='end_effector' pos='0 0 0.3'/>" + ends + "</worldbody><actuator>" + actuators +
-         "</actuator><contact/></mujoco>";
-}
 
 class FileRobot : public testing::TestWithParam<int> {
  protected:
@@ -59,7 +43,7 @@ class FileRobot : public testing::TestWithParam<int> {
 // the truth is what the simulation was given
 TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
   const int n = GetParam();
-  const std::unique_ptr<const Robot> owned = file_robot(put(arm(n)));
+  const std::unique_ptr<const Robot> owned = file_robot(put(hinge_arm(n)));
   const Robot& r = *owned;
   EXPECT_EQ(r.dof(), n);
   Scenario s = quiet();
@@ -90,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(OneToSevenJoints, FileRobot, testing::Range(1, 8),
 
 TEST_P(FileRobot, NoStepAllocates) {
   const int n = GetParam();
-  const std::unique_ptr<const Robot> owned = file_robot(put(arm(n)));
+  const std::unique_ptr<const Robot> owned = file_robot(put(hinge_arm(n)));
   const Robot& r = *owned;
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, 0.3), qd = q, tau = q;
   Eigen::VectorXd out(n);
@@ -109,19 +93,19 @@ TEST_P(FileRobot, NoStepAllocates) {
 }
 
 TEST_F(FileRobot, AGearIsTheMotorsAndNotTheJoints) {
-  std::string geared = arm(2);
+  std::string geared = hinge_arm(2);
   for (std::size_t at = 0; (at = geared.find("<motor ", at)) != std::string::npos; ++at) {
     geared.insert(at + 7, "gear='100' ");
   }
-  const MjcfArm<2> with(load_mjcf(put(geared))), without(load_mjcf(put(arm(2))));
+  const MjcfArm<2> with(load_mjcf(put(geared))), without(load_mjcf(put(hinge_arm(2))));
   const Vec<2> q(0.1, -0.4);
   EXPECT_EQ(with.inertia(q), without.inertia(q));
   EXPECT_EQ(with.gravity(q), without.gravity(q));
 }
 
 TEST_F(FileRobot, PositionServosAreFineForAnArmThatIsWatched) {
-  const std::string servos = put(arm(3, false));
-  const MjcfArm<3> watched(load_mjcf(servos)), driven(load_mjcf(put(arm(3))));
+  const std::string servos = put(hinge_arm(3, false));
+  const MjcfArm<3> watched(load_mjcf(servos)), driven(load_mjcf(put(hinge_arm(3))));
   const Vec<3> q(0.1, -0.4, 0.7), qd(1, 0.5, -2);
   EXPECT_EQ(watched.bias(q, qd), driven.bias(q, qd));
   EXPECT_EQ(watched.inertia(q), driven.inertia(q));
@@ -133,7 +117,7 @@ TEST_F(FileRobot, WhatIsNoArmIsRefusedWithItsName) {
     EXPECT_NE(what.find(path_.string()), std::string::npos) << what;
     EXPECT_NE(what.find(why), std::string::npos) << what;
   };
-  refuses(arm(8), "8 joints: 1 to 7 are supported");
+  refuses(hinge_arm(8), "8 joints: 1 to 7 are supported");
   refuses("<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>",
           "hinges and slides");
   refuses("<mujoco><worldbody/></mujoco>", "hinges and slides");

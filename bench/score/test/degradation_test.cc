@@ -95,8 +95,8 @@ TEST(SetFields, TakesKeysAndNumbersAndRefusesTheRest) {
       {"mass=1x", "mass=1x: not a number"},    {"mass=0", "mass=0: it must be 0.01 to 100"},
       {"weight=1", "there is no key 'weight'"}};
   for (const auto& [item, why] : wrong) {
-    EXPECT_EQ(error_of([&] { set_fields({item}, e); }).find("model_error: " + (why + known)), 0u)
-        << item;
+    const auto set = [&e, text = item] { set_fields({text}, e); };
+    EXPECT_EQ(error_of(set).find("model_error: " + (why + known)), 0u) << item;
   }
 }
 

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer's targets: all that reads what comes from outside. Each tries one reader with any
+// bytes, and looks at what it makes of them.
+//     tauext_fuzz --target=NAME [CORPUS...] [libFuzzer's flags]
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "bench/live/stream_table.h"
+#include "bench/logs/lcm_trace.h"
+#include "bench/roster/robots.h"
+#include "bench/roster/specification.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/score/degradation.h"
+#include "lcmtypes/receive/arrivals.h"
+#include "lcmtypes/wire.h"
+#include "mjcf/plant/mjcf_file.h"
+#include "mjcf/trace/trace.h"
+#include "regression/accuracy/golden_file.h"
+#include "regression/counts/counts.h"
+
+namespace tauext {
+
+// the one that thresholds are read for: the roster would take minutes to compile and is no reader
+const Robot& robot(std::string_view name_or_file) {
+  class Arm final : public Robot {
+   public:
+    Arm() : Robot("arm", 3) {}
+    std::vector<std::string> estimators() const override { return {"mo1"}; }
+    std::vector<std::string> detectors() const override { return {"threshold"}; }
+    std::vector<std::string> tunable() const override { return {}; }
+    std::vector<std::string> calibratable() const override { return detectors(); }
+    std::vector<FieldHelp> estimator_fields(std::string_view) const override { return {}; }
+    std::vector<FieldHelp> detector_fields(std::string_view) const override { return {}; }
+    std::unique_ptr<Runner> runner(std::string_view, std::string_view, const Trace&,
+                                   const DetectorSettings&) const override {
+      return nullptr;
+    }
+    std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view, const Trace&,
+                                     const DetectorSettings&) const override {
+      parse_specification(estimator);
+      return nullptr;
+    }
+    std::vector<Detection> detect(std::string_view, const Trace&, const Output&,
+                                  const DetectorSettings&) const override {
+      return {};
+    }
+    Eigen::VectorXd largest_statistic(std::string_view, const Trace&, const Output&,
+                                      const DetectorSettings&, double) const override {
+      return {};
+    }
+    Eigen::MatrixXd covariance(std::string_view, const Trace&, const Output&,
+                               const DetectorSettings&, double) const override {
+      return {};
+    }
+    const Calibration& calibration(std::string_view) const override { throw std::logic_error(""); }
+  };
+  static const Arm arm;
+  if (name_or_file != arm.name()) throw std::invalid_argument("unknown robot");
+  return arm;
+}
+
+namespace {
+
+// for libFuzzer a finding
+void demand(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "not so: %s\n", what);
+  std::abort();
+}
+
+// the input as a file, always the same one
+std::string file_of(Bytes input) {
+  static const int descriptor = ::memfd_create("input", MFD_CLOEXEC);
+  demand(::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, input.data(), input.size(), 0) ==
+                                                static_cast<ssize_t>(input.size()),
+         "the input can be written");
+  return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+// an error in one line that names the file is what users get
+void refused_or(const std::string& path, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const std::runtime_error& e) {
+    const std::string_view what = e.what();
+    demand(what.starts_with(path + ": "), "an error names the file");
+    demand(what.size() < 10'000, "an error can be read");
+  }
+}
+
+// messages may hold numbers that are none, which estimators flag
+void demand_trace(const Trace& t, bool finite) {
+  demand(t.size() > 0 && t.dof() > 0, "a trace has samples");
+  for (const Eigen::MatrixXd* m : {&t.q, &t.qd, &t.tau}) {
+    demand(m->rows() == t.dof() && m->cols() == t.size(), "a trace has numbers of each joint");
+    demand(!finite || m->allFinite(), "numbers are finite");
+  }
+  for (int k = 0; k < t.size(); ++k) {
+    demand(std::isfinite(t.t[k]) && (k == 0 || t.t[k] > t.t[k - 1]), "time goes on");
+  }
+}
+
+void csv(Bytes input) {
+  const std::string path = file_of(input);
+  refused_or(path, [&] {
+    SkippedRows skipped;
+    demand_trace(read_csv(path, &skipped), true);
+    demand(static_cast<int>(skipped.first.size()) <= skipped.total(), "what is named is counted");
+  });
+}
+
+// every byte is of an event or junk, but for an event that is cut off
+void events_of_log(const std::string& path, std::size_t size) {
+  std::size_t seen = 0;
+  const LogFaults faults = read_log(path, [&](const LogEvent& e) {
+    constexpr std::size_t kHead = 28;
+    seen += kHead + e.channel.size() + e.message.size();
+  });
+  seen += static_cast<std::size_t>(faults.junk_bytes);
+  demand(seen == size || (faults.truncated && seen < size), "every byte of a log is accounted for");
+}
+
+void log(Bytes input) {
+  const std::string path = file_of(input);
+  refused_or(path, [&] { events_of_log(path, input.size()); });
+  refused_or(path, [&] {
+    LogReport report;
+    demand_trace(read_lcm(path, "", &report), false);
+    demand(report.rejected >= 0 && report.out_of_order >= 0 && report.lost >= 0, "counts count");
+  });
+}
+
+// whether it is a good message of that type, which then is whole
+template <class Message>
+bool is_good(Bytes input) {
+  Message m{};
+  if (decode(input, m) != Reject::kNone) return false;
+  std::string again(input.size(), '\0');
+  demand(encode(m, std::as_writable_bytes(std::span(again))) == input.size() &&
+             std::equal(input.begin(), input.end(), std::as_bytes(std::span(again)).begin()),
+         "what was decoded encodes to the same bytes");
+  return true;
+}
+
+void wire(Bytes input) {
+  stamp_of(input);
+  demand(is_good<sample_t>(input) + is_good<estimate_t>(input) + is_good<detection_t>(input) +
+                 is_good<summary_t>(input) + is_good<iiwa_status_t>(input) +
+                 is_good<panda_status_t>(input) <=
+             1,
+         "a message is of one type");
+}
+
+void demand_account(const Account& a) {
+  demand(a.used >= 0 && a.late >= 0 && a.repeated >= 0 && a.rejected >= 0 && a.lost >= 0,
+         "an account has no debts");
+}
+
+void demand_printable(std::string_view text) {
+  for (const unsigned char c : text) {
+    demand(c == '\n' || (c >= ' ' && c != 0x7f), "there are no control bytes");
+  }
+}
+
+// what came from the network, again and again: the sender, the length in two bytes, the datagram
+void datagrams(Bytes input) {
+  live::StreamTable table;
+  Arrivals arrivals;
+  std::int64_t now = 0, taken = 0;
+  while (input.size() >= 3) {
+    const auto at = [&](std::size_t i) { return std::to_integer<std::size_t>(input[i]); };
+    const Sender sender = at(0) % 4;
+    const std::size_t length = std::min(at(1) | at(2) << 8, input.size() - 3);
+    const Bytes datagram = input.subspan(3, length);
+    now += 1000 * static_cast<std::int64_t>(at(0) / 4);
+    input = input.subspan(3 + length);
+    Datagram d;
+    if (parse(datagram, d) != Refusal::kNone) continue;
+    demand(!d.channel.empty() && d.channel.size() <= kLongestChannel, "a channel has a name");
+    table.take(d.channel, sender, now, d.message);
+    ++taken;
+    MessageType type{};
+    Reading reading;
+    if (type_of(d.message, type) == Reject::kNone &&
+        read(d.message, type, reading) == Reject::kNone) {
+      arrivals.take(reading, sender, now);
+    } else {
+      arrivals.reject(stamp_of(d.message), sender);
+    }
+  }
+  demand_account(arrivals.counts());
+  demand_account(table.account());
+  const Account a = table.account();
+  demand(a.sent() - a.lost <= taken, "nothing is counted twice");
+  demand_printable(table.format(now));
+  demand_printable(table.totals({}));
+  for (const std::string& e : table.events()) demand_printable(e);
+}
+
+void json(Bytes input) {
+  const std::string path = file_of(input);
+  refused_or(path, [&] {
+    Degradation d;
+    read_degradation(path, d);
+    describe(d);
+  });
+  refused_or(path, [&] {
+    const Thresholds t = read_thresholds(path);
+    demand(t.margin > 0 && !t.sets.empty(), "thresholds can be used");
+  });
+}
+
+void baseline(Bytes input) {
+  const std::string path = file_of(input);
+  refused_or(path, [&] { gate::read_golden(path); });
+  refused_or(path, [&] { gate::read_counts(path); });
+}
+
+void mjcf(Bytes input) {
+  const std::string path = file_of(input);
+  refused_or(path, [&] {
+    demand(!compiled_mjcf(path, {.time = 5, .memory = std::size_t{256} << 20}).empty(),
+           "a model has bytes");
+  });
+}
+
+const std::map<std::string_view, void (*)(Bytes)> kTargets{
+    {"csv", csv},   {"log", log},           {"wire", wire}, {"datagrams", datagrams},
+    {"json", json}, {"baseline", baseline}, {"mjcf", mjcf}};
+
+void (*target)(Bytes) = nullptr;
+
+// of --target=NAME, which libFuzzer leaves to us
+void choose(int argc, char** argv) {
+  constexpr std::string_view kFlag = "--target=";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (!argument.starts_with(kFlag)) continue;
+    const auto it = kTargets.find(argument.substr(kFlag.size()));
+    if (it != kTargets.end()) target = it->second;
+  }
+  if (target != nullptr) return;
+  std::fputs("tauext_fuzz: --target=NAME is wanted; known:", stderr);
+  for (const auto& [name, function] : kTargets) std::fprintf(stderr, " %s", name.data());
+  std::fputs("\n", stderr);
+  std::exit(2);
+}
+
+}  // namespace
+}  // namespace tauext
+
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  tauext::choose(*argc, *argv);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  tauext::target(std::as_bytes(std::span(data, size)));
+  return 0;
+}
