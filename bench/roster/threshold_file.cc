@@ -12,6 +12,7 @@
 #include "bench/roster/robots.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -126,10 +127,11 @@ Thresholds read_thresholds(const std::string& path) {
     for (const Json& set : j.at("sets")) t.sets.push_back(set_of(set));
     return t;
   } catch (const Json::exception& e) {
-    throw std::runtime_error(fmt::format(
-        "{}: no file of thresholds, as tauext-detect --calibrate writes it: {}", path, e.what()));
+    throw std::runtime_error(
+        fmt::format("{}: no file of thresholds, as tauext-detect --calibrate writes it: {}", path,
+                    one_line(e.what())));
   } catch (const std::exception& e) {
-    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }
 }
 
@@ -147,9 +149,10 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
       if (own != behind->second.end()) return {{name, own->second}};
     }
   }
-  throw std::invalid_argument(fmt::format(
-      "{}: no thresholds for {}/{}+{}, but for {}; tauext-detect --calibrate makes them", t.path,
-      robot_name, estimator, detector, fmt::join(pairs_of(t), ", ")));
+  throw std::invalid_argument(
+      fmt::format("{}: has no thresholds for {}/{}+{}, it has those of {}; tauext-detect "
+                  "--calibrate makes more",
+                  t.path, robot_name, estimator, detector, fmt::join(pairs_of(t), ", ")));
 }
 
 }  // namespace tauext

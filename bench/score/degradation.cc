@@ -10,6 +10,7 @@
 
 #include "bench/roster/specification.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 
@@ -146,7 +147,7 @@ void read_degradation(const std::string& path, Degradation& d) {
   try {
     d = from_json(Json::parse(text, nullptr, true, true), d);  // comments are welcome
   } catch (const std::exception& e) {
-    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }
 }
 

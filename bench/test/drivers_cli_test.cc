@@ -1,20 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drake's drivers of arms of seven joints, as their messages come from a log and off the air.
+// An arm of seven joints that speaks as Drake's drivers do, from a log and off the air.
 #include <cmath>
 #include <regex>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "bench/logs/lcm_trace.h"
 #include "bench/roster/test/hinge_arm.h"
 #include "bench/test/live_programs.h"
+#include "lcmtypes/log.h"
+#include "lcmtypes/wire.h"
 #include "mjcf/motion.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/record.h"
 
 namespace tauext::test {
 namespace {
+
+std::vector<double> column(const Eigen::MatrixXd& m, int k, double sign = 1) {
+  const Eigen::VectorXd c = sign * m.col(k);
+  return {c.begin(), c.end()};
+}
+
+// The messages of Drake's drivers, with the signs of its manipulation/README.md: the iiwa's driver
+// negates the measured torque, the Panda's the external one, if positive is what accelerates the
+// joint; tau_ext of (3) is the opposite of that.
+iiwa_status_t iiwa(const Trace& t, int k) {
+  iiwa_status_t m{};
+  m.num_joints = t.dof();
+  m.joint_position_measured = column(t.q, k);
+  m.joint_velocity_estimated = column(t.qd, k);
+  m.joint_torque_measured = column(t.tau, k, -1);
+  m.joint_torque_external = column(t.tau_ext, k, -1);
+  m.joint_position_commanded.resize(m.num_joints);
+  m.joint_position_ipo.resize(m.num_joints);
+  m.joint_torque_commanded.resize(m.num_joints);
+  return m;
+}
+panda_status_t panda(const Trace& t, int k) {
+  panda_status_t m{};
+  m.num_joints = t.dof();
+  m.joint_position = column(t.q, k);
+  m.joint_velocity = column(t.qd, k);
+  m.joint_torque = column(t.tau, k);
+  m.joint_torque_external = column(t.tau_ext, k);
+  for (auto* const v : {&m.joint_position_desired, &m.joint_velocity_desired,
+                        &m.joint_acceleration_desired, &m.joint_torque_desired}) {
+    v->resize(m.num_joints);
+  }
+  return m;
+}
+
+// a log of them, encoded by the code of lcm-gen
+template <class Make>
+LogBuffer log_of(const Trace& t, const std::string& channel, Make make) {
+  LogBuffer log;
+  for (int k = 0; k < t.size(); ++k) {
+    auto m = make(t, k);
+    m.utime = std::llround(t.t[k] * 1e6);
+    std::vector<std::byte> bytes(m.getEncodedSize());
+    m.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    log.append(channel, m.utime, bytes);
+  }
+  return log;
+}
 
 // rmse [N m] of mo1, of each table
 std::vector<double> rmse_of_mo1(const std::string& text) {
@@ -36,18 +84,14 @@ Trace seven_joints(const std::string& mjcf) {
   return record(load_mjcf(mjcf), s);
 }
 
-TEST_F(LivePrograms, EveryMessageOfADriverIsUsedWithItsSign) {
-  SKIP_WITHOUT_NAMESPACE();
-  write("arm.xml", hinge_arm(7));
-  const Trace trace = seven_joints((folder_ / "arm.xml").string());
-  ASSERT_EQ(trace.size(), 6000);
-  ASSERT_GT(trace.tau.row(1).cwiseAbs().maxCoeff(), 10)
-      << "N m, of which a wrong sign makes twice as many";
-  for (const auto& [type, channel] : std::vector<std::pair<std::string, std::string>>{
-           {"iiwa", "IIWA_STATUS"}, {"panda", "PANDA_STATUS"}}) {
-    LogBuffer log;
-    append_samples(readings_of(trace), message_type(type), log);
-    put_log("driver.lcm", log);
+class Drivers : public LivePrograms {
+ protected:
+  Drivers() {
+    write("arm.xml", hinge_arm(7));
+    trace_ = seven_joints((folder_ / "arm.xml").string());
+  }
+  void check(const std::string& type, const std::string& channel) {
+    ASSERT_GT(trace_.tau.row(1).cwiseAbs().maxCoeff(), 10) << "N m: a wrong sign would be seen";
     const std::string live = "--robot arm.xml --estimator mo1 ";
     const Outcome o =
         in_network("tauext-live --speed 4 --from driver.lcm " + live + "> played\n" +
@@ -55,14 +99,31 @@ TEST_F(LivePrograms, EveryMessageOfADriverIsUsedWithItsSign) {
                    "lcm-logplayer --speed=4 driver.lcm > /dev/null; cat played\n" + kSumUp);
     EXPECT_EQ(o.code, 0) << o.text;
     EXPECT_TRUE(o.says("6000 samples")) << o.text;
-    EXPECT_TRUE(o.says("6000 sent = 6000 used")) << o.text;
+    // the first few of UDP may not arrive on a busy machine; nobody can know that they were sent
+    EXPECT_GT(number(o, "used"), 5900) << o.text;
+    EXPECT_TRUE(o.says("+ 0 late + 0 repeated + 0 rejected + 0 lost")) << o.text;
     const std::vector<double> rmse = rmse_of_mo1(o.text);
-    ASSERT_EQ(rmse.size(), 2u) << o.text;  // played, and off the air
+    ASSERT_EQ(rmse.size(), 2u) << o.text;  // of the log, and off the air
     for (const double r : rmse) {
-      EXPECT_GT(r, 0);
+      EXPECT_GT(r, 0) << "N m, the lag of 30 rad/s";
       EXPECT_LT(r, 1) << "N m";
     }
   }
+  Trace trace_;
+};
+
+TEST_F(Drivers, EveryMessageOfAnIiwaIsUsedWithItsSigns) {
+  SKIP_WITHOUT_NAMESPACE();
+  LogBuffer log = log_of(trace_, "IIWA_STATUS", iiwa);
+  put_log("driver.lcm", log);
+  check("iiwa", "IIWA_STATUS");
+}
+
+TEST_F(Drivers, EveryMessageOfAPandaIsUsedWithItsSigns) {
+  SKIP_WITHOUT_NAMESPACE();
+  LogBuffer log = log_of(trace_, "PANDA_STATUS", panda);
+  put_log("driver.lcm", log);
+  check("panda", "PANDA_STATUS");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Work on what nobody vouches for: in a child process with limits, of which only bytes come back.
+/// Runs code that a bad input may crash or hold for ever in a child process with limits.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,23 @@
 
 namespace tauext {
 
-/// What such work may take.
+/// What the child may use.
 struct Limits {
-  double time = 30;  ///< [s] until its result is there
-  std::size_t memory = std::size_t{2}
-                       << 30;  ///< [bytes] more than this process has, and of a result
+  double time = 30;                             ///< [s]
+  std::size_t memory = std::size_t{2} << 30;    ///< [bytes] beyond what this process has
+  std::size_t result = std::size_t{256} << 20;  ///< [bytes] that come back
 };
 
-/// Work that crashed, or reached a limit.
+/// The work crashed or reached a limit; in words, with the work as their subject ("crashes (..)").
 struct Unfinished : std::runtime_error {
-  using std::runtime_error::runtime_error;  ///< in words
+  using std::runtime_error::runtime_error;  ///< its words
 };
 
-/// The bytes that `work` returns, made in a child process: whatever becomes of it there, this
-/// process goes on. The child writes no files and says nothing; the limit of its memory does not
-/// hold under sanitizers.
-/// @throws Unfinished, or a std::runtime_error with the words of what `work` throws there
+/// The bytes that `work` returns. It runs in a child process, so a crash or an endless loop ends
+/// the child alone. The child cannot write into files, and what it prints is lost. This guards
+/// against accidents, not against code that was written to break out. Under sanitizers memory is
+/// not limited and what the child prints is kept.
+/// @throws Unfinished, or a std::runtime_error with the words of the exception that `work` threw
 std::string confined(const Limits& limits, const std::function<std::string()>& work);
 
 }  // namespace tauext

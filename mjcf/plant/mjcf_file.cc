@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "mjcf/trace/printable.h"
+
 namespace tauext {
 namespace {
 
@@ -25,81 +27,88 @@ void ignore_warning(const char*) {}
 
 using Owned = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 
-// MuJoCo's lines as one
-std::string one_line(std::string_view text) {
-  std::string line;
-  for (const char c : text) {
-    if (c != '\n') {
-      line += c;
-    } else if (!line.empty() && !line.ends_with("; ")) {
-      line += "; ";
-    }
-  }
-  if (line.ends_with("; ")) line.resize(line.size() - 2);
-  return line;
-}
-
 std::string element(const mjModel& m, mjtObj type, std::string_view kind, int id) {
   const char* const name = mj_id2name(&m, type, id);
-  return name != nullptr && *name != '\0' ? fmt::format("{} '{}'", kind, name)
+  return name != nullptr && *name != '\0' ? fmt::format("{} '{}'", kind, printable_name(name))
                                           : fmt::format("{} {}", kind, id);
 }
 
-// numbers of a kind of elements, by MJCF's name
+// numbers of a kind of elements, by MJCF's name, and the limits of what a machine can have
 struct Numbers {
   mjtObj type;
   const char* kind;
   int elements;
   const char* attribute;
   const mjtNum* values;
-  int width;                // numbers of an element
-  bool signed_;             // may be negative
+  int width;  // numbers of an element
+  double least, most;
   const int* of = nullptr;  // the element that each belongs to, if not its own number
 };
+
+constexpr double kAny = mjMAXVAL;  // beyond it MuJoCo takes a state for a wrong one
+
+std::string range_of(double least, double most) {
+  return most == kAny && least == -kAny ? "finite" : fmt::format("{:g} to {:g}", least, most);
+}
 
 void check_numbers(const mjModel& m, const Numbers& n) {
   for (int i = 0; i < n.elements * n.width; ++i) {
     const double value = n.values[i];
-    if (std::isfinite(value) && (n.signed_ || value >= 0)) continue;
-    const int id = i / n.width;
-    throw std::runtime_error(
-        fmt::format("{}: {} is {:g}, and must be {}",
-                    element(m, n.type, n.kind, n.of == nullptr ? id : n.of[id]), n.attribute, value,
-                    n.signed_ ? "finite" : "0 or more"));
+    if (value >= n.least && value <= n.most) continue;
+    const int id = n.of == nullptr ? i / n.width : n.of[i / n.width];
+    throw std::runtime_error(fmt::format("{}: {} is {:g}, and must be {}",
+                                         element(m, n.type, n.kind, id), n.attribute, value,
+                                         range_of(n.least, n.most)));
   }
+}
+
+void check_option(const char* what, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  throw std::runtime_error(
+      fmt::format("option: {} is {:g}, and must be {}", what, value, range_of(least, most)));
 }
 
 void check_physical(const mjModel& m) {
   constexpr auto kJoint = mjOBJ_JOINT, kTendon = mjOBJ_TENDON, kBody = mjOBJ_BODY,
-                 kMotor = mjOBJ_ACTUATOR;
-  for (const double g : m.opt.gravity) {
-    if (!std::isfinite(g)) throw std::runtime_error(fmt::format("option: gravity is {:g}", g));
-  }
-  if (!(m.opt.timestep > 0 && std::isfinite(m.opt.timestep))) {
-    throw std::runtime_error(
-        fmt::format("option: timestep is {:g} s, and must be positive", m.opt.timestep));
-  }
+                 kSite = mjOBJ_SITE, kMotor = mjOBJ_ACTUATOR;
+  constexpr double kMuch = 1e6;  // [kg, N m, N m s/rad, ..]
+  for (const double g : m.opt.gravity) check_option("gravity", g, -1000, 1000);
+  check_option("timestep", m.opt.timestep, 1e-9, 1);
   for (const Numbers& n : std::to_array<Numbers>({
-           {kBody, "body", m.nbody, "mass", m.body_mass, 1, false},
-           {kBody, "body", m.nbody, "inertia", m.body_inertia, 3, false},
-           {kBody, "body", m.nbody, "pos", m.body_pos, 3, true},
-           {kBody, "body", m.nbody, "quat", m.body_quat, 4, true},
-           {kBody, "body", m.nbody, "centre of mass", m.body_ipos, 3, true},
-           {kJoint, "joint", m.nv, "armature", m.dof_armature, 1, false, m.dof_jntid},
-           {kJoint, "joint", m.nv, "damping", m.dof_damping, 1, false, m.dof_jntid},
-           {kJoint, "joint", m.nv, "frictionloss", m.dof_frictionloss, 1, false, m.dof_jntid},
-           {kJoint, "joint", m.njnt, "stiffness", m.jnt_stiffness, 1, false},
-           {kJoint, "joint", m.njnt, "axis", m.jnt_axis, 3, true},
-           {kJoint, "joint", m.njnt, "pos", m.jnt_pos, 3, true},
-           {kJoint, "joint", m.njnt, "range", m.jnt_range, 2, true},
-           {kTendon, "tendon", m.ntendon, "stiffness", m.tendon_stiffness, 1, false},
-           {kTendon, "tendon", m.ntendon, "damping", m.tendon_damping, 1, false},
-           {kTendon, "tendon", m.ntendon, "frictionloss", m.tendon_frictionloss, 1, false},
-           {kMotor, "actuator", m.nu, "gear", m.actuator_gear, 6, true},
-           {kMotor, "actuator", m.nu, "gainprm", m.actuator_gainprm, mjNGAIN, true},
-           {kMotor, "actuator", m.nu, "biasprm", m.actuator_biasprm, mjNBIAS, true},
+           {kBody, "body", m.nbody, "mass", m.body_mass, 1, 0, kMuch},
+           {kBody, "body", m.nbody, "diaginertia", m.body_inertia, 3, 0, 1e9},
+           {kBody, "body", m.nbody, "pos", m.body_pos, 3, -kMuch, kMuch},
+           {kBody, "body", m.nbody, "quat", m.body_quat, 4, -kAny, kAny},
+           {kBody, "body", m.nbody, "inertial pos", m.body_ipos, 3, -kMuch, kMuch},
+           {kBody, "body", m.nbody, "inertial quat", m.body_iquat, 4, -kAny, kAny},
+           {kSite, "site", m.nsite, "pos", m.site_pos, 3, -kMuch, kMuch},
+           {kSite, "site", m.nsite, "quat", m.site_quat, 4, -kAny, kAny},
+           {kJoint, "joint", m.nv, "armature", m.dof_armature, 1, 0, kMuch, m.dof_jntid},
+           {kJoint, "joint", m.nv, "damping", m.dof_damping, 1, 0, kMuch, m.dof_jntid},
+           {kJoint, "joint", m.nv, "frictionloss", m.dof_frictionloss, 1, 0, kMuch, m.dof_jntid},
+           {kJoint, "joint", m.njnt, "stiffness", m.jnt_stiffness, 1, 0, 1e9},
+           {kJoint, "joint", m.njnt, "axis", m.jnt_axis, 3, -kAny, kAny},
+           {kJoint, "joint", m.njnt, "pos", m.jnt_pos, 3, -kMuch, kMuch},
+           {kJoint, "joint", m.njnt, "range", m.jnt_range, 2, -kAny, kAny},
+           {kJoint, "joint", m.njnt, "solreflimit", m.jnt_solref, mjNREF, -kAny, kAny},
+           {kJoint, "joint", m.nv, "solreffriction", m.dof_solref, mjNREF, -kAny, kAny,
+            m.dof_jntid},
+           {kTendon, "tendon", m.ntendon, "stiffness", m.tendon_stiffness, 1, 0, 1e9},
+           {kTendon, "tendon", m.ntendon, "damping", m.tendon_damping, 1, 0, kMuch},
+           {kTendon, "tendon", m.ntendon, "frictionloss", m.tendon_frictionloss, 1, 0, kMuch},
+           {kMotor, "actuator", m.nu, "gear", m.actuator_gear, 6, -kAny, kAny},
+           {kMotor, "actuator", m.nu, "ctrlrange", m.actuator_ctrlrange, 2, -kAny, kAny},
+           {kMotor, "actuator", m.nu, "forcerange", m.actuator_forcerange, 2, -kAny, kAny},
+           {kMotor, "actuator", m.nu, "gainprm", m.actuator_gainprm, mjNGAIN, -kAny, kAny},
+           {kMotor, "actuator", m.nu, "biasprm", m.actuator_biasprm, mjNBIAS, -kAny, kAny},
        })) {
     check_numbers(m, n);
+  }
+  for (int j = 0; j < m.njnt; ++j) {
+    if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE) continue;
+    const int at = m.jnt_qposadr[j];
+    check_numbers(m, {kJoint, "joint", 1, "ref", m.qpos0 + at, 1, -kAny, kAny, &j});
+    check_numbers(m, {kJoint, "joint", 1, "springref", m.qpos_spring + at, 1, -kAny, kAny, &j});
   }
 }
 
@@ -141,8 +150,8 @@ std::string compiled_mjcf(const std::string& path, const Limits& limits) {
     return confined(limits, [&] { return compiled(path); });
   } catch (const Unfinished& e) {
     throw std::runtime_error(
-        fmt::format("{}: MuJoCo {} while it loads it; leave out what dynamics does not need "
-                    "(textures, meshes), and includes that are no files",
+        fmt::format("{}: MuJoCo {} when it loads this robot. Textures can be left out, and meshes "
+                    "where every body has an <inertial>; each <include> must name a file",
                     path, e.what()));
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, e.what()));

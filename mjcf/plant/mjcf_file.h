@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// MJCF files of users: MuJoCo crashes or hangs at some, and believes any number.
+/// MJCF files of users. MuJoCo crashes or hangs at some of them, and believes any number.
 #pragma once
 
 #include <string>
@@ -12,9 +12,10 @@ namespace tauext {
 /// From now on MuJoCo's errors are exceptions (std::runtime_error), and it says nothing itself.
 void throw_mujoco_errors();
 
-/// A file in MuJoCo's binary form (MJB), once a child process has compiled it, found its numbers
-/// physical and taken a step.
-/// @throws std::runtime_error naming the path and, in one line, the element and what is wrong
+/// Compiles a file in a child process, which also refuses numbers that no machine has (those of
+/// dynamics: bodies, joints, tendons, motors, sites, gravity) and tries one step.
+/// @returns MuJoCo's binary form of it (MJB)
+/// @throws std::runtime_error in one line, naming the path, the element and what is wrong
 std::string compiled_mjcf(const std::string& path, const Limits& limits = {});
 
 }  // namespace tauext

@@ -105,7 +105,8 @@ Model load_mjcf(const std::string& path) {
   Vfs files;
   add(files, name, compiled_mjcf(path));
   mjModel* const m = mj_loadModel(name, files.vfs.get());
-  if (m == nullptr) throw std::runtime_error(fmt::format("{}: MuJoCo cannot take it back", path));
+  if (m == nullptr)
+    throw std::runtime_error(fmt::format("{}: MuJoCo cannot read its own binary form of it", path));
   return own(m);
 }
 

@@ -194,7 +194,7 @@ void AtomicFile::commit() {
   if (std::exchange(replaces_, false)) claims::drop_output(replaced_);
 }
 
-// as far as the user may; an owner or a group that cannot be kept does not leave its rights to ours
+// As far as the user may. Where owner or group cannot be kept, ours do not get their rights.
 void AtomicFile::keep_owner() {
   if (!replaces_) return;
   const int fd = ::fileno(file_);

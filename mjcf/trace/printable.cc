@@ -59,4 +59,18 @@ std::string printable_name(std::string_view text, std::size_t most) {
   return out;
 }
 
+std::string one_line(std::string_view text, std::size_t most) {
+  std::string line;
+  for (const char c : printable(text.substr(0, most))) {
+    if (c != '\n') {
+      line += c;
+    } else if (!line.empty() && !line.ends_with("; ")) {
+      line += "; ";
+    }
+  }
+  if (line.ends_with("; ")) line.resize(line.size() - 2);
+  if (text.size() > most) line += " ..";
+  return line;
+}
+
 }  // namespace tauext

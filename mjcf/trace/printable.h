@@ -16,6 +16,9 @@ std::string printable(std::string_view text);
 /// The same of a name: in one line, and at most so many bytes of it.
 std::string printable_name(std::string_view text, std::size_t most = 60);
 
+/// The same of a text that came in several lines, with "; " between them, cut where it is too long.
+std::string one_line(std::string_view text, std::size_t most = 1000);
+
 /// Says a line on standard error, printable, in the place of a progress line that a terminal shows.
 void say(std::string_view line);
 

@@ -62,7 +62,7 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
                                     {"testbed1", "mo1", "high_pass"}}) {
     EXPECT_NE(error_of([&] {
                 of(robot, e, d);
-              }).find(", but for wallmobot3/mo1+high_pass|high_pass:w=60"),
+              }).find("it has those of wallmobot3/mo1+high_pass|high_pass:w=60"),
               std::string::npos)
         << robot << e << d;
   }

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -63,32 +62,51 @@ TEST_F(MjcfFile, ComesBackAsMuJoCoItselfCompilesIt) {
 
 TEST_F(MjcfFile, NumbersOfNoArmAreRefusedWithTheirElement) {
   for (const auto& [attributes, why] : std::vector<std::pair<std::string, std::string>>{
-           {"armature='-0.1'", "joint 'elbow': armature is -0.1, and must be 0 or more"},
-           {"damping='-3'", "joint 'elbow': damping is -3, and must be 0 or more"},
-           {"frictionloss='-1'", "joint 'elbow': frictionloss is -1, and must be 0 or more"},
-           {"stiffness='-1'", "joint 'elbow': stiffness is -1, and must be 0 or more"},
-           {"damping='nan'", "joint 'elbow': damping is nan, and must be 0 or more"},
-           {"armature='inf'", "joint 'elbow': armature is inf, and must be 0 or more"},
-           {"pos='nan 0 0'", "joint 'elbow': pos is nan, and must be finite"}}) {
-    EXPECT_EQ(error(arm(attributes)), path_ + ": " + why);
+           {"armature='-0.1'", "armature is -0.1, and must be 0 to 1e+06"},
+           {"damping='-3'", "damping is -3, and must be 0 to 1e+06"},
+           {"damping='1e300'", "damping is 1e+300, and must be 0 to 1e+06"},
+           {"frictionloss='-1'", "frictionloss is -1, and must be 0 to 1e+06"},
+           {"stiffness='-1'", "stiffness is -1, and must be 0 to 1e+09"},
+           {"damping='nan'", "damping is nan, and must be 0 to 1e+06"},
+           {"armature='inf'", "armature is inf, and must be 0 to 1e+06"},
+           {"ref='nan'", "ref is nan, and must be finite"},
+           {"solreflimit='nan 1'", "solreflimit is nan, and must be finite"},
+           {"pos='nan 0 0'", "pos is nan, and must be -1e+06 to 1e+06"}}) {
+    EXPECT_EQ(error(arm(attributes)), path_ + ": joint 'elbow': " + why);
   }
-  EXPECT_EQ(error(arm("", "<option gravity='0 0 nan'/>")), path_ + ": option: gravity is nan");
-  EXPECT_EQ(error(arm("", "<option timestep='-0.001'/>")),
-            path_ + ": option: timestep is -0.001 s, and must be positive");
-  EXPECT_EQ(error(arm("", "<option timestep='0'/>")),
-            path_ + ": option: timestep is 0 s, and must be positive");
-  EXPECT_EQ(
-      error(put("<mujoco><worldbody><body><joint name='a'/><geom size='1'/></body></worldbody>"
-                "<tendon><fixed damping='-1'><joint joint='a' coef='1'/></fixed></tendon>"
-                "</mujoco>")),
-      path_ + ": tendon 0: damping is -1, and must be 0 or more");
   EXPECT_EQ(error(arm("armature='0.1' damping='0'")), "no error");
+}
+
+TEST_F(MjcfFile, SoAreThoseOfItsOptionsTendonsSitesAndMotors) {
+  for (const auto& [option, why] : std::vector<std::pair<std::string, std::string>>{
+           {"gravity='0 0 nan'", "gravity is nan, and must be -1000 to 1000"},
+           {"timestep='-0.001'", "timestep is -0.001, and must be 1e-09 to 1"},
+           {"timestep='0'", "timestep is 0, and must be 1e-09 to 1"}}) {
+    EXPECT_EQ(error(arm("", "<option " + option + "/>")), path_ + ": option: " + why);
+  }
+  const auto arm_with = [&](const std::string& site, const std::string& behind) {
+    return error(put("<mujoco><worldbody><body><joint name='a'/><geom size='1'/>" + site +
+                     "</body></worldbody>" + behind + "</mujoco>"));
+  };
+  EXPECT_EQ(
+      arm_with("", "<tendon><fixed damping='-1'><joint joint='a' coef='1'/></fixed></tendon>"),
+      path_ + ": tendon 0: damping is -1, and must be 0 to 1e+06");
+  EXPECT_EQ(arm_with("<site name='tip' pos='nan 0 0'/>", ""),
+            path_ + ": site 'tip': pos is nan, and must be -1e+06 to 1e+06");
+  EXPECT_EQ(arm_with("",
+                     "<actuator><motor name='m' joint='a' ctrllimited='true' ctrlrange='nan "
+                     "nan'/></actuator>"),
+            path_ + ": actuator 'm': ctrlrange is nan, and must be finite");
 }
 
 TEST_F(MjcfFile, WhatMuJoCoSaysIsOneLine) {
   const std::string schema = error(arm("strength='3'"));
   EXPECT_TRUE(schema.starts_with(path_ + ": XML Error: Schema violation")) << schema;
   EXPECT_NE(schema.find("'strength'"), std::string::npos) << schema;
+  const std::string name = error(
+      put("<mujoco><worldbody><body><joint name='a&#10;b' damping='-1'/><geom size='1'/></body>"
+          "</worldbody></mujoco>"));
+  EXPECT_EQ(name, path_ + ": joint 'a?b': damping is -1, and must be 0 to 1e+06");
   for (const std::string& xml : {std::string("no xml"), std::string("<mujoco>"), std::string()}) {
     EXPECT_EQ(error(put(xml)).find('\n'), std::string::npos) << error(put(xml));
   }
@@ -96,20 +114,22 @@ TEST_F(MjcfFile, WhatMuJoCoSaysIsOneLine) {
 }
 
 TEST_F(MjcfFile, NoFileEndsOrHoldsThisProcess) {
-  const auto unfinished = [](const std::string& path, const std::string& why) {
-    return path + ": MuJoCo " + why +
-           " while it loads it; leave out what dynamics does not need (textures, meshes), and "
-           "includes that are no files";
+  const auto not_done = [](const std::string& path) {
+    return path +
+           ": MuJoCo is not done after 1 s when it loads this robot. Textures can be left out, and "
+           "meshes where every body has an <inertial>; each <include> must name a file";
   };
-  const std::string texture =
-      "<asset><texture name='sky' type='2d' builtin='flat' width='40000' height='40000'/></asset>";
-  EXPECT_EQ(error(arm("", texture)), unfinished(path_, "crashes (Segmentation fault)"));
+  // MuJoCo 2.2.2 crashes; another version may say something
+  const std::string huge = error(arm("",
+                                     "<asset><texture name='sky' type='2d' builtin='flat' "
+                                     "width='40000' height='40000'/></asset>"));
+  EXPECT_TRUE(huge.starts_with(path_ + ": ")) << huge;
 
   const fs::path pipe = folder_ / "pipe.xml";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(error(put("<mujoco><include file='pipe.xml'/></mujoco>"), {.time = 1}),
-            unfinished(path_, "is not done after 1 s"));
-  EXPECT_EQ(error(pipe, {.time = 1}), unfinished(pipe.string(), "is not done after 1 s"));
+            not_done(path_));
+  EXPECT_EQ(error(pipe, {.time = 1}), not_done(pipe.string()));
 }
 
 TEST(Confined, GivesTheBytesBack) {
@@ -129,8 +149,9 @@ TEST(Confined, WhateverHappensThereIsAnError) {
     });
   };
   EXPECT_EQ(says({}, [] { throw std::invalid_argument("too round"); }), "too round");
+  EXPECT_EQ(says({}, [] { throw 42; }), "an exception without words");
   EXPECT_EQ(says({}, [] { ::raise(SIGSEGV); }), "crashes (Segmentation fault)");
-  EXPECT_EQ(says({}, [] { ::_exit(0); }), "ends without a word");
+  EXPECT_EQ(says({}, [] { ::_exit(0); }), "ends without a result");
   EXPECT_EQ(says({.time = 0.2}, [] { ::pause(); }), "is not done after 0.2 s");
   EXPECT_EQ(says({.time = 0.2},
                  [] {

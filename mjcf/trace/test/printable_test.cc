@@ -24,6 +24,9 @@ TEST(PrintableTest, TextStaysAndControlSequencesDoNot) {
                       "b"),
             "a???b");  // would turn the direction of writing
   EXPECT_EQ(printable_name("a\nb\x1B"), "a?b?");
+  EXPECT_EQ(one_line("\na\n\nb\x1B\n"), "a; b?");
+  EXPECT_EQ(one_line("\n"), "");
+  EXPECT_EQ(one_line("abcdef", 3), "abc ..");
   EXPECT_EQ(printable_name(std::string(100, 'x')).size(), 60u);
 }
 
