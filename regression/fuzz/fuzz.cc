@@ -288,6 +288,11 @@ void choose(int argc, char** argv) {
 }  // namespace
 }  // namespace tauext
 
+// MuJoCo asks for what it cannot have, and handles that
+extern "C" const char* __asan_default_options() {
+  return "allocator_may_return_null=1";
+}
+
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   tauext::choose(*argc, *argv);
   return 0;
