@@ -24,7 +24,6 @@
 #include "bench/live/stream_table.h"
 #include "bench/logs/lcm_trace.h"
 #include "bench/roster/robots.h"
-#include "bench/roster/specification.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/degradation.h"
 #include "lcmtypes/receive/arrivals.h"
@@ -34,44 +33,13 @@
 #include "mjcf/trace/trace.h"
 #include "regression/accuracy/golden_file.h"
 #include "regression/counts/counts.h"
+#include "regression/fuzz/any_arm.h"
 
 namespace tauext {
 
-// the one that thresholds are read for: the roster would take minutes to compile and is no reader
+// what thresholds are read for
 const Robot& robot(std::string_view name_or_file) {
-  class Arm final : public Robot {
-   public:
-    Arm() : Robot("arm", 3) {}
-    std::vector<std::string> estimators() const override { return {"mo1"}; }
-    std::vector<std::string> detectors() const override { return {"threshold"}; }
-    std::vector<std::string> tunable() const override { return {}; }
-    std::vector<std::string> calibratable() const override { return detectors(); }
-    std::vector<FieldHelp> estimator_fields(std::string_view) const override { return {}; }
-    std::vector<FieldHelp> detector_fields(std::string_view) const override { return {}; }
-    std::unique_ptr<Runner> runner(std::string_view, std::string_view, const Trace&,
-                                   const DetectorSettings&) const override {
-      return nullptr;
-    }
-    std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view, const Trace&,
-                                     const DetectorSettings&) const override {
-      parse_specification(estimator);
-      return nullptr;
-    }
-    std::vector<Detection> detect(std::string_view, const Trace&, const Output&,
-                                  const DetectorSettings&) const override {
-      return {};
-    }
-    Eigen::VectorXd largest_statistic(std::string_view, const Trace&, const Output&,
-                                      const DetectorSettings&, double) const override {
-      return {};
-    }
-    Eigen::MatrixXd covariance(std::string_view, const Trace&, const Output&,
-                               const DetectorSettings&, double) const override {
-      return {};
-    }
-    const Calibration& calibration(std::string_view) const override { throw std::logic_error(""); }
-  };
-  static const Arm arm;
+  static const AnyArm arm;
   if (name_or_file != arm.name()) throw std::invalid_argument("unknown robot");
   return arm;
 }
