@@ -10,6 +10,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mjcf/trace/printable.h"
+
 namespace tauext {
 namespace {
 
@@ -38,7 +40,7 @@ bool is_screw(const mjModel& m, int i) {
 
 std::string name_of(const mjModel& m, mjtObj type, int id) {
   const char* const name = mj_id2name(&m, type, id);
-  return name == nullptr ? "" : name;
+  return name == nullptr ? "" : printable_name(name);
 }
 
 // the triangle of a spatial tendon between two sites that spans one hinge

@@ -68,19 +68,31 @@ void check_option(const char* what, double value, double least, double most) {
       fmt::format("option: {} is {:g}, and must be {}", what, value, range_of(least, most)));
 }
 
+// MuJoCo scales what it can to length 1
+void check_turn(const mjModel& m, const char* attribute, const mjtNum* quaternions) {
+  for (int i = 0; i < m.nbody; ++i) {
+    const double length = mju_norm(quaternions + 4 * i, 4);
+    if (std::abs(length - 1) < 1e-6) continue;
+    throw std::runtime_error(fmt::format("{}: {} has the length {:g}, and must turn",
+                                         element(m, mjOBJ_BODY, "body", i), attribute, length));
+  }
+}
+
 void check_physical(const mjModel& m) {
   constexpr auto kJoint = mjOBJ_JOINT, kTendon = mjOBJ_TENDON, kBody = mjOBJ_BODY,
                  kSite = mjOBJ_SITE, kMotor = mjOBJ_ACTUATOR;
   constexpr double kMuch = 1e6;  // [kg, N m, N m s/rad, ..]
   for (const double g : m.opt.gravity) check_option("gravity", g, -1000, 1000);
   check_option("timestep", m.opt.timestep, 1e-9, 1);
+  // a step must not take minutes
+  check_option("iterations", m.opt.iterations, 0, 1000);
+  check_option("noslip_iterations", m.opt.noslip_iterations, 0, 1000);
+  check_option("mpr_iterations", m.opt.mpr_iterations, 0, 1000);
   for (const Numbers& n : std::to_array<Numbers>({
            {kBody, "body", m.nbody, "mass", m.body_mass, 1, 0, kMuch},
            {kBody, "body", m.nbody, "diaginertia", m.body_inertia, 3, 0, 1e9},
            {kBody, "body", m.nbody, "pos", m.body_pos, 3, -kMuch, kMuch},
-           {kBody, "body", m.nbody, "quat", m.body_quat, 4, -kAny, kAny},
            {kBody, "body", m.nbody, "inertial pos", m.body_ipos, 3, -kMuch, kMuch},
-           {kBody, "body", m.nbody, "inertial quat", m.body_iquat, 4, -kAny, kAny},
            {kSite, "site", m.nsite, "pos", m.site_pos, 3, -kMuch, kMuch},
            {kSite, "site", m.nsite, "quat", m.site_quat, 4, -kAny, kAny},
            {kJoint, "joint", m.nv, "armature", m.dof_armature, 1, 0, kMuch, m.dof_jntid},
@@ -104,6 +116,8 @@ void check_physical(const mjModel& m) {
        })) {
     check_numbers(m, n);
   }
+  check_turn(m, "quat", m.body_quat);
+  check_turn(m, "inertial quat", m.body_iquat);
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE) continue;
     const int at = m.jnt_qposadr[j];

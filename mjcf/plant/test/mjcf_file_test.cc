@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "mjcf/plant/model.h"
+#include "mjcf/plant/plant.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -81,7 +82,8 @@ TEST_F(MjcfFile, SoAreThoseOfItsOptionsTendonsSitesAndMotors) {
   for (const auto& [option, why] : std::vector<std::pair<std::string, std::string>>{
            {"gravity='0 0 nan'", "gravity is nan, and must be -1000 to 1000"},
            {"timestep='-0.001'", "timestep is -0.001, and must be 1e-09 to 1"},
-           {"timestep='0'", "timestep is 0, and must be 1e-09 to 1"}}) {
+           {"timestep='0'", "timestep is 0, and must be 1e-09 to 1"},
+           {"iterations='100000'", "iterations is 100000, and must be 0 to 1000"}}) {
     EXPECT_EQ(error(arm("", "<option " + option + "/>")), path_ + ": option: " + why);
   }
   const auto arm_with = [&](const std::string& site, const std::string& behind) {
@@ -91,6 +93,9 @@ TEST_F(MjcfFile, SoAreThoseOfItsOptionsTendonsSitesAndMotors) {
   EXPECT_EQ(
       arm_with("", "<tendon><fixed damping='-1'><joint joint='a' coef='1'/></fixed></tendon>"),
       path_ + ": tendon 0: damping is -1, and must be 0 to 1e+06");
+  EXPECT_EQ(error(put("<mujoco><worldbody><body name='link' quat='0 0 0 0'><joint/><geom size='1'/>"
+                      "</body></worldbody></mujoco>")),
+            path_ + ": body 'link': quat has the length 0, and must turn");
   EXPECT_EQ(arm_with("<site name='tip' pos='nan 0 0'/>", ""),
             path_ + ": site 'tip': pos is nan, and must be -1e+06 to 1e+06");
   EXPECT_EQ(arm_with("",
@@ -107,6 +112,13 @@ TEST_F(MjcfFile, WhatMuJoCoSaysIsOneLine) {
       put("<mujoco><worldbody><body><joint name='a&#10;b' damping='-1'/><geom size='1'/></body>"
           "</worldbody></mujoco>"));
   EXPECT_EQ(name, path_ + ": joint 'a?b': damping is -1, and must be 0 to 1e+06");
+  const std::string layout = error_of([&] {
+    Plant(
+        load_mjcf(put("<mujoco><option integrator='RK4'/><worldbody><body><joint name='j'/><geom "
+                      "size='1'/></body></worldbody>"
+                      "<actuator><position name='a&#10;b' joint='j'/></actuator></mujoco>")));
+  });
+  EXPECT_NE(layout.find("and 'a?b' is none"), std::string::npos) << layout;
   for (const std::string& xml : {std::string("no xml"), std::string("<mujoco>"), std::string()}) {
     EXPECT_EQ(error(put(xml)).find('\n'), std::string::npos) << error(put(xml));
   }
