@@ -102,6 +102,16 @@ std::vector<Reading> of_most_joints(std::vector<Reading> all, LogReport& found) 
   return all;
 }
 
+// t [s] says the same as utime only to a rounding, so it may stand still where utime goes on
+void drop_repeated_t(std::vector<Reading>& all, LogReport& found) {
+  double newest = -1;
+  found.out_of_order += static_cast<std::int64_t>(std::erase_if(all, [&](const Reading& r) {
+    const bool repeated = r.t <= newest;
+    newest = std::max(newest, r.t);
+    return repeated;
+  }));
+}
+
 // those that an estimator would have got
 std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::string& path,
                               LogReport& found) {
@@ -131,6 +141,7 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
   found.two_arms = arrivals.counts().two_arms;
   found.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
   found.lost = arrivals.counts().lost;
+  drop_repeated_t(used, found);
   return used;
 }
 
