@@ -14,6 +14,7 @@
 #include "lcmtypes/emitter.h"
 #include "lcmtypes/receive/arrivals.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -49,15 +50,16 @@ std::string choose_channel(const std::string& path, const std::string& wanted) {
   const auto has = [&](const std::string& n) {
     return std::find(names.begin(), names.end(), n) != names.end();
   };
+  const std::string known = one_line(fmt::format("{}", fmt::join(names, ", ")));
   if (!wanted.empty() && !has(wanted)) {
-    throw std::runtime_error(fmt::format("{}: no measurements on channel {}; it has {}", path,
-                                         wanted, fmt::join(names, ", ")));
+    throw std::runtime_error(
+        fmt::format("{}: no measurements on channel {}; it has {}", path, wanted, known));
   }
   if (!wanted.empty()) return wanted;
   if (names.size() == 1) return names[0];
   if (has(kSampleChannel)) return kSampleChannel;
   throw std::runtime_error(
-      fmt::format("{}: choose one of its channels by --channel: {}", path, fmt::join(names, ", ")));
+      fmt::format("{}: choose one of its channels by --channel: {}", path, known));
 }
 
 Eigen::VectorXd vector(const Joints& values, int n) {
@@ -131,7 +133,7 @@ std::vector<Reading> in_order(const std::vector<Reading>& recorded, const std::s
       throw std::runtime_error(fmt::format(
           "{}: time goes back on channel {}: the sender was restarted, or there are several; "
           "give it one run a log",
-          path, found.channel));
+          path, printable_name(found.channel)));
     }
     ++found.rejected;
     found.out_of_order -= static_cast<std::int64_t>(late.size());
@@ -220,7 +222,7 @@ Trace read_lcm(const std::string& path, const std::string& channel, LogReport* r
   const std::vector<Reading> all = in_order(of_most_joints(recorded, found), path, found);
   if (all.empty()) {
     throw std::runtime_error(fmt::format("{}: {} messages on channel {}, and none is good", path,
-                                         found.rejected, found.channel));
+                                         found.rejected, printable_name(found.channel)));
   }
   return trace_of(all);
 }
