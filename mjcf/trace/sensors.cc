@@ -18,7 +18,7 @@ void check(const char* name, double value, double largest) {
   throw std::invalid_argument(fmt::format("{} must be 0 to {:g}, not {}", name, largest, value));
 }
 
-// below a millionth of a millionth nothing is left of a double's digits
+// x / step may overflow where a step is smaller than any that a sensor could have
 void check_step(const char* name, double step, double largest) {
   constexpr double kSmallest = 1e-12;
   check(name, step, largest);
