@@ -37,13 +37,32 @@ void set_trained(P& p, const char* name, const DetectorThresholds& known) {
   }
 }
 
+// one that is made of two others is trained as they are
+template <class D>
+concept OfTrainedParts = requires(typename D::Parameters p) {
+  p.collision.threshold;
+  p.clamping.threshold;
+};
+
+// the detectors whose thresholds it takes
+template <class D>
+std::vector<std::string> trained_parts_of() {
+  if constexpr (OfTrainedParts<D>) {
+    return {PanTompkins<D::kDof>::kName, Clamping<D::kDof>::kName};
+  } else if constexpr (CalibratableDetector<D>) {
+    return {D::kName};
+  } else {
+    return {};
+  }
+}
+
 // first what training says, then what the specification says
 template <class D>
 D make_detector(const DetectorSettings& settings, const Specification& s) {
   constexpr int N = D::kDof;
   if constexpr (requires { typename D::Parameters; }) {
     typename D::Parameters p;
-    if constexpr (requires { p.collision.threshold, p.clamping.threshold; }) {
+    if constexpr (OfTrainedParts<D>) {
       set_trained(p.collision, PanTompkins<N>::kName, settings.thresholds);
       set_trained(p.clamping, Clamping<N>::kName, settings.thresholds);
       p.collision.start_up = p.clamping.start_up = settings.start_up;

@@ -46,6 +46,8 @@ class Robot {
   virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
   virtual std::vector<std::string> calibratable()
       const = 0;  ///< detectors with thresholds from data
+  /// The detectors whose thresholds one takes: itself, those that it is made of, or none.
+  virtual std::vector<std::string> trained_parts(std::string_view detector) const = 0;
 
   /// What can be set in an estimator or a detector.
   virtual std::vector<FieldHelp> estimator_fields(std::string_view name) const = 0;

@@ -93,10 +93,9 @@ class RobotOf final : public Robot {
                           return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec));
                         },
                         {},
-                        std::nullopt};
-    if constexpr (requires { typename D::Parameters; }) {
+                        trained_parts_of<D>()};
+    if constexpr (requires { typename D::Parameters; })
       entry.fields = field_help<typename D::Parameters>();
-    }
     if constexpr (CalibratableDetector<D>) {
       const typename D::Parameters p;
       constexpr bool kMetric = requires(D d) {
@@ -132,6 +131,9 @@ class RobotOf final : public Robot {
   }
   std::vector<std::string> calibratable() const override {
     return names(detectors_, [](const DetectorEntry& d) { return d.calibration.has_value(); });
+  }
+  std::vector<std::string> trained_parts(std::string_view detector) const override {
+    return find(detectors_, "detector", detector).trained_parts;
   }
   std::vector<FieldHelp> estimator_fields(std::string_view name) const override {
     return find(estimators_, "estimator", name).fields;
@@ -204,6 +206,7 @@ class RobotOf final : public Robot {
     std::string name;
     std::function<DetectorPtr(const DetectorSettings&, const Specification&)> make;
     std::vector<FieldHelp> fields;
+    std::vector<std::string> trained_parts;
     std::optional<Calibration> calibration;
   };
 

@@ -138,21 +138,26 @@ Thresholds read_thresholds(const std::string& path) {
 DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name,
                                double velocity_noise, const std::string& estimator,
                                const std::string& detector) {
-  const std::string name(name_of_specification(detector));
   if (t.sets.empty() || detector.empty()) return {};
-  const std::vector<std::string> calibratable = robot(robot_name).calibratable();
-  if (std::find(calibratable.begin(), calibratable.end(), name) == calibratable.end()) return {};
+  const std::string name(name_of_specification(detector));
+  const std::vector<std::string> parts = robot(robot_name).trained_parts(name);
+  if (parts.empty()) return {};
+  DetectorThresholds known;
   if (const ThresholdSet* const set = t.of(robot_name, velocity_noise)) {
     const auto behind = set->by_estimator.find(estimator);
-    if (behind != set->by_estimator.end()) {
-      const auto own = behind->second.find(detector);
-      if (own != behind->second.end()) return {{name, own->second}};
+    for (const std::string& part : parts) {
+      if (behind == set->by_estimator.end()) break;
+      const auto own = behind->second.find(part == name ? detector : part);
+      if (own != behind->second.end()) known[part] = own->second;
     }
   }
+  if (known.size() == parts.size()) return known;
   throw std::invalid_argument(
-      fmt::format("{}: has no thresholds for {}/{}+{}, it has those of {}; tauext-detect "
+      fmt::format("{}: has no thresholds for {}/{}+{}{}, it has those of {}; tauext-detect "
                   "--calibrate makes more",
-                  t.path, robot_name, estimator, detector, fmt::join(pairs_of(t), ", ")));
+                  t.path, robot_name, estimator, detector,
+                  parts.front() == name ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
+                  fmt::join(pairs_of(t), ", ")));
 }
 
 }  // namespace tauext

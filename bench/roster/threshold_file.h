@@ -20,8 +20,8 @@ void write_thresholds(const Thresholds& t, const std::string& path);
 Thresholds read_thresholds(const std::string& path);
 
 /// What training says of a detector behind an estimator, both by specification, as DetectorSettings
-/// want it: by the detector's name. Nothing without sets, and for a detector that has no thresholds
-/// to train.
+/// want it: by the name of the detector, or of those that it is made of. Nothing without sets, and
+/// for a detector that has no thresholds to train.
 /// @param velocity_noise [rad/s] of the sensors behind which it runs
 /// @throws std::invalid_argument listing what was trained, if that pair was not on that robot
 DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot,

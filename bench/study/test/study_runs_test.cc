@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 
@@ -54,7 +55,6 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
   EXPECT_EQ(of("wallmobot3", "mo1", "high_pass").at("high_pass").threshold[0], 1);
   EXPECT_EQ(of("wallmobot3", "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
   EXPECT_TRUE(of("wallmobot3", "mo1", "").empty());
-  EXPECT_TRUE(of("wallmobot3", "mo1", "contact_classifier").empty());         // has none to train
   EXPECT_TRUE(trained_for({}, "wallmobot3", 0, "mo1", "high_pass").empty());  // no file
   for (const auto& [robot, e, d] : {std::tuple{"wallmobot3", "mo1", "high_pass:w=90"},
                                     {"wallmobot3", "mo1:bandwidth=60", "high_pass"},
@@ -66,6 +66,35 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
               std::string::npos)
         << robot << e << d;
   }
+}
+
+TEST(Calibration, AClassifierHasTheThresholdsOfWhatItIsMadeOf) {
+  const auto trained = [](double x) { return Trained{Eigen::VectorXd::Constant(3, x), {}}; };
+  ThresholdSet set{.robot = "wallmobot3"};
+  set.by_estimator["mo1"] = {{"pan_tompkins", trained(1)}, {"clamping", trained(2)}};
+  set.by_estimator["mo2"] = {{"pan_tompkins", trained(1)}};
+  const Thresholds all{.sets = {set}};
+  const auto of = [&](const std::string& e) {
+    return trained_for(all, "wallmobot3", 0, e, "contact_classifier");
+  };
+  EXPECT_EQ(of("mo1").at("pan_tompkins").threshold[0], 1);
+  EXPECT_EQ(of("mo1").at("clamping").threshold[0], 2);
+  EXPECT_NE(error_of([&] { of("mo2"); }).find("contact_classifier (of pan_tompkins and clamping)"),
+            std::string::npos);
+  constexpr int kSamples = 2000;
+  Trace still{.q = Eigen::MatrixXd::Zero(3, kSamples)};
+  still.qd = still.tau = still.q;
+  Output blow{still.q, std::vector<Status>(kSamples, Status::kOk), {}};
+  for (int k = 0; k < kSamples; ++k) still.t.push_back(1e-3 * k);
+  blow.tau_ext.middleCols(1000, 30).setConstant(200);
+  const auto marks = [&](double threshold) {
+    const DetectorSettings known{
+        .thresholds = {{"pan_tompkins", trained(threshold)}, {"clamping", trained(1e9)}}};
+    const auto said = robot("wallmobot3").detect("contact_classifier", still, blow, known);
+    return std::any_of(said.begin(), said.end(), [](const Detection& d) { return d.mark; });
+  };
+  EXPECT_TRUE(marks(1));
+  EXPECT_FALSE(marks(1e12));
 }
 
 }  // namespace
