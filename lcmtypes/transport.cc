@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lcmtypes/transport.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -38,6 +40,35 @@ LcmHandle open_lcm(const std::string& url, std::string& why) {
   return lcm;
 }
 
+namespace {
+
+[[noreturn]] void cannot_open(const std::string& path) {
+  throw std::runtime_error(fmt::format("{}: cannot open for writing: {}{}", path,
+                                       std::strerror(errno),
+                                       errno == ELOOP ? "; name the file that it points to" : ""));
+}
+
+// A log grows in place, so a link that somebody planted would cost what it points to.
+LogHandle new_log(const std::string& path) {
+  struct stat there {};
+  const bool device = ::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode);
+  const int how = device ? O_WRONLY : O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW;
+  const int fd = ::open(path.c_str(), how | O_CLOEXEC, 0666);
+  if (fd < 0) cannot_open(path);
+  if (device && (::fstat(fd, &there) != 0 || S_ISREG(there.st_mode))) {
+    ::close(fd);
+    errno = ELOOP;
+    cannot_open(path);
+  }
+  LogHandle log(lcm_eventlog_create(fmt::format("/proc/self/fd/{}", fd).c_str(), "w"),
+                lcm_eventlog_destroy);
+  if (!log) cannot_open(path);
+  ::close(fd);
+  return log;
+}
+
+}  // namespace
+
 Transport::Transport(const std::string& url)
     : url_(lcm_url(url)), lcm_(nullptr, lcm_destroy), log_(nullptr, lcm_eventlog_destroy) {
   if (scheme_of(url_) != "file") {
@@ -48,11 +79,7 @@ Transport::Transport(const std::string& url)
   if (question == std::string::npos || url_.substr(question) != "?mode=w") {
     throw std::invalid_argument(fmt::format("{}: to write a log add ?mode=w", url_));
   }
-  const std::string path = url_.substr(7, question - 7);  // behind file://
-  log_.reset(lcm_eventlog_create(path.c_str(), "w"));
-  if (!log_)
-    throw std::runtime_error(
-        fmt::format("{}: cannot open for writing: {}", path, std::strerror(errno)));
+  log_ = new_log(url_.substr(7, question - 7));  // behind file://
 }
 
 bool Transport::publish(const char* channel, Bytes message) noexcept {

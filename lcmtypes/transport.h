@@ -23,12 +23,15 @@ std::string trouble_with(const std::string& url);
 /// LCM, with who destroys it.
 using LcmHandle = std::unique_ptr<lcm_t, decltype(&lcm_destroy)>;
 
+/// A log, with who closes it.
+using LogHandle = std::unique_ptr<lcm_eventlog_t, decltype(&lcm_eventlog_destroy)>;
+
 /// LCM on that URL; null, and why, if that cannot be.
 /// @throws std::invalid_argument for a URL that LCM does not know
 LcmHandle open_lcm(const std::string& url, std::string& why);
 
 /// Publishes messages that are already encoded. Safe from one thread. A log, file://PATH?mode=w, is
-/// written here and not by LCM, which would not notice a full disk.
+/// written here and not by LCM, which would not notice a full disk; it follows no link.
 class Transport {
  public:
   /// Never throws for a network that is not there: see good().
@@ -51,7 +54,7 @@ class Transport {
  private:
   std::string url_, trouble_;
   LcmHandle lcm_;
-  std::unique_ptr<lcm_eventlog_t, decltype(&lcm_eventlog_destroy)> log_;
+  LogHandle log_;
 };
 
 }  // namespace tauext

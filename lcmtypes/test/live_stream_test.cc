@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -165,6 +167,20 @@ TEST(TransportTest, AFullDiskIsAFailureOfEachMessage) {
   ASSERT_TRUE(transport.good());
   EXPECT_FALSE(transport.publish("A", bytes_of(estimate())));
   EXPECT_THROW(Transport("file:///nowhere/x.lcm?mode=w"), std::runtime_error);
+}
+
+TEST(TransportTest, ALogFollowsNoLink) {
+  const std::string file = testing::TempDir() + "tauext_kept.txt",
+                    link = testing::TempDir() + "tauext_link.lcm";
+  std::ofstream(file) << "kept";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(file, link);
+  EXPECT_THROW(Transport("file://" + link + "?mode=w"), std::runtime_error);
+  EXPECT_EQ(std::filesystem::file_size(file), 4u);
+  Transport("file://" + file + "?mode=w").publish("A", bytes_of(estimate()));
+  EXPECT_GT(std::filesystem::file_size(file), 28u) << "the file itself is replaced";
+  std::filesystem::remove(file);
+  std::filesystem::remove(link);
 }
 
 TEST(TransportTest, TheTestsOwnDefaultStaysInThisProcess) {
