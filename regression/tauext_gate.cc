@@ -15,6 +15,7 @@
 #include "mjcf/trace/printable.h"
 #include "regression/counts/instructions.h"
 #include "regression/host/child.h"
+#include "regression/host/ending.h"
 #include "regression/report/explain.h"
 #include "regression/report/layers.h"
 #include "regression/report/report.h"
@@ -67,9 +68,8 @@ int check(Flags& f) {
   fmt::print("{}", printable(format_terminal(r, f.all)));
   write(f.junit, format_junit(r));
   write(f.markdown, format_markdown(r));
-  const bool timed = r.time && !r.time->kernels.empty() && !r.time->kernels[0].processes.empty();
-  if (timed && !f.base_json.empty()) write(f.base_json, format_benchmark(r, false));
-  if (timed && !f.head_json.empty()) write(f.head_json, format_benchmark(r, true));
+  if (timed(r) && !f.base_json.empty()) write(f.base_json, format_benchmark(r, false));
+  if (timed(r) && !f.head_json.empty()) write(f.head_json, format_benchmark(r, true));
   return exit_code(r);
 }
 
@@ -152,8 +152,8 @@ void add_judging(CLI::App& app, Flags& f) {
   add_plugins(sub, f), add_bench(sub, f), add_baselines(sub, f.gate.baselines);
   add_time(sub, f), add_reports(sub, f);
 
-  sub = app.add_subcommand("time",
-                           "base against head, interleaved in one process, in many processes");
+  sub = app.add_subcommand(
+      "time", "base against head, interleaved in one process, in many layouts of both");
   add_plugins(sub, f), add_time(sub, f), add_reports(sub, f);
   sub->get_option("--base")->required();
   sub->callback([&f] { f.gate.instructions = f.gate.accuracy = false; });
@@ -188,7 +188,7 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
   sub->add_option("--head", o.head, "one that is slower, instead of injected steps")
       ->type_name("SO");
   add_regex(sub, "--kernels", o.kernels, "those that match alone");
-  sub->add_option("--slowdowns", o.slowdowns, "to inject [1]; 0: a copy, for false alarms")
+  sub->add_option("--slowdowns", o.slowdowns, "to inject [1]; 0: none, for false alarms")
       ->delimiter(',')
       ->check(CLI::Range(0., 1.))
       ->capture_default_str();
@@ -230,8 +230,10 @@ void refuse_unknown_subcommand(const CLI::App& app, const std::string& name) {
 int main(int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   // children of this program itself
-  if (first == "worker" && argc == 3) return worker_main(argv[2]);
   if (first == "count-worker" && argc == 4) return count_main(argv[2], argv[3]);
+  end_with_children_and_folders();
+  if (first == "worker" && argc == 3) return worker_main(argv[2]);
+  if (first == "long-worker" && argc == 3) return long_worker_main(argv[2]);
   CLI::App app(
       "Judges estimators beside another build and beside committed numbers.\n\n"
       "  tauext-gate check --base build/base/tauext_plugin.so\n"

@@ -12,15 +12,15 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bench/kit/life.h"
 #include "bench/kit/plugin.h"
 #include "estimators/concepts.h"
 
@@ -43,19 +43,24 @@ namespace tauext {
 class KernelInstance {
  public:
   virtual ~KernelInstance() = default;
-  virtual void run(int steps) noexcept = 0;  ///< so many of its samples, from the next one on
+  /// As tauext_plugin says.
+  virtual int state(int most, void* bytes) const noexcept = 0;
 };
 
-/// What it takes to make one.
+/// What it takes to run one of a plug-in's kernels; tauext_plugin says what each function does.
 class Kernel {
  public:
   /// Of that name.
   explicit Kernel(std::string its_name) : name(std::move(its_name)) {}
   virtual ~Kernel() = default;
-  virtual int sample_size() const = 0;                     ///< doubles of one sample
-  virtual void example(int n, double* samples) const = 0;  ///< writes n samples to try it on
-  virtual KernelInstance* create(
-      int n, const double* samples) const = 0;  ///< at work on n samples; to be deleted
+  /// @cond
+  virtual int sample_size() const = 0;
+  virtual void life(unsigned seed, int n, double* samples) const = 0;
+  virtual int sample_bytes() const = 0;
+  virtual void unpack(int n, const double* samples, void* out) const = 0;
+  virtual KernelInstance* create(int n, const void* unpacked) const = 0;
+  virtual tauext_run runner() const = 0;
+  /// @endcond
 
   const std::string name;  ///< unique in a plug-in
 };
@@ -76,60 +81,48 @@ struct KernelSample {
 };
 
 // where an object lies in its page decides about stalls between stores and loads: by up to 6 % of a
-// detector's step. So each kernel's data begin a page of their own, in every plug-in
+// detector's step. So each kernel begins a page of its own, in every plug-in
 inline constexpr std::size_t kPage = 4096;
 
-template <class T>
-struct PageAllocator {
-  using value_type = T;
-  PageAllocator() = default;
-  template <class U>
-  explicit PageAllocator(const PageAllocator<U>&) {}
-  T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(kPage)));
-  }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(kPage)); }
-  bool operator==(const PageAllocator&) const = default;
-};
-
-template <int N>
-using KernelSamples = std::vector<KernelSample<N>, PageAllocator<KernelSample<N>>>;
-
-template <int N>
-KernelSamples<N> unpack(int n, const double* x) {
-  KernelSamples<N> out(n);
-  for (KernelSample<N>& s : out) {
-    s.y.t = *x++;
-    for (Vec<N>* v : {&s.y.q, &s.y.qd, &s.y.tau, &s.tau_ext}) {
-      for (int j = 0; j < N; ++j) (*v)[j] = *x++;
-    }
-  }
-  return out;
-}
-
-// reset() at the first sample, step(sample) at each: in this order for ever
+// reset() where a recording begins, step(sample) at each
 template <int N, class Subject, class Reset, class Step>
 class alignas(kPage) Instance final : public KernelInstance {
  public:
-  Instance(Subject s, Reset reset, Step step, int n, const double* samples)
-      : subject_(std::move(s)), reset_(reset), step_(step), samples_(unpack<N>(n, samples)) {}
+  Instance(Subject s, Reset reset, Step step, int n, const void* unpacked)
+      : subject_(std::move(s)),
+        reset_(reset),
+        step_(step),
+        samples_(static_cast<const KernelSample<N>*>(unpacked)),
+        n_(n) {}
 
-  void run(int steps) noexcept override {
-    while (steps > 0) {
-      if (next_ == 0) reset_(subject_);
-      const int n = std::min(steps, static_cast<int>(samples_.size()) - next_);
-      for (int k = next_; k < next_ + n; ++k) step_(subject_, samples_[k]);
-      steps -= n;
-      next_ = next_ + n == static_cast<int>(samples_.size()) ? 0 : next_ + n;
+  // a function of its own, whose code is all that is timed
+  [[gnu::noinline]] static void run(void* instance, int steps) noexcept {
+    Instance& i = *static_cast<Instance*>(static_cast<KernelInstance*>(instance));
+    int next = i.next_;
+    for (; steps > 0; --steps) {
+      const KernelSample<N>& sample = i.samples_[next];
+      if (next == 0 || sample.y.t == 0) i.reset_(i.subject_);
+      i.step_(i.subject_, sample);
+      if (++next == i.n_) next = 0;
     }
+    i.next_ = next;
+  }
+
+  int state(int most, void* bytes) const noexcept override {
+    Subject copy = subject_;
+#if __has_builtin(__builtin_clear_padding)
+    __builtin_clear_padding(&copy);
+#endif
+    if (most > 0) std::memcpy(bytes, &copy, std::min(sizeof(Subject), std::size_t(most)));
+    return static_cast<int>(sizeof(Subject));
   }
 
  private:
   Subject subject_;
   Reset reset_;
   Step step_;
-  KernelSamples<N> samples_;
-  int next_ = 0;
+  const KernelSample<N>* samples_;
+  int n_, next_ = 0;
 };
 
 // what does not depend on the subject, compiled once for each arm
@@ -142,29 +135,28 @@ class KernelOfArm : public Kernel {
       : Kernel(std::move(kernel_name)), model_(model) {}
 
   int sample_size() const override { return 1 + 4 * N; }
+  int sample_bytes() const override { return sizeof(KernelSample<N>); }
 
-  // q = 0.3 sin(2 t) in every joint, tau from (3); a blow of 200 N m and 30 ms every half second,
-  // sensors with 1e-4 rad/s of noise
-  void example(int n, double* x) const override {
-    std::uint64_t random = 1;
-    const auto noise = [&] {  // Knuth's linear congruential generator, -0.5 to 0.5
-      random = random * 6364136223846793005u + 1442695040888963407u;
-      return static_cast<double>(random >> 11) * 0x1p-53 - 0.5;
-    };
+  // tau from (3)
+  void life(unsigned seed, int n, double* x) const override {
+    Life<N> life(seed, n);
     for (int k = 0; k < n; ++k) {
-      const double t = 1e-3 * k, phase = std::fmod(t, 0.5) - 0.4;
-      const double blow =
-          phase < 0 || phase > 0.03 ? 0 : 200 * std::sin(3.141592653589793 / 0.03 * phase);
-      const Vec<N> q = Vec<N>::Constant(0.3 * std::sin(2 * t));
-      const Vec<N> qd = Vec<N>::Constant(0.6 * std::cos(2 * t));
-      const Vec<N> qdd = -4 * q, tau_ext = Vec<N>::Constant(10 * std::sin(t) + blow);
-      const Vec<N> tau =
-          model_.inertia(q) * qdd + model_.bias(q, qd) + model_.friction(qd) + tau_ext;
-      *x++ = t;
-      for (int j = 0; j < N; ++j) *x++ = q[j];
-      for (int j = 0; j < N; ++j) *x++ = qd[j] + 3.46e-4 * noise();
-      for (int j = 0; j < N; ++j) *x++ = tau[j];
-      for (int j = 0; j < N; ++j) *x++ = tau_ext[j] + noise();
+      LifeMoment<N> m = life.next();
+      Measurement<N>& y = m.y;
+      y.tau =
+          model_.inertia(y.q) * m.qdd + model_.bias(y.q, y.qd) + model_.friction(y.qd) + m.tau_ext;
+      m.spoil();
+      *x++ = y.t;
+      for (const Vec<N>* v : {&y.q, &y.qd, &y.tau, &m.load}) x = std::copy_n(v->data(), N, x);
+    }
+  }
+
+  void unpack(int n, const double* x, void* out) const override {
+    for (int k = 0; k < n; ++k) {
+      auto* sample = new (static_cast<KernelSample<N>*>(out) + k) KernelSample<N>;
+      sample->y.t = *x++;
+      for (Vec<N>* v : {&sample->y.q, &sample->y.qd, &sample->y.tau, &sample->tau_ext})
+        std::copy_n(std::exchange(x, x + N), N, v->data());
     }
   }
 
@@ -181,11 +173,14 @@ class KernelOf final : public KernelOfArm<M> {
         reset_(reset),
         step_(step) {}
 
-  KernelInstance* create(int n, const double* samples) const override {
-    return new Instance<M::kDof, Subject, Reset, Step>(subject_, reset_, step_, n, samples);
+  KernelInstance* create(int n, const void* unpacked) const override {
+    return new Worker(subject_, reset_, step_, n, unpacked);
   }
+  tauext_run runner() const override { return Worker::run; }
 
  private:
+  using Worker = Instance<M::kDof, Subject, Reset, Step>;
+
   Subject subject_;
   Reset reset_;
   Step step_;
@@ -270,15 +265,20 @@ inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
         TAUEXT_EIGEN_VERSION,
         [](int i) { return kernel(i)->name.c_str(); },
         [](int i) { return kernel(i)->sample_size(); },
-        [](int i, int n, double* x) { kernel(i)->example(n, x); },
-        [](int i, int n, const double* x) -> void* {
+        [](int i, unsigned seed, int n, double* x) { kernel(i)->life(seed, n, x); },
+        [](int i) { return kernel(i)->sample_bytes(); },
+        [](int i, int n, const double* x, void* out) { kernel(i)->unpack(n, x, out); },
+        [](int i, int n, const void* unpacked) -> void* {
           try {
-            return kernel(i)->create(n, x);
+            return kernel(i)->create(n, unpacked);
           } catch (const std::bad_alloc&) {
             return nullptr;
           }
         },
-        [](void* k, int steps) { static_cast<KernelInstance*>(k)->run(steps); },
+        [](int i) { return kernel(i)->runner(); },
+        [](void* k, int most, void* bytes) {
+          return static_cast<KernelInstance*>(k)->state(most, bytes);
+        },
         [](void* k) { delete static_cast<KernelInstance*>(k); },
     };
   }();

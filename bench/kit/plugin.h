@@ -11,7 +11,11 @@ extern "C" {
 #endif
 
 /** Changes when this struct does; plug-ins of different numbers are not compared. */
-#define TAUEXT_PLUGIN_ABI 1
+#define TAUEXT_PLUGIN_ABI 2
+
+/** So many steps of an instance, one a sample; begins anew (with a reset) after the last sample,
+ * and where a sample's t is 0. */
+typedef void (*tauext_run)(void* instance, int steps);
 
 /** A plug-in's kernels, numbered from 0. Functions neither throw nor print. */
 struct tauext_plugin {  // NOLINT(readability-identifier-naming): a C name
@@ -25,12 +29,20 @@ struct tauext_plugin {  // NOLINT(readability-identifier-naming): a C name
   const char* (*name)(int kernel);
   /** Doubles a sample: t [s]; then q [rad], qd [rad/s], tau [N m], tau_ext [N m] of each joint. */
   int (*sample_size)(int kernel);
-  /** Writes n samples 1 ms apart, of a moving arm with noisy sensors that is hit. */
-  void (*example)(int kernel, int n, double* samples);
-  /** A fresh kernel bound to copies of n samples; to be given to destroy. NULL: out of memory. */
-  void* (*create)(int kernel, int n, const double* samples);
-  /** So many steps, one a sample; begins anew (with a reset) after the last sample. */
-  void (*run)(void* instance, int steps);
+  /** Writes n samples of an arm's life (bench/kit/life.h), another one for each seed. */
+  void (*life)(int kernel, unsigned seed, int n, double* samples);
+  /** Bytes of a sample as the kernel reads it. */
+  int (*sample_bytes)(int kernel);
+  /** Makes what the kernel reads out of n samples; `out` is aligned to 64 bytes. */
+  void (*unpack)(int kernel, int n, const double* samples, void* out);
+  /** A fresh kernel at work on n samples that unpack() made, which are read alone and must outlive
+   * it; to be given to destroy. NULL: out of memory. */
+  void* (*create)(int kernel, int n, const void* unpacked);
+  /** What runs an instance of that kernel: all that is timed. */
+  tauext_run (*runner)(int kernel);
+  /** Copies at most so many bytes of an instance's subject, its parameters and its memory, and
+   * gives their number. What pads it is 0, where the compiler can tell. */
+  int (*state)(void* instance, int most, void* bytes);
   /** What create() made. */
   void (*destroy)(void* instance);
 };

@@ -1,9 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-# tauext_add_plugin(target source...): a plug-in for tauext-gate, compiled with flags that are the same in every
-# build type, because two commits can only be compared if their flags are the same, and because an
-# alignment of 64 takes most of the luck out of where code happens to lie.
+# TAUEXT_CODE_FLAGS: how programs and plug-ins are compiled, beside the build type's flags. Alignment takes most of the
+# luck out of where code happens to lie.
+# tauext_add_plugin(target source...): a plug-in for tauext-gate, bin/target.so, with flags that are the same in every
+# build type, because two commits can only be compared if their flags are the same. Beside it bin/target.so.code/ holds
+# its assembly and how it is linked, of which the gate makes the layouts that it times.
 include_guard(GLOBAL)
 include(CheckCXXSourceRuns)
+
+set(TAUEXT_CODE_FLAGS -falign-functions=64 -falign-loops=64)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND TAUEXT_CODE_FLAGS -falign-jumps=64 -falign-labels=16 -fno-gnu-unique)
+endif()
+set(TAUEXT_LINK_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/tauextLink.cmake)
 
 function(tauext_add_plugin target)
   if(NOT DEFINED TAUEXT_ARCH)
@@ -12,9 +20,9 @@ function(tauext_add_plugin target)
       set(TAUEXT_ARCH x86-64-v3)
     endif()
   endif()
-  # no limit on what is inlined into the whole file, else one kernel's growth would change another's code
-  set(flags -O2 -DNDEBUG -falign-functions=64 -falign-loops=64 -fno-gnu-unique)
+  set(flags -O3 -DNDEBUG ${TAUEXT_CODE_FLAGS})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # its file holds all kernels: with a limit on what is inlined into a file one's growth would change another's code
     list(APPEND flags --param=large-unit-insns=100000000)
   endif()
   if(TAUEXT_ARCH)
@@ -28,9 +36,10 @@ function(tauext_add_plugin target)
   add_library(${target} MODULE ${ARGN})
   target_link_libraries(${target} PRIVATE tauext::estimators)
   # paths of the checkout must not make two equal builds differ
-  target_compile_options(${target} PRIVATE ${flags} -Wno-array-bounds
+  target_compile_options(${target} PRIVATE ${flags} -Wno-array-bounds -ffunction-sections -fdata-sections -save-temps=obj
     -ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}=.)
   target_compile_definitions(${target} PRIVATE TAUEXT_PLUGIN_FLAGS="${text}")
   set_target_properties(${target} PROPERTIES PREFIX "" UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+    VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
+    RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -P \"${TAUEXT_LINK_SCRIPT}\" --")
 endfunction()

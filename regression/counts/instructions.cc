@@ -69,10 +69,11 @@ std::string function_name(const std::string& text, std::map<std::string, std::st
 int count_main(const std::string& path, const std::string& filter) {
   const Plugin plugin(path);
   const std::regex wanted(filter);
+  Lives lives(1, kWarm + kCountedSteps);
   for (int i = 0; i < plugin.count(); ++i) {
     const std::string name = plugin.name(i);
     if (!std::regex_search(name, wanted)) continue;
-    Work work(plugin, i, example(plugin, i));
+    Work work(plugin, i, lives.of(plugin, i));
     work.run(kWarm);
     CALLGRIND_START_INSTRUMENTATION;
     CALLGRIND_ZERO_STATS;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "regression/host/child.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +13,8 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+
+#include "regression/host/ending.h"
 
 extern char** environ;
 
@@ -24,10 +28,18 @@ int spawn(const std::vector<std::string>& argv, const int (&ends)[2], pid_t& pid
   ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   ::posix_spawn_file_actions_addclose(&actions, ends[0]);
   ::posix_spawn_file_actions_addclose(&actions, ends[1]);
+  // what this program waits for its child does not
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  ::posix_spawnattr_setsigmask(&attributes, &none);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   std::vector<char*> args;
   for (const std::string& a : argv) args.push_back(const_cast<char*>(a.c_str()));
   args.push_back(nullptr);
-  const int error = ::posix_spawnp(&pid, args[0], &actions, nullptr, args.data(), environ);
+  const int error = ::posix_spawnp(&pid, args[0], &actions, &attributes, args.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   return error;
 }
@@ -52,13 +64,18 @@ std::string this_program() {
 
 Finished finish_child(const std::vector<std::string>& argv) {
   int ends[2];
-  if (::pipe(ends) != 0) throw std::runtime_error(fmt::format("pipe: {}", std::strerror(errno)));
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(fmt::format("pipe: {}", std::strerror(errno)));
   pid_t pid = 0;
   const int error = spawn(argv, ends, pid);
   ::close(ends[1]);
-  Finished f{127, error != 0 ? std::strerror(error) : read_to_the_end(ends[0])};
+  if (error != 0) {
+    ::close(ends[0]);
+    return {127, std::strerror(error)};
+  }
+  const ListedChild child(pid);
+  Finished f{0, read_to_the_end(ends[0])};
   ::close(ends[0]);
-  if (error != 0) return f;
   int status = 0;
   while (::waitpid(pid, &status, 0) < 0) {
     if (errno != EINTR)

@@ -4,8 +4,12 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <new>
 #include <stdexcept>
+#include <utility>
 
 namespace tauext::gate {
 
@@ -49,22 +53,72 @@ int Plugin::find(const std::string& wanted) const {
   return -1;
 }
 
-std::vector<double> example(const Plugin& plugin, int kernel) {
-  const tauext_plugin& api = plugin.api();
-  std::vector<double> samples(static_cast<std::size_t>(api.sample_size(kernel)) * kExampleSamples);
-  api.example(kernel, kExampleSamples, samples.data());
-  return samples;
+std::uint64_t Plugin::address(int kernel) const {
+  const auto* code = reinterpret_cast<const char*>(api_->runner(kernel));
+  Dl_info info;
+  if (::dladdr(code, &info) == 0) throw std::runtime_error(name(kernel) + ": in no library");
+  return static_cast<std::uint64_t>(code - static_cast<const char*>(info.dli_fbase));
 }
 
-Work::Work(const Plugin& plugin, int kernel, const std::vector<double>& samples)
-    : api_(&plugin.api()), instance_(nullptr, api_->destroy) {
-  const auto size = static_cast<std::size_t>(api_->sample_size(kernel));
-  if (samples.size() != size * kExampleSamples) {
+Samples::Samples(const Plugin& plugin, int kernel, unsigned seed, int n) : count_(n) {
+  const auto size = static_cast<std::size_t>(plugin.api().sample_size(kernel));
+  auto plain = std::make_shared<std::vector<double>>(size * static_cast<std::size_t>(n));
+  plugin.api().life(kernel, seed, n, plain->data());
+  plain_ = std::move(plain);
+  unpack(plugin, kernel);
+}
+
+Samples::Samples(const Plugin& plugin, int kernel, const Samples& same)
+    : count_(same.count_), plain_(same.plain_) {
+  const auto size = static_cast<std::size_t>(plugin.api().sample_size(kernel));
+  if (plain_->size() != size * static_cast<std::size_t>(count_)) {
     throw std::runtime_error(plugin.name(kernel) +
                              ": the two builds differ in the number of joints");
   }
-  instance_.reset(api_->create(kernel, static_cast<int>(samples.size() / size), samples.data()));
+  unpack(plugin, kernel);
+  // one memory for both, where both read the same
+  if (bytes_ == same.bytes_ && std::memcmp(unpacked_.get(), same.unpacked_.get(), bytes_) == 0) {
+    unpacked_ = same.unpacked_;
+  }
+}
+
+void Samples::unpack(const Plugin& plugin, int kernel) {
+  constexpr std::size_t kLine = 64;
+  bytes_ = static_cast<std::size_t>(plugin.api().sample_bytes(kernel)) *
+           static_cast<std::size_t>(count_);
+  const std::shared_ptr<void> memory(
+      std::aligned_alloc(kLine, (bytes_ + kLine - 1) / kLine * kLine), std::free);
+  if (!memory) throw std::bad_alloc();
+  std::memset(memory.get(), 0, bytes_);
+  plugin.api().unpack(kernel, count_, plain_->data(), memory.get());
+  unpacked_ = memory;
+}
+
+const Samples& Lives::of(const Plugin& plugin, int kernel) {
+  const std::string name = plugin.name(kernel);
+  const Robot robot{name.substr(0, name.find('/')), plugin.api().sample_size(kernel)};
+  const auto read = read_.find({&plugin.api(), robot});
+  if (read != read_.end()) return read->second;
+  auto first = first_.find(robot);
+  if (first == first_.end()) {
+    first = first_.emplace(robot, Samples(plugin, kernel, seed_, n_)).first;
+  }
+  return read_.emplace(std::pair(&plugin.api(), robot), Samples(plugin, kernel, first->second))
+      .first->second;
+}
+
+Work::Work(const Plugin& plugin, int kernel, Samples samples)
+    : api_(&plugin.api()),
+      samples_(std::move(samples)),
+      run_(api_->runner(kernel)),
+      instance_(api_->create(kernel, samples_.count(), samples_.unpacked()), api_->destroy) {
   if (!instance_) throw std::runtime_error(plugin.name(kernel) + ": out of memory");
+}
+
+std::string Work::state() const {
+  std::string bytes(static_cast<std::size_t>(api_->state(instance_.get(), 0, nullptr)), '\0');
+  api_->state(instance_.get(), static_cast<int>(bytes.size()), bytes.data());
+  return bytes;
 }
 
 }  // namespace tauext::gate

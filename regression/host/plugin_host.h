@@ -3,9 +3,13 @@
 /// Loads a plug-in (bench/kit/plugin.h) and runs its kernels.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/kit/plugin.h"
@@ -29,6 +33,8 @@ class Plugin {
   /// Its number, -1 if it has no kernel of that name.
   int find(const std::string& name) const;
   const tauext_plugin& api() const { return *api_; }
+  /// Where a kernel's code begins, as an address of the file.
+  std::uint64_t address(int kernel) const;
 
  private:
   void require_different_names(const std::string& path) const;
@@ -37,18 +43,56 @@ class Plugin {
   const tauext_plugin* api_;
 };
 
-/// One second of samples, of a kernel's own making.
-std::vector<double> example(const Plugin& plugin, int kernel);
-inline constexpr int kExampleSamples = 1000;
+/// Samples of an arm's life as a kernel reads them.
+class Samples {
+ public:
+  /// Another life for each seed.
+  Samples(const Plugin& plugin, int kernel, unsigned seed, int n);
+  /// The same life as another plug-in's kernel reads it.
+  /// @throws std::runtime_error if that has another number of joints
+  Samples(const Plugin& plugin, int kernel, const Samples& same);
 
-/// A kernel at work on such samples.
+  int count() const { return count_; }
+  /// Doubles: t, q, qd, tau and tau_ext of each sample.
+  const std::vector<double>& plain() const { return *plain_; }
+  const void* unpacked() const { return unpacked_.get(); }
+
+ private:
+  void unpack(const Plugin& plugin, int kernel);
+
+  int count_;
+  std::size_t bytes_ = 0;
+  std::shared_ptr<const std::vector<double>> plain_;
+  std::shared_ptr<const void> unpacked_;
+};
+
+/// The samples of many kernels: one life for each robot, the first kernel's, whatever the plug-in.
+class Lives {
+ public:
+  Lives(unsigned seed, int n) : seed_(seed), n_(n) {}
+  const Samples& of(const Plugin& plugin, int kernel);
+
+ private:
+  using Robot = std::pair<std::string, int>;  // name, doubles of a sample
+
+  unsigned seed_;
+  int n_;
+  std::map<Robot, Samples> first_;
+  std::map<std::pair<const tauext_plugin*, Robot>, Samples> read_;
+};
+
+/// A kernel at work on such samples, which it shares with others.
 class Work {
  public:
-  Work(const Plugin& plugin, int kernel, const std::vector<double>& samples);
-  void run(int steps) { api_->run(instance_.get(), steps); }
+  Work(const Plugin& plugin, int kernel, Samples samples);
+  void run(int steps) { run_(instance_.get(), steps); }
+  /// The bytes of what it works with.
+  std::string state() const;
 
  private:
   const tauext_plugin* api_;
+  Samples samples_;
+  tauext_run run_;
   std::unique_ptr<void, void (*)(void*)> instance_;
 };
 

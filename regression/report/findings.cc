@@ -25,9 +25,18 @@ std::vector<Finding> time_findings(const GateResult& r) {
   std::vector<std::string> rows = kernel_table(r).rows;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const KernelTime& k = r.time->kernels[i];
-    Finding f{"time", k.kernel, k.verdict.verdict, std::move(rows[i]), {}};
+    Finding f{"time", k.kernel, verdict_of(k), std::move(rows[i]), {}};
     f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
     if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
+    if (k.cold.verdict == Verdict::kFail) {
+      f.more.push_back(fmt::format(
+          "after other work a step takes {:+.0f} % ({:+.0f} to {:+.0f}, limit {:+.0f} %)",
+          100 * (k.cold.ratio - 1), 100 * (k.cold.low - 1), 100 * (k.cold.high - 1),
+          100 * cold_limits().surely));
+    }
+    if (!k.life.kernel.empty()) {
+      if (std::string stall = complaint(k.life); !stall.empty()) f.more.push_back(std::move(stall));
+    }
     if (k.over_budget) {
       f.verdict = Verdict::kFail;
       f.more.emplace_back("a step takes more than a tenth of the control period");
@@ -147,19 +156,29 @@ std::vector<Finding> accuracy_findings(const GateResult& r) {
 }
 
 // the kernel that changed most, with its interval
-void add_compared(const std::vector<KernelTime>& kernels, std::vector<std::string>& lines) {
-  const auto by_median = [](const KernelTime& a, const KernelTime& b) {
-    return a.verdict.median < b.verdict.median;
+void add_compared(const TimeReport& t, std::vector<std::string>& lines) {
+  const auto with = [&](Verdict v) {
+    return std::count_if(t.kernels.begin(), t.kernels.end(),
+                         [&](const KernelTime& k) { return verdict_of(k) == v; });
   };
-  const KernelTime& most = *std::max_element(kernels.begin(), kernels.end(), by_median);
+  const auto identical = with(Verdict::kIdentical);
+  if (identical > 0) {
+    lines.push_back(fmt::format(
+        "time          {} kernels identical: the same code and data, in all that they reach",
+        identical));
+  }
+  if (identical == static_cast<std::ptrdiff_t>(t.kernels.size())) return;
+  const auto by_ratio = [](const KernelTime& a, const KernelTime& b) {
+    return std::pair(a.verdict.layouts > 0, a.verdict.ratio) <
+           std::pair(b.verdict.layouts > 0, b.verdict.ratio);
+  };
+  const KernelTime& most = *std::max_element(t.kernels.begin(), t.kernels.end(), by_ratio);
   lines.push_back(fmt::format(
       "time          {} kernels, {} ok; the most: {} {:+.2f} % ({:+.2f} to {:+.2f}), limit {:+.0f} "
       "%",
-      kernels.size(),
-      std::count_if(kernels.begin(), kernels.end(),
-                    [](const KernelTime& k) { return k.verdict.verdict == Verdict::kPass; }),
-      most.kernel, 100 * (most.verdict.median - 1), 100 * (most.verdict.low - 1),
-      100 * (most.verdict.high - 1), 100 * TimeLimits().limit));
+      static_cast<std::ptrdiff_t>(t.kernels.size()) - identical, with(Verdict::kPass), most.kernel,
+      100 * (most.verdict.ratio - 1), 100 * (most.verdict.low - 1), 100 * (most.verdict.high - 1),
+      100 * TimeLimits().surely));
 }
 
 // the slowest of those that nothing can be compared with; it comes last
@@ -174,13 +193,7 @@ void add_alone(std::vector<KernelTime> kernels, std::vector<std::string>& lines)
 }
 
 void add_summary(const TimeReport& t, std::vector<std::string>& lines) {
-  if (t.identical) {
-    lines.push_back(fmt::format(
-        "time          identical: {} kernels, the same code to the last byte", t.kernels.size()));
-  }
-  if (!t.kernels.empty() && t.kernels[0].verdict.verdict != Verdict::kIdentical) {
-    add_compared(t.kernels, lines);
-  }
+  if (!t.kernels.empty()) add_compared(t, lines);
   if (!t.alone.empty()) add_alone(t.alone, lines);
   for (const std::string& k : t.gone) lines.push_back("time          gone from head: " + k);
 }

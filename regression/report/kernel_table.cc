@@ -23,15 +23,17 @@ std::vector<std::string> cells_of(const GateResult& r, const KernelTime& k) {
                                    : counted(r, k.kernel) ? "same"
                                                           : "";
   if (v.verdict == Verdict::kIdentical) {
-    return {k.kernel, "", "", "", "", instructions, name_of(v.verdict)};
+    return {k.kernel, "", "", "", "", "", "", instructions, name_of(v.verdict)};
   }
   return {k.kernel,
           fmt::format("{:.1f}", k.base_ns),
           fmt::format("{:.1f}", k.head_ns),
-          fmt::format("{:+.2f}", 100 * (v.median - 1)),
+          fmt::format("{:+.2f}", 100 * (v.ratio - 1)),
           fmt::format("{:+.2f} to {:+.2f}", 100 * (v.low - 1), 100 * (v.high - 1)),
+          fmt::format("{:.2f}", 100 * v.layout_sd),
+          fmt::format("{:+.0f}", 100 * (k.cold.ratio - 1)),
           instructions,
-          name_of(v.verdict)};
+          name_of(verdict_of(k))};
 }
 
 }  // namespace
@@ -50,8 +52,10 @@ KernelTable kernel_table(const GateResult& r) {
                      {"head", "ns"},
                      {"change", "%"},
                      {"interval", "%"},
+                     {"layouts' sd", "%"},
+                     {"cold", "%"},
                      {"instructions", "%"},
-                     {"verdict", fmt::format("limit {:+.0f} %", 100 * TimeLimits().limit), true}});
+                     {"verdict", fmt::format("limit {:+.0f} %", 100 * TimeLimits().surely), true}});
   for (const KernelTime& k : r.time->kernels) table.add(cells_of(r, k));
   std::istringstream lines(table.format());
   std::string titles, units;
@@ -60,6 +64,32 @@ KernelTable kernel_table(const GateResult& r) {
   KernelTable out{titles + "\n" + units + "\n", {}};
   for (std::string line; std::getline(lines, line);) out.rows.push_back(line);
   return out;
+}
+
+std::string life_table(const GateResult& r) {
+  TableWriter table({{"kernel", "", true},
+                     {"mean", "ns"},
+                     {"was", "ns"},
+                     {"slowest of 1000", "ns"},
+                     {"was", "ns"},
+                     {"worst", "us"},
+                     {"was", "us"}});
+  bool any = false;
+  for (const KernelTime& k : r.time->kernels) {
+    if (k.life.kernel.empty()) continue;
+    any = true;
+    const LifeTimes &head = k.life.head, &base = k.life.base;
+    table.add({k.kernel, fmt::format("{:.1f}", head.mean_ns), fmt::format("{:.1f}", base.mean_ns),
+               fmt::format("{:.1f}", head.rare_ns), fmt::format("{:.1f}", base.rare_ns),
+               fmt::format("{:.1f}", 1e-3 * head.worst_ns),
+               fmt::format("{:.1f}", 1e-3 * base.worst_ns)});
+  }
+  if (!any) return "";
+  return fmt::format(
+             "A longer run, in steps of {}: their mean, the slowest block of 1000, and the slowest "
+             "of all\n",
+             kStepsOfABlock) +
+         table.format();
 }
 
 std::string why(const GateResult& r, const KernelTime& time) {

@@ -19,6 +19,9 @@ struct KernelTable {
 /// Of a result with a time layer.
 KernelTable kernel_table(const GateResult& result);
 
+/// What a longer run of them showed; "" if there was none.
+std::string life_table(const GateResult& result);
+
 /// How the instructions of a kernel changed beside base; nullptr: not at all, or nobody counted.
 const CountChange* change_of(const GateResult& result, const std::string& kernel);
 

@@ -38,9 +38,10 @@ void see(const TimeReport& t, Seen& seen) {
   seen.update = seen.update || !t.gone.empty();
   for (const KernelTime& k : t.alone) seen.slower = seen.slower || k.over_budget;
   for (const KernelTime& k : t.kernels) {
-    const bool open = k.verdict.verdict == Verdict::kInconclusive;
+    const Verdict verdict = verdict_of(k);
+    const bool open = verdict == Verdict::kInconclusive;
     seen.harness = seen.harness || (open && k.verdict.harness_error);
-    seen.slower = seen.slower || k.verdict.verdict == Verdict::kFail || k.over_budget;
+    seen.slower = seen.slower || verdict == Verdict::kFail || k.over_budget;
     seen.unsure = seen.unsure || open;
   }
 }

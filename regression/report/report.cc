@@ -55,6 +55,11 @@ std::string junit_case(const Finding& f) {
 
 }  // namespace
 
+bool timed(const GateResult& r) {
+  return r.time && std::any_of(r.time->kernels.begin(), r.time->kernels.end(),
+                               [](const KernelTime& k) { return !k.processes.empty(); });
+}
+
 std::string advice(ExitCode code) {
   switch (code) {
     case kGood:
@@ -97,6 +102,7 @@ std::string format_terminal(const GateResult& r, bool all) {
   for (const auto& [name, n] : left) {
     out += fmt::format("... and {} more of {}: --all, --markdown or --junit\n", n, name);
   }
+  if (all && r.time) out += life_table(r);
   if (!out.empty()) out += "\n";
   for (const std::string& line : summary(r)) out += line + "\n";
   return out + advice(exit_code(r)) + "\n";
@@ -131,20 +137,16 @@ std::string format_markdown(const GateResult& r) {
     for (const std::string& line : f.more) out += "    " + line + "\n";
     out += "```\n";
   }
-  if (!r.time || r.time->kernels.empty() ||
-      r.time->kernels[0].verdict.verdict == Verdict::kIdentical) {
-    return out;
-  }
+  if (!timed(r)) return out;
   out += "\n<details><summary>every kernel</summary>\n\n```\n" + kernel_table(r).header;
   for (const Finding& f : findings(r)) {
     if (f.layer == "time") out += f.text + "\n";
   }
-
-  return out + "```\n</details>\n";
+  return out + "\n" + life_table(r) + "```\n</details>\n";
 }
 
 std::string format_benchmark(const GateResult& r, bool head) {
-  if (!r.time || r.time->kernels.empty() || r.time->kernels[0].processes.empty()) {
+  if (!timed(r)) {
     throw std::invalid_argument("nothing was timed: no Google Benchmark JSON");
   }
   nlohmann::json benchmarks = nlohmann::json::array();

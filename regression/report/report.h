@@ -20,6 +20,9 @@ std::string format_junit(const GateResult& result);
 /// The same for the summary page of a CI job.
 std::string format_markdown(const GateResult& result);
 
+/// Whether any kernel was timed beside base's.
+bool timed(const GateResult& result);
+
 /// Google Benchmark's JSON of one side, a repetition a process; compare.py reads a pair of them.
 /// @throws std::invalid_argument if nothing was timed
 std::string format_benchmark(const GateResult& result, bool head);

@@ -12,7 +12,7 @@ using Time = Gate;
 
 TEST_F(Time, TheSameCodeIsIdenticalAndNotTimed) {
   EXPECT_EQ(time("base"), kGood) << text_;
-  EXPECT_TRUE(says("identical: 1 kernels")) << text_;
+  EXPECT_TRUE(says("1 kernels identical")) << text_;
 }
 
 TEST_F(Time, ACopyBesideItselfPasses) {
@@ -24,7 +24,10 @@ TEST_F(Time, ACopyBesideItselfPasses) {
 }
 
 TEST_F(Time, TheSameCodeElsewhereInMemoryPasses) {
-  EXPECT_EQ(time("shifted"), kGood) << text_;
+  EXPECT_EQ(
+      run({"time", "--base", plugin("base"), "--head", plugin("shifted"), "--even-if-identical"}),
+      kGood)
+      << text_;
   EXPECT_TRUE(says("1 kernels, 1 ok")) << text_;
 }
 
@@ -33,6 +36,28 @@ TEST_F(Time, FivePercentMoreWorkFails) {
   EXPECT_TRUE(says("testbed1/subject") && says("FAIL")) << text_;
   EXPECT_EQ(run({"time", "--base", plugin("slower"), "--head", plugin("base")}), kGood)
       << "the other way round it is faster: " << text_;
+}
+
+TEST_F(Time, TwoFunctionsThatChangePlacesInATableFail) {
+  EXPECT_EQ(time("table"), kSlower) << "equal in all but what the linker fills in: " << text_;
+}
+
+TEST_F(Time, AStallThatIsRareFails) {
+  EXPECT_EQ(time("stall"), kSlower) << text_;
+  EXPECT_TRUE(says("stalls: the 50 steps from sample 100000 on")) << text_;
+}
+
+TEST_F(Time, AStepThatWaitsFails) {
+  EXPECT_EQ(time("sleep"), kSlower) << text_;
+  EXPECT_TRUE(says("gives up the processor 19 times")) << text_;
+}
+
+TEST_F(Time, ASlowPathForBadSamplesFails) {
+  EXPECT_EQ(time("bad"), kSlower) << text_;
+}
+
+TEST_F(Time, ABranchThatNobodyCanPredictFails) {
+  EXPECT_EQ(run({"time", "--base", plugin("few"), "--head", plugin("branch")}), kSlower) << text_;
 }
 
 TEST_F(Time, ADivideInTheChainFailsThoughInstructionsAreTheSame) {

@@ -5,7 +5,14 @@
 //   SUBJECT_STAGES=n        60 unless said: more are more work
 //   SUBJECT_DIVIDES=n       divides in the chain: hardly an instruction, but a wait
 //   SUBJECT_INSTRUCTIONS=n  instructions for which nobody waits
+//   SUBJECT_STALL           1 ms every 100,003 steps
+//   SUBJECT_SLEEP           gives up the processor every 10,007 steps
+//   SUBJECT_BAD=n           divides where the sample is bad
+//   SUBJECT_BRANCH          takes a branch that nobody can predict
+//   SUBJECT_TABLE=1         two functions change places in a table, and the dear one is called
 #include <array>
+#include <chrono>
+#include <thread>
 
 #include "bench/kit/kernels.h"
 #include "estimators/testbed1.h"
@@ -21,10 +28,33 @@ asm(".text\n.skip " TEXT(SUBJECT_SHIFT) ", 0x90\n");
 #ifndef SUBJECT_DIVIDES
 #define SUBJECT_DIVIDES 0
 #endif
+#ifndef SUBJECT_BAD
+#define SUBJECT_BAD 0
+#endif
+#ifndef SUBJECT_TABLE
+#define SUBJECT_TABLE 0
+#endif
 
 namespace {
 
-[[maybe_unused]] volatile double divisor = 1.0000001;  // some processors divide by 1 at once
+// x through so many divides, by what no compiler knows; some processors divide by 1 at once
+[[maybe_unused]] double divided(double x, int times) {
+  double divisor = 1.0000001;
+  asm volatile("" : "+m"(divisor));
+  for (int i = 0; i < times; ++i) x /= divisor;
+  return x;
+}
+
+// what is called through a table, whose bytes only the linker knows
+using Term = double (*)(double);
+double cheap(double x) {
+  return x;
+}
+double dear(double x) {
+  return divided(x, 100);
+}
+constexpr Term kTable[] = {SUBJECT_TABLE == 0 ? cheap : dear, SUBJECT_TABLE == 0 ? dear : cheap};
+[[maybe_unused]] int steps = 0;  // in no state, so that no reset begins anew
 
 // tau through a chain of low-passes, and back
 class Subject {
@@ -40,8 +70,29 @@ class Subject {
       stage += 0.1 * (x - stage);
       x = stage;
     }
-    for (int i = 0; i < SUBJECT_DIVIDES; ++i) x /= divisor;
+    if (SUBJECT_DIVIDES > 0) x = divided(x, SUBJECT_DIVIDES);
     stages_.back() = x;
+    if (!(x - x == 0)) {  // after a bad sample it begins anew
+      if (SUBJECT_BAD > 0) x = divided(x, SUBJECT_BAD);
+      stages_.fill(0);
+    }
+    int first = 0;
+    asm volatile("" : "+r"(first));
+    x = kTable[first](x);
+#ifdef SUBJECT_STALL
+    if (++steps % 100'003 == 0) {
+      const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
+      while (std::chrono::steady_clock::now() < until) {
+      }
+    }
+#endif
+#ifdef SUBJECT_SLEEP
+    if (++steps % 10'007 == 0) std::this_thread::sleep_for(std::chrono::microseconds(1));
+#endif
+#ifdef SUBJECT_BRANCH
+    // the speed's noise decides
+    if (static_cast<int>(y.qd[0] * 1e7) & 1) asm volatile("nop");
+#endif
 #ifdef SUBJECT_INSTRUCTIONS
     asm volatile(".rept " TEXT(SUBJECT_INSTRUCTIONS) "\n nop\n .endr");
 #endif

@@ -4,24 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <regex>
 #include <stdexcept>
+#include <utility>
 
+#include "regression/code/elf.h"
+#include "regression/code/layouts.h"
 #include "regression/host/files.h"
 #include "regression/host/plugin_host.h"
-#include "regression/time/identity.h"
 
 namespace tauext::gate {
 namespace {
-
-// adds one process' results to those kernels that it ran
-void collect(const std::vector<WorkerResult>& results, std::vector<KernelTime>& kernels) {
-  for (const WorkerResult& r : results) {
-    const auto it = std::find_if(kernels.begin(), kernels.end(),
-                                 [&](const KernelTime& k) { return k.kernel == r.kernel; });
-    it->processes.push_back(r);
-  }
-}
 
 double median_of(const std::vector<WorkerResult>& all, double WorkerResult::*value) {
   std::vector<double> values;
@@ -33,22 +28,12 @@ bool over_budget(double ns, const TimeOptions& o) {
   return ns * 1e-9 > o.period / 10;
 }
 
-void judge_kernel(KernelTime& k, const TimeOptions& o) {
-  std::vector<ProcessRatios> ratios;
-  for (const WorkerResult& r : k.processes) ratios.push_back({r.head, r.aa, r.canaries.at(0)});
-  k.verdict = judge(ratios, o.limits);
-  k.base_ns = median_of(k.processes, &WorkerResult::base_ns);
-  k.head_ns = median_of(k.processes, &WorkerResult::head_ns);
-  k.over_budget = over_budget(k.head_ns, o);
-}
-
 // L3 of kernels that nothing can be compared with
 std::vector<KernelTime> beside_themselves(const TimeOptions& o,
                                           const std::vector<std::string>& names) {
   std::vector<KernelTime> kernels;
   if (names.empty()) return kernels;
-  const WorkerOptions worker{
-      .base = o.head, .head = o.head, .kernels = names, .pairs = 15, .block = o.block};
+  const WorkerOptions worker{.base = o.head, .head = o.head, .kernels = names};
   for (const WorkerResult& r : run_worker(worker)) {
     KernelTime k{.kernel = r.kernel, .base_ns = 0, .head_ns = r.head_ns};
     k.over_budget = over_budget(r.head_ns, o);
@@ -57,33 +42,105 @@ std::vector<KernelTime> beside_themselves(const TimeOptions& o,
   return kernels;
 }
 
-void run_stages(const TimeOptions& o, const std::vector<std::string>& names,
-                std::vector<KernelTime>& kernels) {
-  WorkerOptions worker{.base = o.base,
-                       .head = o.head,
-                       .kernels = names,
-                       .pairs = o.pairs,
-                       .block = o.block,
-                       .injected = {o.limits.canary}};
+// a kernel and what its layouts said
+struct Timed {
+  KernelTime* kernel;
+  std::vector<LayoutRatios> warm, cold;
+};
+
+void time_layout(const TimeOptions& o, const Layouts& layouts, int seed, std::vector<Timed>& open) {
+  WorkerOptions worker{.injected = {o.limits.canary}};
+  for (const Timed& t : open) worker.kernels.push_back(t.kernel->kernel);
+  auto results = run_layout(layouts, seed, o.limits.processes, worker);
+  for (Timed& t : open) {
+    std::vector<WorkerResult>& mine = results[t.kernel->kernel];
+    std::vector<double> canaries;
+    for (const WorkerResult& r : mine) canaries.push_back(r.canaries.at(0));
+    t.warm.push_back({median_of(mine, &WorkerResult::head), median_of(mine, &WorkerResult::aa),
+                      median(canaries)});
+    t.cold.push_back({mine.front().cold_head, mine.front().cold_aa, 1});
+    auto& processes = t.kernel->processes;
+    std::move(mine.begin(), mine.end(), std::back_inserter(processes));
+  }
+}
+
+void judge_kernel(Timed& t, const TimeOptions& o, int kernels) {
+  KernelTime& k = *t.kernel;
+  k.verdict = judge(t.warm, o.limits, kernels);
+  k.cold = judge(t.cold, cold_limits(), kernels);
+  k.base_ns = median_of(k.processes, &WorkerResult::base_ns);
+  k.head_ns = median_of(k.processes, &WorkerResult::head_ns);
+  k.over_budget = over_budget(k.head_ns, o);
+}
+
+// cold steps are noisy, and a doubt of theirs is no reason to go on
+bool undecided(const KernelTime& k, const TimeLimits& limits) {
+  const bool cold_to_be_confirmed =
+      k.cold.surely > limits.surely && k.cold.verdict != Verdict::kFail;
+  return k.verdict.verdict == Verdict::kInconclusive || cold_to_be_confirmed;
+}
+
+void run_stages(const TimeOptions& o, const Layouts& layouts,
+                const std::vector<KernelTime*>& kernels) {
+  std::vector<Timed> open;
+  for (KernelTime* k : kernels) open.push_back({k, {}, {}});
   int done = 0;
   for (const int stage : o.limits.stages) {
     for (; done < stage; ++done) {
       if (o.progress) {
-        o.progress(fmt::format("timing {} kernels: process {} of {}", worker.kernels.size(),
-                               done + 1, stage));
+        o.progress(fmt::format("timing {} kernels: layout {} of {}", open.size(), done + 1, stage));
       }
-      collect(run_worker(worker), kernels);
+      time_layout(o, layouts, done, open);
     }
+    for (Timed& t : open) judge_kernel(t, o, static_cast<int>(kernels.size()));
     // the next stage is for those that are undecided
-    worker.kernels.clear();
-    for (KernelTime& k : kernels) {
-      if (static_cast<int>(k.processes.size()) < stage) continue;
-      judge_kernel(k, o);
-      if (k.verdict.verdict == Verdict::kInconclusive) worker.kernels.push_back(k.kernel);
-    }
-    if (worker.kernels.empty()) return;
+    std::erase_if(open, [](const Timed& t) { return !undecided(*t.kernel, cold_limits()); });
+    if (open.empty()) return;
   }
 }
+
+// once on each side
+void run_lives(const TimeOptions& o, const std::vector<KernelTime*>& kernels) {
+  LongRunOptions run{.base = o.base, .head = o.head};
+  for (const KernelTime* k : kernels) run.kernels.push_back(k->kernel);
+  if (o.progress) o.progress(fmt::format("longer runs of {} kernels", kernels.size()));
+  for (LongRun& life : run_long(run)) {
+    const auto it = std::find_if(kernels.begin(), kernels.end(),
+                                 [&](const KernelTime* k) { return k->kernel == life.kernel; });
+    if (it != kernels.end()) (*it)->life = std::move(life);
+  }
+}
+
+// kernels that cannot differ, as they do the same from the same beginning
+class Identity {
+ public:
+  Identity(const TimeOptions& o, const PluginCode& base, const PluginCode& head)
+      : base_code_(base),
+        head_code_(head),
+        base_(folder_.copy(o.base, "base.so"), o.base),
+        head_(folder_.copy(o.head, "head.so"), o.head),
+        lives_(1, 1) {}
+
+  bool same(const std::string& kernel) {
+    const int b = base_.find(kernel), h = head_.find(kernel);
+    const std::string code = reached(base_code_, base_, b);
+    return !code.empty() && code == reached(head_code_, head_, h) &&
+           state(base_, b) == state(head_, h);
+  }
+
+ private:
+  static std::string reached(const PluginCode& code, const Plugin& plugin, int kernel) {
+    return code.reached(function_at(code.path(), plugin.address(kernel)));
+  }
+  std::string state(const Plugin& plugin, int kernel) {
+    return Work(plugin, kernel, lives_.of(plugin, kernel)).state();
+  }
+
+  const PluginCode &base_code_, &head_code_;
+  TemporaryFolder folder_;
+  Plugin base_, head_;
+  Lives lives_;
+};
 
 // what a plug-in's hash would not see, and two commits of it would share in one process
 void require_self_contained(const std::string& path) {
@@ -129,17 +186,30 @@ KernelNames kernel_names(const std::string& base, const std::string& head,
   return names;
 }
 
+Verdict verdict_of(const KernelTime& k) {
+  const bool stalls = !k.life.kernel.empty() && !complaint(k.life).empty();
+  if (stalls || k.cold.verdict == Verdict::kFail) return Verdict::kFail;
+  return k.verdict.verdict;
+}
+
 TimeReport compare_times(const TimeOptions& o) {
   KernelNames names = kernel_names(o.base, o.head, o.kernels);
   TimeReport report{.gone = names.gone, .alone = beside_themselves(o, names.added)};
   for (const std::string& name : names.both) report.kernels.push_back({.kernel = name});
-  if (o.base.empty()) return report;
-  report.identical = identical(o.base, o.head);
-  if (report.identical && !o.even_if_identical) {
-    for (KernelTime& k : report.kernels) k.verdict.verdict = Verdict::kIdentical;
-  } else if (!report.kernels.empty()) {
-    run_stages(o, names.both, report.kernels);
+  if (o.base.empty() || report.kernels.empty()) return report;
+  const Layouts layouts(o.base, o.head);
+  Identity identity(o, layouts.base(), layouts.head());
+  std::vector<KernelTime*> different;
+  for (KernelTime& k : report.kernels) {
+    if (!o.even_if_identical && identity.same(k.kernel)) {
+      k.verdict.verdict = k.cold.verdict = Verdict::kIdentical;
+    } else {
+      different.push_back(&k);
+    }
   }
+  if (different.empty()) return report;
+  run_lives(o, different);
+  run_stages(o, layouts, different);
   return report;
 }
 

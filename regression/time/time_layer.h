@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "regression/time/long_run.h"
 #include "regression/time/time_worker.h"
 #include "regression/time/verdict.h"
 
@@ -19,8 +20,6 @@ struct TimeOptions {
   std::string kernels = "";  ///< regular expression; empty: all
   bool even_if_identical = false;
   TimeLimits limits;
-  int pairs = 75;
-  double block = 60e-6;                              ///< [s]
   double period = 1e-3;                              ///< [s] of control; a step has a tenth of it
   std::function<void(const std::string&)> progress;  ///< may be empty
 };
@@ -30,20 +29,26 @@ struct KernelTime {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians over processes
   TimeVerdict verdict;
+  TimeVerdict cold;          ///< of steps after other work
+  LongRun life;              ///< of a longer run
   bool over_budget = false;  ///< L3
   std::vector<WorkerResult> processes;
 };
 
+/// What its layouts say; a failure also where its cold steps or its longer run fail.
+Verdict verdict_of(const KernelTime& kernel);
+
 /// What L0, L2 and L3 found.
 struct TimeReport {
-  bool identical = false;           ///< then there is nothing below but names
-  std::vector<KernelTime> kernels;  ///< in both
+  std::vector<KernelTime> kernels;  ///< in both; kIdentical ones were not timed
   std::vector<std::string> gone;    ///< in base alone
   std::vector<KernelTime> alone;    ///< in head alone: L3, and nothing to compare with
 };
 
-/// @throws std::runtime_error for a plug-in that does not load, std::invalid_argument for a filter
-/// that matches nothing
+/// A kernel is identical where both builds reach the same code from it, and begin with the same
+/// bytes.
+/// @throws std::runtime_error for a plug-in that does not load or has no assembly beside it,
+/// std::invalid_argument for a filter that matches nothing
 TimeReport compare_times(const TimeOptions& options);
 
 /// The names of both plug-ins' kernels that match: in both, in base alone, in head alone.

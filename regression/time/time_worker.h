@@ -3,10 +3,11 @@
 /// One process of L2: every kernel of base and head in turn, inside Google Benchmark.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
-#include "regression/time/verdict.h"
+#include "regression/code/layouts.h"
 
 namespace tauext::gate {
 
@@ -14,8 +15,10 @@ namespace tauext::gate {
 struct WorkerOptions {
   std::string base, head;            ///< paths of plug-ins
   std::vector<std::string> kernels;  ///< in both
-  int pairs = 75;
+  unsigned seed = 1;                 ///< of the samples
+  int rounds = 20;
   double block = 60e-6;                   ///< [s] of work between two looks at the clock
+  int cold_steps = 16;                    ///< with other work before each
   std::vector<double> injected = {0.05};  ///< [1] slowdowns of the canaries
 };
 
@@ -23,14 +26,25 @@ struct WorkerOptions {
 struct WorkerResult {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians
-  double head = 1, aa = 1;          ///< [1] medians over the pairs of head / base and copy / base
-  std::vector<double> canaries;     ///< [1] likewise of base with `injected` more steps
+  double head = 1, aa = 1;          ///< [1] medians over the rounds of head / base and copy / base
+  double cold_ns = 0;               ///< [ns] of base's step after other work, median
+  double cold_head = 1, cold_aa = 1;  ///< [1] head / base and copy / base of such steps
+  std::vector<double> canaries;       ///< [1] of base with `injected` more steps
 };
 
-/// Runs every kernel's pairs in a child process of this program, with its output on the other end
+/// Samples of one life that a worker runs through.
+inline constexpr int kLifeSamples = 20000;
+
+/// Runs every kernel's rounds in a child process of this program, with its output on the other end
 /// of a pipe.
 /// @throws std::runtime_error with what the child said, if it failed
 std::vector<WorkerResult> run_worker(const WorkerOptions& options);
+
+/// Lays base and head out by that seed, and runs so many processes of them, each with another life.
+/// @param options whose base, head and seed are of no account
+/// @return by kernel  @throws std::runtime_error as run_worker and Layouts::write do
+std::map<std::string, std::vector<WorkerResult>> run_layout(const Layouts& layouts, int seed,
+                                                            int processes, WorkerOptions options);
 
 /// The child: JSON of Google Benchmark on standard output. argv: worker OPTIONS-AS-JSON.
 int worker_main(const std::string& options);

@@ -10,52 +10,33 @@
 namespace tauext::gate {
 namespace {
 
-std::vector<double> sorted(const std::vector<ProcessRatios>& all, double ProcessRatios::*ratio,
-                           std::size_t first = 0) {
+double median_of(const std::vector<LayoutRatios>& all, double LayoutRatios::*ratio) {
   std::vector<double> values;
-  for (std::size_t i = first; i < all.size(); ++i) values.push_back(all[i].*ratio);
-  std::sort(values.begin(), values.end());
-  return values;
+  for (const LayoutRatios& r : all) values.push_back(r.*ratio);
+  return median(values);
 }
 
-// the 3rd smallest of 10, 6th of 20, 12th of 40
-double low_of(const std::vector<double>& sorted_values) {
-  return sorted_values[sorted_values.size() * 3 / 10 - 1];
-}
-double high_of(const std::vector<double>& sorted_values) {
-  return sorted_values[sorted_values.size() - sorted_values.size() * 3 / 10];
-}
-
-bool slower(const std::vector<double>& sorted_values, double limit) {
-  return median(sorted_values) > 1 + limit && low_of(sorted_values) > 1;
-}
-
-// the first stage may have been unlucky: later processes have to say so among themselves, and if
-// they are no more than those of the first stage, the first stage, too
-void confirm(const std::vector<ProcessRatios>& all, const TimeLimits& limits, TimeVerdict& v) {
-  const auto first_stage = static_cast<std::size_t>(limits.stages[0]);
-  const std::vector<ProcessRatios> stage(all.begin(),
-                                         all.begin() + static_cast<std::ptrdiff_t>(first_stage));
-  const std::vector<double> fresh = sorted(all, &ProcessRatios::head, first_stage);
-  if (fresh.size() < first_stage) {
-    v.why = "slower in the first processes, to be confirmed";
-    return;
+// Student's distribution function for x > 0: Abramowitz and Stegun 26.7.3 and 26.7.4
+double student_probability(double x, int degrees) {
+  constexpr double kPi = 3.141592653589793;
+  const double angle = std::atan(x / std::sqrt(degrees)), c = std::cos(angle), s = std::sin(angle);
+  const bool odd = degrees % 2 == 1;
+  double term = odd ? c : 1, sum = degrees == 1 ? 0 : term;
+  for (int k = odd ? 2 : 1; k <= degrees - 3; k += 2) {
+    term *= c * c * k / (k + 1);
+    sum += term;
   }
-  const bool early = slower(sorted(stage, &ProcessRatios::head), limits.limit);
-  if (slower(fresh, limits.limit) && (early || fresh.size() > first_stage)) {
-    v.verdict = Verdict::kFail;
-  } else {
-    v.why = "some processes say slower, and others do not confirm it";
-  }
+  const double two_sided = odd ? 2 / kPi * (angle + s * sum) : s * sum;
+  return (1 + two_sided) / 2;
 }
 
-// why these processes cannot be trusted; false if they can
+// why these layouts cannot be trusted; false if they can
 bool too_noisy(const TimeLimits& limits, TimeVerdict& v) {
   if (!(std::abs(v.aa - 1) <= limits.limit / 2)) {
     v.why = fmt::format("a copy of base beside itself is off by {:+.1f} %", 100 * (v.aa - 1));
     return true;
   }
-  if (!(v.canary > 1 + limits.canary / 2)) {
+  if (limits.canary > 0 && !(v.canary > 1 + limits.canary / 2)) {
     v.why = fmt::format("of {:.0f} % injected, {:.1f} % were seen", 100 * limits.canary,
                         100 * (v.canary - 1));
     v.harness_error = true;
@@ -92,27 +73,56 @@ double median(std::vector<double> values) {
   return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-TimeVerdict judge(const std::vector<ProcessRatios>& all, const TimeLimits& limits) {
-  const std::size_t least = std::max<std::size_t>(static_cast<std::size_t>(limits.stages[0]), 4);
-  if (all.size() < least) {
-    throw std::logic_error(
-        fmt::format("{} processes, where a verdict needs {}", all.size(), least));
+double student_quantile(double probability, int degrees) {
+  double low = 0, high = 1;
+  while (student_probability(high, degrees) < probability) high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (student_probability(middle, degrees) < probability ? low : high) = middle;
   }
-  const std::vector<double> head = sorted(all, &ProcessRatios::head);
+  return (low + high) / 2;
+}
+
+TimeLimits cold_limits() {
+  return {.limit = 0.25, .surely = 0.15, .canary = 0, .least_sd = 0.02};
+}
+
+TimeVerdict judge(const std::vector<LayoutRatios>& all, const TimeLimits& limits, int kernels) {
+  const auto n = static_cast<int>(all.size());
+  if (n < std::max(limits.stages[0], 2)) {
+    throw std::logic_error(
+        fmt::format("{} layouts, where a verdict needs {}", n, limits.stages[0]));
+  }
+  double mean = 0, squares = 0;
+  for (const LayoutRatios& r : all) mean += std::log(r.head) / n;
+  for (const LayoutRatios& r : all) squares += std::pow(std::log(r.head) - mean, 2);
   TimeVerdict v;
-  v.processes = static_cast<int>(all.size());
-  v.median = median(head);
-  v.low = low_of(head);
-  v.high = high_of(head);
-  v.aa = median(sorted(all, &ProcessRatios::aa));
-  v.canary = median(sorted(all, &ProcessRatios::canary));
+  v.layouts = n;
+  v.layout_sd = std::sqrt(squares / (n - 1));
+  const double error = std::max(v.layout_sd, limits.least_sd) / std::sqrt(n);
+  const double both = student_quantile(0.975, n - 1) * error;
+  const double surely =
+      mean - student_quantile(1 - limits.false_alarms / std::max(kernels, 1), n - 1) * error;
+  v.surely = std::expm1(surely);
+  v.ratio = std::exp(mean);
+  v.low = std::exp(mean - both);
+  v.high = std::exp(mean + both);
+  v.aa = median_of(all, &LayoutRatios::aa);
+  v.canary = median_of(all, &LayoutRatios::canary);
   if (too_noisy(limits, v)) return v;
-  if (slower(head, limits.limit)) {
-    confirm(all, limits, v);
-  } else if (v.high <= 1 + limits.limit) {
+  if (v.surely > limits.surely) {
+    if (n >= limits.stages[1]) {
+      v.verdict = Verdict::kFail;
+    } else {
+      v.why = "slower in the first layouts, to be confirmed";
+    }
+  } else if (v.high <= 1 + limits.limit ||
+             (n >= limits.stages[2] && v.high <= 1 + 1.5 * limits.limit &&
+              v.ratio <= 1 + 0.75 * limits.limit)) {
     v.verdict = Verdict::kPass;
   } else {
-    v.why = "the interval holds the limit";
+    v.why = fmt::format("the interval holds the limit: layouts differ by {:.2f} % (sd)",
+                        100 * v.layout_sd);
   }
   return v;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <set>
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
@@ -31,17 +33,46 @@ TEST(RosterPlugin, HoldsEveryEstimatorDetectorAndModelAndNoBaseline) {
   EXPECT_EQ(plugin.count(), expected);
 }
 
-TEST(RosterPlugin, GivesEachKernelASecondOfFiniteSamplesThatMoveAndAreHit) {
+TEST(RosterPlugin, GivesEachKernelALifeOfItsRobot) {
   const Plugin plugin(TAUEXT_BIN "/tauext_plugin.so");
+  constexpr int kSamples = 20'000;
+  Lives lives(3, kSamples);
   for (int i = 0; i < plugin.count(); ++i) {
-    const std::vector<double> x = example(plugin, i);
-    const auto size = x.size() / kExampleSamples;
-    EXPECT_TRUE(std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }));
-    EXPECT_DOUBLE_EQ(x[size * 999], 0.999) << "t of the last sample";
-    EXPECT_NE(x[1], x[size * 500 + 1]) << "q moves";
-    EXPECT_GT(std::abs(x[size * 415 + size - 1] - x[size * 300 + size - 1]), 100) << "a blow, N m";
-    Work(plugin, i, x).run(2500);
+    const Samples samples = lives.of(plugin, i);
+    const std::vector<double>& x = samples.plain();
+    const std::size_t size = x.size() / kSamples, joints = (size - 1) / 4;
+    int bad = 0, restarts = 0, gaps = 0, repeated = 0;
+    double largest = 0;
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const double* s = &x[k * size];
+      bad += !std::all_of(s, s + size, [](double v) { return std::isfinite(v); });
+      restarts += s[0] == 0;
+      if (k > 0 && s[0] > 0) {
+        gaps += s[0] - s[-static_cast<std::ptrdiff_t>(size)] > 0.04;
+        repeated += s[0] == s[-static_cast<std::ptrdiff_t>(size)];
+      }
+      largest = std::max(largest, std::abs(s[1 + 3 * joints]));
+    }
+    EXPECT_GT(bad, 60) << "1 % of the samples, and a blind torque sensor now and then";
+    EXPECT_GE(restarts, 2);
+    EXPECT_GE(gaps, 2);
+    EXPECT_GT(repeated, 10);
+    EXPECT_GT(largest, 50) << "N m, a blow";
+    Work(plugin, i, samples).run(2 * kSamples + 500);
   }
+}
+
+TEST(RosterPlugin, SharesALifeAndRepeatsNothing) {
+  const Plugin plugin(TAUEXT_BIN "/tauext_plugin.so");
+  Lives lives(3, 5000);
+  const Samples& one = lives.of(plugin, plugin.find("wallmobot3/mo1"));
+  EXPECT_EQ(one.unpacked(), lives.of(plugin, plugin.find("wallmobot3/ekf")).unpacked());
+  Lives others(4, 5000);
+  EXPECT_NE(one.plain()[1], others.of(plugin, plugin.find("wallmobot3/mo1")).plain()[1])
+      << "another seed, another life";
+  std::set<double> q;
+  for (std::size_t k = 0; k < 5000; ++k) q.insert(one.plain()[13 * k + 2]);
+  EXPECT_GT(q.size(), 3000u) << "where it moves, it is nowhere twice";
 }
 
 }  // namespace

@@ -12,8 +12,9 @@ namespace {
 
 KernelTime kernel(const std::string& name, double ratio, Verdict verdict) {
   KernelTime k{.kernel = name, .base_ns = 100, .head_ns = 100 * ratio};
-  k.verdict = {.verdict = verdict, .median = ratio, .low = ratio - 0.001, .high = ratio + 0.001};
-  k.verdict.processes = 10;
+  k.verdict = {.verdict = verdict, .ratio = ratio, .low = ratio - 0.001, .high = ratio + 0.001};
+  k.verdict.layouts = verdict == Verdict::kIdentical ? 0 : 8;
+  k.cold.verdict = verdict == Verdict::kIdentical ? verdict : Verdict::kPass;
   k.processes = {{.kernel = name, .base_ns = 100, .head_ns = 100 * ratio},
                  {.kernel = name, .base_ns = 101, .head_ns = 101 * ratio}};
   return k;
@@ -109,6 +110,19 @@ TEST(Terminal, NamesSeedSampleAndCommandOfALossInAccuracy) {
         "tauext-bench --golden - --seeds 3 --benchmark_filter='^arm/step/a[+]b$'"}) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   }
+}
+
+TEST(Terminal, SaysThatAKernelStallsOrIsSlowAfterOtherWork) {
+  GateResult r = times({kernel("arm/ekf", 1, Verdict::kPass)});
+  r.time->kernels[0].cold = {.verdict = Verdict::kFail, .ratio = 1.4, .low = 1.3, .high = 1.5};
+  EXPECT_EQ(exit_code(r), kSlower);
+  EXPECT_NE(format_terminal(r, false).find("after other work a step takes +40 %"),
+            std::string::npos);
+  r = times({kernel("arm/ekf", 1, Verdict::kPass)});
+  r.time->kernels[0].life = {.kernel = "arm/ekf", .worst_ratio = 100, .worst_more_ns = 1e6};
+  EXPECT_EQ(exit_code(r), kSlower);
+  EXPECT_NE(format_terminal(r, false).find("stalls: "), std::string::npos);
+  EXPECT_NE(format_terminal(r, true).find("A longer run"), std::string::npos);
 }
 
 TEST(JUnit, CountsAndEscapes) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "regression/time/identity.h"
+#include "regression/code/elf.h"
 
 #include <elf.h>
 
-#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
@@ -47,23 +46,7 @@ void for_each_section(const std::string& bytes, const std::string& path, Visit&&
   }
 }
 
-// names and contents of .text, .rodata and .data, in the order of the file
-std::string code_of(const std::string& path) {
-  std::string code;
-  for_each_section(read_whole(path), path, [&](std::string_view name, std::string_view content) {
-    if (name != ".text" && name != ".rodata" && name != ".data") return;
-    code.append(name).push_back('\0');
-    code.append(content);
-  });
-  if (code.empty()) throw std::runtime_error(path + ": an ELF file without code");
-  return code;
-}
-
 }  // namespace
-
-bool identical(const std::string& a, const std::string& b) {
-  return code_of(a) == code_of(b);
-}
 
 std::vector<std::string> needed_libraries(const std::string& path) {
   const std::string bytes = read_whole(path);
@@ -81,6 +64,24 @@ std::vector<std::string> needed_libraries(const std::string& path) {
     needed.emplace_back(rest.substr(0, rest.find('\0')));
   }
   return needed;
+}
+
+std::string function_at(const std::string& path, std::uint64_t address) {
+  const std::string bytes = read_whole(path);
+  std::string_view names, entries;
+  for_each_section(bytes, path, [&](std::string_view name, std::string_view content) {
+    if (name == ".strtab") names = content;
+    if (name == ".symtab") entries = content;
+  });
+  for (std::size_t i = 0; i + sizeof(Elf64_Sym) <= entries.size(); i += sizeof(Elf64_Sym)) {
+    Elf64_Sym s;
+    std::memcpy(&s, entries.data() + i, sizeof s);
+    if (ELF64_ST_TYPE(s.st_info) != STT_FUNC || s.st_value != address) continue;
+    if (s.st_name >= names.size()) continue;
+    const std::string_view rest = names.substr(s.st_name);
+    return std::string(rest.substr(0, rest.find('\0')));
+  }
+  throw std::runtime_error(path + ": no function begins where its kernel does; is it stripped?");
 }
 
 }  // namespace tauext::gate
