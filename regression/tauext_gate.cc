@@ -13,6 +13,7 @@
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
+#include "regression/accept.h"
 #include "regression/counts/instructions.h"
 #include "regression/host/child.h"
 #include "regression/host/ending.h"
@@ -30,7 +31,7 @@ struct Flags {
   GateOptions gate;
   UpdateOptions update;
   CalibrateOptions calibrate;
-  std::string junit, markdown, base_json, head_json, subject;
+  std::string junit, markdown, base_json, head_json, subject, accept, base_commit;
   bool all = false;
 };
 
@@ -63,8 +64,9 @@ int check(Flags& f) {
   require_writable(f);
   Progress progress("gate");
   f.gate.progress = shown_by(progress);
-  const GateResult r = run_layers(f.gate);
+  GateResult r = run_layers(f.gate);
   progress.clear();
+  accept_findings(f.gate.baselines, f.base_commit, f.accept, r);
   fmt::print("{}", printable(format_terminal(r, f.all)));
   write(f.junit, format_junit(r));
   write(f.markdown, format_markdown(r));
@@ -146,11 +148,24 @@ void add_time(CLI::App* sub, Flags& f) {
       ->capture_default_str();
 }
 
+void add_memory(CLI::App* sub, Flags& f) {
+  sub->add_option("--base-baselines", f.gate.base_committed.baselines, "folder that base committed")
+      ->type_name("FOLDER");
+  sub->add_option("--base-changelog", f.gate.base_committed.changelog, "of base's baselines")
+      ->type_name("FILE");
+  sub->add_option("--changelog", f.gate.changelog, "of these baselines")
+      ->type_name("FILE")
+      ->capture_default_str();
+  sub->add_option("--base-commit", f.base_commit, "its hash, for which findings are accepted");
+  sub->add_option("--accept", f.accept, "accept what fails, as it is, and say why")
+      ->type_name("REASON");
+}
+
 // each of these judges one layer or all of them
 void add_judging(CLI::App& app, Flags& f) {
   CLI::App* sub = app.add_subcommand("check", "every layer: time, instructions, accuracy");
   add_plugins(sub, f), add_bench(sub, f), add_baselines(sub, f.gate.baselines);
-  add_time(sub, f), add_reports(sub, f);
+  add_time(sub, f), add_reports(sub, f), add_memory(sub, f);
 
   sub = app.add_subcommand(
       "time", "base against head, interleaved in one process, in many layouts of both");
@@ -165,6 +180,7 @@ void add_judging(CLI::App& app, Flags& f) {
   sub =
       app.add_subcommand("accuracy", "metrics of every entry, seed by seed, beside the committed");
   add_bench(sub, f), add_baselines(sub, f.gate.baselines), add_reports(sub, f);
+  add_memory(sub, f);
   sub->callback([&f] { f.gate.time = f.gate.instructions = false; });
 }
 
@@ -199,7 +215,7 @@ void add_flags(CLI::App& app, Flags& f) {
   f.gate.head = f.update.head = f.calibrate.base = sibling("tauext_plugin.so");
   f.gate.bench = f.update.bench = sibling("tauext-bench");
   f.gate.baselines = f.update.baselines = "regression/baselines";
-  f.update.changelog = "regression/CHANGELOG.md";
+  f.gate.changelog = f.update.changelog = "regression/CHANGELOG.md";
   add_judging(app, f);
   add_update(app, f.update);
   add_calibrate(app, f.calibrate);

@@ -8,9 +8,11 @@
 #include <map>
 #include <mutex>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "bench/roster/robots.h"
 #include "bench/score/degradation.h"
 #include "bench/score/parallel.h"
 
@@ -21,9 +23,21 @@ std::string text_of(double value) {
   return !std::isfinite(value) ? "never" : fmt::format("{:.17g}", value);
 }
 
-// what may change between two machines; a contact lets it grow
-const char* tolerance_of(const Entry& e) {
-  return e.scenario().has_obstacle() ? "1e-6" : "1e-9";
+// the suite's, and unless somebody selects, each detector that stands in the studies alone behind
+// the paper's first estimator
+std::vector<Entry> all_entries(const Selection& selection) {
+  std::vector<Entry> all = entries(selection);
+  if (!selection.empty()) return all;
+  std::set<std::string> known;
+  for (const Entry& e : all) known.insert(e.name());
+  for (const auto& robot : robots()) {
+    for (const std::string& d : robot->detectors()) {
+      for (Entry& e : entries({.estimators = {"ekf"}, .detectors = {d}})) {
+        if (known.insert(e.name()).second) all.push_back(std::move(e));
+      }
+    }
+  }
+  return all;
 }
 
 // by entry, by metric, by seed
@@ -39,7 +53,7 @@ class Golden {
       throw std::invalid_argument(
           fmt::format("'{}' is no regular expression: {}", o.filter, e.what()));
     }
-    for (const Entry& e : entries(o.selection)) {
+    for (const Entry& e : all_entries(o.selection)) {
       if (std::regex_search(e.name(), wanted)) groups_[e.group()].push_back(e);
     }
     if (groups_.empty()) {
@@ -73,33 +87,43 @@ class Golden {
       Score score = suite.score(e);
       score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
       const std::lock_guard lock(mutex_);
+      const auto put = [&](const std::string& key, double value) {
+        auto& values = table_[e.name()][key];
+        values.resize(o_.seeds.size(), std::nan(""));
+        values[job.second] = value;
+      };
       for (const MetricRow& metric : kMetrics) {
         const auto value = score.get(metric.metric);
         if (!metric.is(MetricRow::kGate) || !value) continue;
-        auto& values = table_[e.name()][std::string(metric.key)];
-        values.resize(o_.seeds.size(), std::nan(""));
-        values[job.second] = *value;
+        put(key_of(metric.metric), *value);
+        const std::vector<double>& joints = score.joints(metric.metric);
+        if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+          put(key_of(metric.metric, static_cast<int>(j) + 1), joints[j]);
+        }
       }
     }
   }
 
   std::string text() const {
     const Sensors sensors = options(0).sensors;
-    std::string out = fmt::format(
-        "# tauext golden metrics 1\n# mujoco: {}\n# sensors: {}\n# built: {}\n"
-        "entry\tmetric\ttolerance\tseed {}\n",
-        mujoco_version(), describe({sensors, o_.suite.model_error}), o_.built,
-        fmt::join(o_.seeds, "\tseed "));
-    std::map<std::string, const char*> tolerance;
+    std::set<std::string> contacts;
     for (const auto& [group, rivals] : groups_) {
-      for (const Entry& e : rivals) tolerance[e.name()] = tolerance_of(e);
+      const Entry& e = rivals.front();
+      if (e.scenario().has_obstacle()) {
+        contacts.insert(e.robot().name() + "/" + e.scenario().name);
+      }
     }
+    std::string out = fmt::format(
+        "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n# contacts: {}\n# built: {}\n"
+        "entry\tmetric\tseed {}\n",
+        mujoco_version(), describe({sensors, o_.suite.model_error}), fmt::join(contacts, " "),
+        o_.built, fmt::join(o_.seeds, "\tseed "));
     for (const auto& [entry, metrics] : table_) {
       for (const auto& [metric, values] : metrics) {
         std::vector<std::string> texts;
         for (const double value : values) texts.push_back(text_of(value));
-        out += fmt::format("{}\t{}\t{}\t{}\n", entry, metric, tolerance.at(entry),
-                           fmt::join(texts, "\t"));
+        out += fmt::format("{}\t{}\t{}\n", entry, metric, fmt::join(texts, "\t"));
       }
     }
     return out + "# end\n";

@@ -29,11 +29,12 @@ struct GoldenOptions {
 Sensors golden_sensors();
 
 /// Lines "# name: value" of what the numbers depend on, then a line for each entry and metric,
-/// sorted: entry, metric, tolerance and a value for each seed, apart by tabs. Values are %.17g,
-/// "never" where the metric has none or is no number. `tolerance` is what may change between two
-/// machines, absolute or relative, whichever is larger: 1e-9, and 1e-6 where something stands in
-/// the arm's way. The metrics are those that the list calls gated (bench/score/metric_list.h), of
-/// the worst joint. The text does not depend on the number of threads.
+/// sorted: entry, metric and a value for each seed, apart by tabs. Values are %.17g, "never" where
+/// the metric has none or is no number. "# contacts: .." names the scenarios in which something
+/// stands in the arm's way. The metrics are those that the list calls gated
+/// (bench/score/metric_list.h), of the worst joint and, where the list says so, of each. Unless
+/// somebody selects, every detector is there behind the EKF, those of the studies too. The text
+/// does not depend on the number of threads.
 /// @throws std::invalid_argument for a filter that matches nothing or is no regular expression, and
 /// for no seed
 std::string golden_metrics(const GoldenOptions& options);

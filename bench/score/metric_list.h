@@ -31,6 +31,7 @@ enum class Metric : std::uint8_t {
   kRecall,
   kFalseAlarms,
   kFalseAlarmsPerHour,
+  kPeakScore,
   kOvertravel,
   kPeak,
   kPeakUnstopped,
@@ -57,6 +58,7 @@ struct MetricRow {
     kZeroIsNoMerit = 8,    ///< an exact 0 does not compete
     kNeverIsBest = 16,     ///< no value ("never") is the best value; else it is the worst
     kOneSeedIsWorse = 32,  ///< tauext-gate needs no more than one seed
+    kGateJoints = 64,      ///< golden files hold each joint's, too
   };
 
   Metric metric = {};                     ///< whose row it is
@@ -68,6 +70,8 @@ struct MetricRow {
   WorstJoint joints = WorstJoint::kNone;  ///< whether it is judged joint by joint
   unsigned uses = 0;                      ///< of Use
   std::string_view meaning;               ///< one sentence
+  /// What may change between two machines, absolute or relative, whichever is larger.
+  double tolerance = 1e-9;
 
   constexpr bool is(Use use) const { return (uses & use) != 0; }  ///< whether it has that use
 };
@@ -79,7 +83,7 @@ inline constexpr auto kMetrics = [] {
   using enum WorstJoint;
   using enum MetricRow::Use;
   return std::array{
-      MetricRow{kRmse, "rmse_Nm", "rmse", "N m", 3, kLess, kLargest, kUsual,
+      MetricRow{kRmse, "rmse_Nm", "rmse", "N m", 3, kLess, kLargest, kUsual | kGateJoints,
                 "The root of the mean squared error of the estimate."},
       MetricRow{kBias, "bias_Nm", "bias", "N m", 3, kLess, kLargest, kGate,
                 "The size of the mean error."},
@@ -111,6 +115,8 @@ inline constexpr auto kMetrics = [] {
                 "The number of marks that belong to no collision."},
       MetricRow{kFalseAlarmsPerHour, "false_alarms_per_hour", "false alarms", "1/h", 1, kLess,
                 kNone, 0, "The number of marks in an hour that belong to no collision."},
+      MetricRow{kPeakScore, "peak_score", "peak score", "", 2, kNeither, kNone, kGate,
+                "The largest score of the detector, which marks from 1 on."},
       MetricRow{kOvertravel, "overtravel_rad", "overtravel", "rad", 4, kLess, kNone, kUsual,
                 "How far the arm moves on after the mark has stopped its motor."},
       MetricRow{kPeak, "peak_N", "peak", "N", 0, kLess, kNone, kUsual,
@@ -125,6 +131,9 @@ inline constexpr auto kMetrics = [] {
                 "1 for an entry that failed, else 0."},
   };
 }();
+
+/// Where something stands in the arm's way, so many times the tolerance.
+inline constexpr double kOfContacts = 1000;
 
 inline constexpr std::size_t kMetricCount = kMetrics.size();  ///< rows
 

@@ -2,7 +2,7 @@
 /// @file
 /// How golden metrics compare with the committed ones.
 ///
-/// T0: a repeated seed gives the same bits. T1: a value that differs by more than its line's
+/// T0: a repeated seed gives the same bits. T1: a value that differs by more than its metric's
 /// tolerance, better or worse, wants a reviewed update. T2: paired over the seeds, a mean that is
 /// worse by more than 0.5 % and by more than 3 standard errors is less accurate.
 #pragma once
@@ -26,6 +26,7 @@ struct MetricChange {
   std::string worst_seed;      ///< the one that changed most, for the worse if any did
   std::string largest_error_at;  ///< [s] of that seed's run, as its golden file says; "" if unknown
   std::string note;
+  std::string accepted;  ///< why it is right; "" if nobody says so
 };
 
 /// What was found.

@@ -13,7 +13,7 @@
 namespace tauext::gate {
 namespace {
 
-constexpr const char* kHeader = "# tauext golden metrics 1";
+constexpr const char* kHeader = "# tauext golden metrics 2";
 constexpr const char* kEnd = "# end";
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -47,17 +47,17 @@ struct At {
 
 void read_columns(const std::string& line, const At& at, Golden& g) {
   const std::vector<std::string> f = fields_of(line);
-  if (f.size() < 4 || f[0] != "entry") at.fail("the names of the columns were expected");
-  g.seeds.assign(f.begin() + 3, f.end());
+  if (f.size() < 3 || f[0] != "entry") at.fail("the names of the columns were expected");
+  g.seeds.assign(f.begin() + 2, f.end());
 }
 
 void read_metric(const std::string& line, const At& at, Golden& g) {
   const std::vector<std::string> f = fields_of(line);
-  if (f.size() != g.seeds.size() + 3) {
-    at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 3));
+  if (f.size() != g.seeds.size() + 2) {
+    at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 2));
   }
-  GoldenLine l{at.number(f[2]), {}};
-  for (std::size_t i = 3; i < f.size(); ++i) {
+  GoldenLine l;
+  for (std::size_t i = 2; i < f.size(); ++i) {
     l.values.push_back(f[i] == "never" ? kNever : at.number(f[i]));
   }
   if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");

@@ -16,13 +16,12 @@ inline constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 /// One line: a metric of an entry, seed by seed.
 struct GoldenLine {
-  double tolerance = 1e-9;  ///< absolute or relative, whichever is larger
-  std::vector<double> values;
+  std::vector<double> values;  ///< a seed each
 };
 
 /// A file of golden metrics.
 struct Golden {
-  std::map<std::string, std::string> header;  ///< mujoco, sensors, built
+  std::map<std::string, std::string> header;  ///< mujoco, sensors, contacts, built
   std::vector<std::string> seeds;
   std::map<std::pair<std::string, std::string>, GoldenLine> lines;  ///< by entry and metric
 };

@@ -136,7 +136,7 @@ std::vector<CountChange> compare_counts(const Counts& before, const Counts& afte
 }
 
 bool too_many(const CountChange& c) {
-  return c.change() > kCountLimit;
+  return c.accepted.empty() && c.change() > kCountLimit;
 }
 
 std::string short_name(const std::string& name) {

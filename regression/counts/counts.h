@@ -48,6 +48,7 @@ struct CountChange {
                        : static_cast<double>(after) / static_cast<double>(before) - 1;
   }
   std::vector<std::string> gained;  ///< "function: +n a step", the most first
+  std::string accepted;             ///< why it is right; "" if nobody says so
 };
 
 /// More than that fails; more than the note is said.
@@ -57,7 +58,7 @@ inline constexpr double kCountLimit = 0.01, kCountNote = 0.002;
 /// @throws std::invalid_argument if the keys differ: such counts are never compared
 std::vector<CountChange> compare_counts(const Counts& before, const Counts& after);
 
-/// Whether a count grew beyond the limit.
+/// Whether a count grew beyond the limit, and nobody accepted it.
 bool too_many(const CountChange& change);
 
 /// A function's name without template arguments and parameters, which fill the screen.

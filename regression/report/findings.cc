@@ -28,6 +28,7 @@ std::vector<Finding> time_findings(const GateResult& r) {
     Finding f{"time", k.kernel, verdict_of(k), std::move(rows[i]), {}};
     f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
     if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
+    if (k.cold.verdict == Verdict::kAccepted) f.more.push_back("after other work: " + k.cold.why);
     if (k.cold.verdict == Verdict::kFail) {
       f.more.push_back(fmt::format(
           "after other work a step takes {:+.0f} % ({:+.0f} to {:+.0f}, limit {:+.0f} %)",
@@ -36,6 +37,7 @@ std::vector<Finding> time_findings(const GateResult& r) {
     }
     if (!k.life.kernel.empty()) {
       if (std::string stall = complaint(k.life); !stall.empty()) f.more.push_back(std::move(stall));
+      if (!k.life_accepted.empty()) f.more.push_back(k.life_accepted);
     }
     if (k.over_budget) {
       f.verdict = Verdict::kFail;
@@ -57,7 +59,8 @@ std::vector<Finding> count_findings(const std::vector<CountChange>& changes, con
   const auto a_step = [](std::uint64_t n) { return static_cast<double>(n) / kCountedSteps; };
   std::vector<Finding> all;
   for (const CountChange& c : changes) {
-    const Verdict v = too_many(c)                         ? Verdict::kFail
+    const Verdict v = !c.accepted.empty()                 ? Verdict::kAccepted
+                      : too_many(c)                       ? Verdict::kFail
                       : std::abs(c.change()) > kCountNote ? Verdict::kNote
                                                           : Verdict::kPass;
     Finding f{
@@ -66,6 +69,7 @@ std::vector<Finding> count_findings(const std::vector<CountChange>& changes, con
                     c.kernel, a_step(c.before), a_step(c.after), 100 * c.change(),
                     100 * kCountLimit, name_of(v)),
         c.gained};
+    if (!c.accepted.empty()) f.more.push_back(c.accepted);
     all.push_back(std::move(f));
   }
   return all;
@@ -132,6 +136,11 @@ Finding metric_finding(const MetricChange& c, const std::string& bench, bool com
                         words_for(c.change)),
             {}};
   if (!c.note.empty()) f.more.push_back(c.note);
+  if (!c.accepted.empty()) {
+    f.verdict = Verdict::kAccepted;
+    f.more.push_back(c.accepted);
+    return f;
+  }
   if (c.change != Change::kWorse) return f;
   f.more.push_back(worst_of(c));
   if (command) f.more.push_back("again: " + score_command(bench, c.entry, c.worst_seed));
@@ -151,6 +160,24 @@ std::vector<Finding> accuracy_findings(const GateResult& r) {
   for (const MetricChange& c : r.accuracy->changes) {
     const bool first = c.change == Change::kWorse && shown.insert(c.entry).second;
     all.push_back(metric_finding(c, r.bench, first));
+  }
+  return all;
+}
+
+std::vector<Finding> memory_findings(const MemoryReport& r) {
+  std::vector<Finding> all;
+  for (const Moved& m : r.moved) {
+    const Verdict v = m.worse && r.worse_without_leave() ? Verdict::kFail
+                      : r.without_reason()               ? Verdict::kNoBaseline
+                                                         : Verdict::kNote;
+    const char* const words = v == Verdict::kFail         ? "WORSE, and nobody accepted it"
+                              : v == Verdict::kNoBaseline ? "moved without a reason"
+                                                          : "moved";
+    all.push_back({"baselines beside base's",
+                   m.what,
+                   v,
+                   fmt::format("{}: {}  {}", m.what, m.how, words),
+                   {}});
   }
   return all;
 }
@@ -218,6 +245,7 @@ std::vector<Finding> findings(const GateResult& r) {
   };
   if (r.instructions) add(instruction_findings(*r.instructions));
   add(accuracy_findings(r));
+  if (r.memory) add(memory_findings(*r.memory));
   return all;
 }
 
@@ -229,6 +257,11 @@ std::vector<std::string> summary(const GateResult& r) {
     lines.push_back(fmt::format(
         "accuracy      {} metrics: {} changed, {} of them worse by more than {:.1f} %",
         r.accuracy->lines, r.accuracy->changes.size(), r.accuracy->worse(), 100 * kWorseBy));
+  }
+  if (r.memory) {
+    lines.push_back(fmt::format("baselines     {} lines beside base's: {} moved, {} of them worse",
+                                r.memory->lines, r.memory->moved.size(), r.memory->worse()));
+    for (const std::string& reason : r.memory->reasons) lines.push_back("  because: " + reason);
   }
   return lines;
 }

@@ -56,8 +56,15 @@ void see(const InstructionReport& r, Seen& seen) {
 
 void see(const AccuracyReport& r, Seen& seen) {
   seen.harness = seen.harness || !r.not_repeated.empty();
-  seen.less_accurate = r.worse() > 0;
-  seen.update = seen.update || !r.no_baseline.empty() || !r.changes.empty();
+  seen.less_accurate = seen.less_accurate || r.worse() > 0;
+  seen.update = seen.update || !r.no_baseline.empty() ||
+                std::any_of(r.changes.begin(), r.changes.end(),
+                            [](const MetricChange& c) { return c.accepted.empty(); });
+}
+
+void see(const MemoryReport& r, Seen& seen) {
+  seen.less_accurate = seen.less_accurate || r.worse_without_leave();
+  seen.update = seen.update || r.without_reason();
 }
 
 }  // namespace
@@ -90,6 +97,9 @@ GateResult run_layers(const GateOptions& options) {
     r.accuracy = score_and_compare(
         {.bench = o.bench, .entries = o.entries, .baselines = o.baselines, .progress = o.progress});
   }
+  if (!o.base_committed.baselines.empty()) {
+    r.memory = compare_committed(o.base_committed, {o.baselines, o.changelog});
+  }
   return r;
 }
 
@@ -98,6 +108,7 @@ ExitCode exit_code(const GateResult& r) {
   if (r.time) see(*r.time, seen);
   if (r.instructions) see(*r.instructions, seen);
   if (r.accuracy) see(*r.accuracy, seen);
+  if (r.memory) see(*r.memory, seen);
   if (seen.harness) return kCouldNotRun;
   if (seen.slower) return kSlower;
   if (seen.less_accurate) return kLessAccurate;

@@ -11,6 +11,8 @@
 #include "bench/program/exit_code.h"
 #include "regression/accuracy/accuracy.h"
 #include "regression/counts/count_layer.h"
+#include "regression/memory/acceptance.h"
+#include "regression/memory/committed.h"
 #include "regression/time/time_layer.h"
 
 namespace tauext::gate {
@@ -21,6 +23,8 @@ struct GateOptions {
   std::string bench;             ///< program with --golden; empty: no accuracy
   std::string baselines;         ///< folder
   std::string kernels, entries;  ///< regular expressions; empty: all
+  std::string changelog;         ///< of the baselines
+  Committed base_committed;      ///< what base's commit holds; empty: not looked at
   bool time = true, instructions = true, accuracy = true;
   bool even_if_identical = false;
   TimeLimits limits;
@@ -33,6 +37,7 @@ struct GateResult {
   std::optional<TimeReport> time;
   std::optional<InstructionReport> instructions;
   std::optional<AccuracyReport> accuracy;
+  std::optional<MemoryReport> memory;
   std::vector<std::string> notes;  ///< what could not be compared, and why
   std::string base, head, bench;   ///< to be named in commands
 };

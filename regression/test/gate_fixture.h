@@ -13,6 +13,7 @@
 #include "regression/accuracy/accuracy_layer.h"
 #include "regression/host/child.h"
 #include "regression/host/files.h"
+#include "regression/memory/acceptance.h"
 
 namespace tauext::gate::test {
 
@@ -59,8 +60,8 @@ class Gate : public testing::Test {
   std::string baselines() const { return folder_.path(); }
   std::string golden() const { return golden_path(baselines()); }
 
-  void make_golden() const {
-    run_child({"env", "SUBJECT=", kBin + "/subject_bench", "--golden", golden(),
+  void make_golden(const std::string& fault = "") const {
+    run_child({"env", "SUBJECT=" + fault, kBin + "/subject_bench", "--golden", golden(),
                std::string("--benchmark_filter=") + kEntries});
   }
   // the path of the file that update writes

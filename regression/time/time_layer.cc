@@ -187,9 +187,11 @@ KernelNames kernel_names(const std::string& base, const std::string& head,
 }
 
 Verdict verdict_of(const KernelTime& k) {
-  const bool stalls = !k.life.kernel.empty() && !complaint(k.life).empty();
+  const bool complained = !k.life.kernel.empty() && !complaint(k.life).empty();
+  const bool stalls = complained && k.life_accepted.empty();
   if (stalls || k.cold.verdict == Verdict::kFail) return Verdict::kFail;
-  return k.verdict.verdict;
+  const bool meant = complained || k.cold.verdict == Verdict::kAccepted;
+  return meant && k.verdict.verdict == Verdict::kPass ? Verdict::kAccepted : k.verdict.verdict;
 }
 
 TimeReport compare_times(const TimeOptions& o) {

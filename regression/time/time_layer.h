@@ -29,9 +29,10 @@ struct KernelTime {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians over processes
   TimeVerdict verdict;
-  TimeVerdict cold;          ///< of steps after other work
-  LongRun life;              ///< of a longer run
-  bool over_budget = false;  ///< L3
+  TimeVerdict cold;           ///< of steps after other work
+  LongRun life;               ///< of a longer run
+  std::string life_accepted;  ///< why its complaint is right; "" if nobody says so
+  bool over_budget = false;   ///< L3
   std::vector<WorkerResult> processes;
 };
 

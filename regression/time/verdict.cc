@@ -61,6 +61,8 @@ const char* name_of(Verdict v) {
       return "INCONCLUSIVE";
     case Verdict::kNoBaseline:
       return "no baseline";
+    case Verdict::kAccepted:
+      return "accepted";
   }
   return "?";
 }

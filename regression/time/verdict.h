@@ -9,7 +9,7 @@
 namespace tauext::gate {
 
 /// What a layer says of one kernel or metric.
-enum class Verdict { kIdentical, kPass, kNote, kFail, kInconclusive, kNoBaseline };
+enum class Verdict { kIdentical, kPass, kNote, kFail, kInconclusive, kNoBaseline, kAccepted };
 const char* name_of(Verdict v);
 
 /// The ratios of times in one layout, each a median over its processes.

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Findings that were accepted, and those that now are.
+#pragma once
+
+#include <string>
+
+#include "regression/report/layers.h"
+
+namespace tauext::gate {
+
+/// Applies the acceptances of a folder of baselines to a result. With a reason all that fails and
+/// has a size is accepted first, beside that base, and written there; what stands for another base
+/// goes.
+/// @param base commit; @param reason "" to accept nothing new
+/// @throws std::invalid_argument for a reason without base or of two lines; std::runtime_error as
+/// read_acceptances and AtomicFile do
+void accept_findings(const std::string& baselines, const std::string& base,
+                     const std::string& reason, GateResult& result);
+
+}  // namespace tauext::gate

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/memory/acceptance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "mjcf/trace/input_file.h"
+
+namespace tauext::gate {
+namespace {
+
+constexpr const char* kHeader = "# tauext accepted findings 1";
+constexpr const char* kColumns = "layer\tsubject\tat most\tbase\treason";
+constexpr const char* kEnd = "# end";
+
+Acceptance acceptance_of(const std::string& line, const std::string& where) {
+  std::istringstream in(line);
+  Acceptance a;
+  std::string at_most;
+  for (std::string* field : {&a.layer, &a.subject, &at_most, &a.base, &a.reason}) {
+    if (!std::getline(in, *field, '\t')) throw std::runtime_error(where + ": 5 columns, please");
+  }
+  const char* const end = at_most.data() + at_most.size();
+  const auto [stop, error] = std::from_chars(at_most.data(), end, a.at_most);
+  if (error != std::errc() || stop != end || !(a.at_most >= 0 && a.at_most < 1e6)) {
+    throw std::runtime_error(fmt::format("{}: '{}' is no share from 0 on", where, at_most));
+  }
+  return a;
+}
+
+}  // namespace
+
+bool Acceptance::covers(const std::string& its_layer, const std::string& its_subject,
+                        double by) const {
+  return layer == its_layer && subject == its_subject && by <= at_most;
+}
+
+std::string accepted_path(const std::string& folder) {
+  return folder + "/accepted.tsv";
+}
+
+std::vector<Acceptance> read_acceptances(const std::string& path) {
+  std::vector<Acceptance> all;
+  if (!std::filesystem::exists(path)) return all;
+  std::istringstream in(read_whole(path));
+  int number = 0;
+  bool end = false;
+  for (std::string line; !end && std::getline(in, line);) {
+    const std::string where = fmt::format("{}: line {}", path, ++number);
+    if (number <= 2) {
+      const char* const wanted = number == 1 ? kHeader : kColumns;
+      if (line != wanted)
+        throw std::runtime_error(fmt::format("{}: it must be '{}'", where, wanted));
+    } else if (line == kEnd) {
+      end = true;
+    } else {
+      all.push_back(acceptance_of(line, where));
+    }
+  }
+  if (!end)
+    throw std::runtime_error(fmt::format("{}: cut off, its last line is not '{}'", path, kEnd));
+  return all;
+}
+
+std::string format_acceptances(std::vector<Acceptance> all) {
+  const auto key = [](const Acceptance& a) { return std::tie(a.layer, a.subject, a.base); };
+  std::sort(all.begin(), all.end(),
+            [&](const Acceptance& a, const Acceptance& b) { return key(a) < key(b); });
+  std::string text = fmt::format("{}\n{}\n", kHeader, kColumns);
+  for (const Acceptance& a : all) {
+    text +=
+        fmt::format("{}\t{}\t{:.4g}\t{}\t{}\n", a.layer, a.subject, a.at_most, a.base, a.reason);
+  }
+  return text + kEnd + "\n";
+}
+
+}  // namespace tauext::gate

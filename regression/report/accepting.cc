@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/report/accepting.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+
+namespace tauext::gate {
+namespace {
+
+// layer, subject, by how much it is worse, what to write down; and where the reason goes
+struct Failing {
+  const char* layer;
+  std::string subject;
+  double by, at_most;
+  std::function<void(const std::string&)> accept;
+};
+
+void add_times(TimeReport& t, std::vector<Failing>& all) {
+  for (KernelTime& k : t.kernels) {
+    const auto add = [&](const char* layer, TimeVerdict& v) {
+      if (v.verdict != Verdict::kFail) return;
+      all.push_back({layer, k.kernel, v.surely, v.high - 1, [&v](const std::string& reason) {
+                       v.verdict = Verdict::kAccepted;
+                       v.why = reason;
+                     }});
+    };
+    add("time", k.verdict);
+    add("cold", k.cold);
+    if (k.life.kernel.empty() || complaint(k.life).empty()) continue;
+    if (k.life.head.waits > k.life.base.waits) continue;
+    const double by = std::max(k.life.worst_ratio, k.life.head.mean_ns / k.life.base.mean_ns) - 1;
+    all.push_back({"long", k.kernel, by, 1.5 * by,
+                   [&k](const std::string& reason) { k.life_accepted = reason; }});
+  }
+}
+
+void add_counts(const char* layer, std::vector<CountChange>& changes, std::vector<Failing>& all) {
+  for (CountChange& c : changes) {
+    if (!too_many(c)) continue;
+    all.push_back({layer, c.kernel, c.change(), c.change() + 1e-4,
+                   [&c](const std::string& reason) { c.accepted = reason; }});
+  }
+}
+
+void add_metrics(AccuracyReport& r, std::vector<Failing>& all) {
+  for (MetricChange& c : r.changes) {
+    const double by = std::abs(c.after / c.before - 1);
+    if (!std::isfinite(by)) continue;
+    all.push_back({"accuracy", c.entry + " " + c.metric, by, by * (1 + 1e-4),
+                   [&c](const std::string& reason) { c.accepted = reason; }});
+  }
+}
+
+std::vector<Failing> failing(GateResult& r) {
+  std::vector<Failing> all;
+  if (r.time) add_times(*r.time, all);
+  if (r.instructions) {
+    add_counts("instructions", r.instructions->beside_base, all);
+    add_counts("committed", r.instructions->beside_committed, all);
+  }
+  if (r.accuracy) add_metrics(*r.accuracy, all);
+  return all;
+}
+
+}  // namespace
+
+std::vector<Acceptance> acceptable(const GateResult& result, const std::string& base,
+                                   const std::string& reason) {
+  GateResult copy = result;
+  std::vector<Acceptance> all;
+  for (const Failing& f : failing(copy)) {
+    all.push_back({f.layer, f.subject, f.at_most, base, reason});
+  }
+  return all;
+}
+
+void accept(const std::vector<Acceptance>& all, const std::string& base, GateResult& r) {
+  int stale = 0;
+  for (const Acceptance& a : all) stale += a.base != base;
+  if (stale > 0) {
+    r.notes.push_back(
+        fmt::format("{} accepted findings are stale, of another base than {}: they accept nothing",
+                    stale, base.empty() ? "none" : base.substr(0, 12)));
+  }
+  for (const Failing& f : failing(r)) {
+    for (const Acceptance& a : all) {
+      if (a.base != base || !a.covers(f.layer, f.subject, f.by)) continue;
+      f.accept(fmt::format("accepted up to {:+.3g} %: {}", 100 * a.at_most, a.reason));
+    }
+  }
+}
+
+}  // namespace tauext::gate
