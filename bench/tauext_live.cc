@@ -50,8 +50,7 @@ void add_run_flags(CLI::App& app, live::Options& o) {
                  "the loop before all ordinary programs (1 to 99), its memory in RAM")
       ->type_name("[PRIORITY]")
       ->expected(0, 1)
-      ->default_str(std::to_string(Realtime::kUsual))
-      ->check(CLI::Range(1, 99));
+      ->default_str(std::to_string(Realtime::kUsual));
   app.add_option("--speed", o.pace.speed, "simulated seconds in a second")->capture_default_str();
   app.add_flag("--loop", o.pace.again, "begin again at the end");
   app.add_option("--duration", o.pace.duration, "end after so many seconds; 0: never")

@@ -149,16 +149,14 @@ void add_time(CLI::App* sub, Flags& f) {
 }
 
 void add_memory(CLI::App* sub, Flags& f) {
-  sub->add_option("--base-baselines", f.gate.base_committed.baselines, "folder that base committed")
-      ->type_name("FOLDER");
-  sub->add_option("--base-changelog", f.gate.base_committed.changelog, "of base's baselines")
-      ->type_name("FILE");
-  sub->add_option("--changelog", f.gate.changelog, "of these baselines")
-      ->type_name("FILE")
-      ->capture_default_str();
-  sub->add_option("--base-commit", f.base_commit, "its hash, for which findings are accepted");
   sub->add_option("--accept", f.accept, "accept what fails, as it is, and say why")
       ->type_name("REASON");
+  // what ci/gate_commits knows of the two commits; the help is full
+  const auto add = [&](const char* name, std::string& to) { sub->add_option(name, to)->group(""); };
+  add("--base-baselines", f.gate.base_committed.baselines);
+  add("--base-changelog", f.gate.base_committed.changelog);
+  add("--changelog", f.gate.changelog);
+  add("--base-commit", f.base_commit);
 }
 
 // each of these judges one layer or all of them
