@@ -75,7 +75,7 @@ std::string format_acceptances(std::vector<Acceptance> all) {
   std::string text = fmt::format("{}\n{}\n", kHeader, kColumns);
   for (const Acceptance& a : all) {
     text +=
-        fmt::format("{}\t{}\t{:.4g}\t{}\t{}\n", a.layer, a.subject, a.at_most, a.base, a.reason);
+        fmt::format("{}\t{}\t{:.9g}\t{}\t{}\n", a.layer, a.subject, a.at_most, a.base, a.reason);
   }
   return text + kEnd + "\n";
 }

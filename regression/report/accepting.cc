@@ -21,7 +21,9 @@ void add_times(TimeReport& t, std::vector<Failing>& all) {
   for (KernelTime& k : t.kernels) {
     const auto add = [&](const char* layer, TimeVerdict& v) {
       if (v.verdict != Verdict::kFail) return;
-      all.push_back({layer, k.kernel, v.surely, v.high - 1, [&v](const std::string& reason) {
+      // another day's machine may say a tenth more
+      const double at_most = v.high - 1 + 0.1 * (v.ratio - 1);
+      all.push_back({layer, k.kernel, v.surely, at_most, [&v](const std::string& reason) {
                        v.verdict = Verdict::kAccepted;
                        v.why = reason;
                      }});

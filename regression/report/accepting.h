@@ -11,7 +11,7 @@
 namespace tauext::gate {
 
 /// Each finding that fails and has a size, as it would be accepted: a time by the upper end of its
-/// interval, all else by what it is. Not what is new or gone, nor a step that waits.
+/// interval and a tenth, all else by what it is. Not what is new or gone, nor a step that waits.
 std::vector<Acceptance> acceptable(const GateResult& result, const std::string& base,
                                    const std::string& reason);
 
