@@ -22,6 +22,7 @@ class AnyArm final : public Robot {
   std::vector<std::string> detectors() const override { return {"threshold"}; }
   std::vector<std::string> tunable() const override { return {}; }
   std::vector<std::string> calibratable() const override { return detectors(); }
+  std::vector<std::string> trained_parts(std::string_view) const override { return detectors(); }
   std::vector<FieldHelp> estimator_fields(std::string_view) const override { return {}; }
   std::vector<FieldHelp> detector_fields(std::string_view) const override { return {}; }
   std::unique_ptr<Runner> runner(std::string_view, std::string_view, const Trace&,
