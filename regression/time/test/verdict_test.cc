@@ -72,7 +72,7 @@ TEST(Judge, PassesBelowTwoPercentAtItsUpperBound) {
 }
 
 TEST(Judge, IsContentWithThreePercentWhereLayoutsDiffer) {
-  const auto wide = [](int n) { return around(n, 1.01, 0.04); };
+  const auto wide = [](int n) { return around(n, 1.01, 0.03); };
   EXPECT_EQ(verdict(wide(16)), Verdict::kInconclusive);
   EXPECT_EQ(verdict(wide(32)), Verdict::kPass) << "at most 2.5 %";
   EXPECT_EQ(verdict(around(32, 1.016, 0.03)), Verdict::kInconclusive) << "the mean is too large";
