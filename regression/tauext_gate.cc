@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Judges a build of estimators beside another one and beside what was committed.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <ctime>
+#include <algorithm>
 #include <filesystem>
-#include <regex>
 #include <stdexcept>
 
 #include "bench/program/program.h"
@@ -17,6 +15,7 @@
 #include "regression/counts/instructions.h"
 #include "regression/host/child.h"
 #include "regression/host/ending.h"
+#include "regression/remember.h"
 #include "regression/report/explain.h"
 #include "regression/report/layers.h"
 #include "regression/report/report.h"
@@ -31,6 +30,7 @@ struct Flags {
   GateOptions gate;
   UpdateOptions update;
   CalibrateOptions calibrate;
+  HistoryFlags history;
   std::string junit, markdown, base_json, head_json, subject, accept, base_commit;
   bool all = false;
 };
@@ -49,6 +49,12 @@ void require_writable(const Flags& f) {
   }
 }
 
+void require_plugin(const std::string& path, const char* flag = "--head") {
+  if (!path.empty()) return;
+  throw std::invalid_argument(fmt::format(
+      "no tauext_plugin.so beside this program: build that target, or name one by {}", flag));
+}
+
 // a terminal shows what is going on, a log gets a line for each layer
 std::function<void(const std::string&)> shown_by(Progress& progress) {
   if (progress.shown()) return [&progress](const std::string& what) { progress.show(what); };
@@ -59,14 +65,23 @@ std::function<void(const std::string&)> shown_by(Progress& progress) {
   };
 }
 
-int check(Flags& f) {
+int check(const CLI::App& sub, Flags& f) {
   if (!(f.gate.period > 0)) throw std::invalid_argument("--period: more than 0 s");
+  if (sub.get_option_no_throw("--accept") && sub.count("--accept") > 0) {
+    if (f.accept.empty()) throw std::invalid_argument("--accept: say why");
+    if (f.base_commit.empty()) {
+      throw std::invalid_argument(
+          "--accept: beside which --base-commit? ci/gate --accept knows it");
+    }
+  }
+  if (f.gate.time || f.gate.instructions) require_plugin(f.gate.head);
   require_writable(f);
+  read_acceptances(accepted_path(f.gate.baselines));  // no run for a file that is broken
   Progress progress("gate");
   f.gate.progress = shown_by(progress);
   GateResult r = run_layers(f.gate);
   progress.clear();
-  accept_findings(f.gate.baselines, f.base_commit, f.accept, r);
+  accept_findings(f.gate, f.base_commit, f.accept, r);
   fmt::print("{}", printable(format_terminal(r, f.all)));
   write(f.junit, format_junit(r));
   write(f.markdown, format_markdown(r));
@@ -76,7 +91,6 @@ int check(Flags& f) {
 }
 
 int update(Flags& f) {
-  f.update.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   const UpdateResult r = update_baselines(f.update);
   fmt::print("{}", r.text);
   return r.code;
@@ -87,6 +101,7 @@ int calibrate(const CLI::App& sub, Flags& f) {
     throw std::invalid_argument(
         "--slowdowns: nothing is injected where --head says what is slower");
   }
+  require_plugin(f.calibrate.base, "--base");
   if (f.calibrate.trials < 1) throw std::invalid_argument("--trials: at least 1");
   Progress progress("trying");
   f.calibrate.progress = progress.callback();
@@ -103,14 +118,7 @@ std::string sibling(const std::string& name) {
 }
 
 CLI::Option* add_regex(CLI::App* sub, const char* name, std::string& to, const char* help) {
-  return sub->add_option(name, to, help)->type_name("REGEX")->check([](const std::string& text) {
-    try {
-      std::regex{text};
-      return std::string();
-    } catch (const std::regex_error& e) {
-      return fmt::format("no regular expression: {}", e.what());
-    }
-  });
+  return sub->add_option(name, to, help)->type_name("REGEX")->check(regular_expression);
 }
 
 void add_plugins(CLI::App* sub, Flags& f) {
@@ -210,13 +218,15 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
 }
 
 void add_flags(CLI::App& app, Flags& f) {
-  f.gate.head = f.update.head = f.calibrate.base = sibling("tauext_plugin.so");
-  f.gate.bench = f.update.bench = sibling("tauext-bench");
-  f.gate.baselines = f.update.baselines = "regression/baselines";
+  f.gate.head = f.update.head = f.calibrate.base = f.history.measure.head =
+      sibling("tauext_plugin.so");
+  f.gate.bench = f.update.bench = f.history.measure.bench = sibling("tauext-bench");
+  f.gate.baselines = f.update.baselines = f.history.measure.baselines = "regression/baselines";
   f.gate.changelog = f.update.changelog = "regression/CHANGELOG.md";
   add_judging(app, f);
   add_update(app, f.update);
   add_calibrate(app, f.calibrate);
+  add_history(app, f.history);
   CLI::App* sub = app.add_subcommand("explain", "all that is known of one kernel or entry");
   sub->add_option("subject", f.subject, "<robot>/<kernel> or <robot>/<scenario>/<estimator>")
       ->required();
@@ -229,7 +239,15 @@ int run(const CLI::App& app, Flags& f) {
   const std::string name = sub.get_name();
   if (name == "update") return update(f);
   if (name == "calibrate") return calibrate(sub, f);
-  if (name != "explain") return check(f);
+  if (name == "history") return show_history(f.history);
+  if (name == "append") {
+    require_plugin(f.history.measure.head);
+    Progress progress("gate");
+    f.history.measure.progress = shown_by(progress);
+    return append(f.history);
+  }
+  if (name != "explain") return check(sub, f);
+  if (std::count(f.subject.begin(), f.subject.end(), '/') == 1) require_plugin(f.gate.head);
   fmt::print("{}", explain(f.gate, f.subject));
   return kGood;
 }

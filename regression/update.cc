@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "regression/update.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <regex>
@@ -119,8 +121,8 @@ Changes update_golden(const UpdateOptions& o, Files& files) {
     }
     if (!r.no_baseline.empty()) changes.worse += "  cannot be compared: " + r.no_baseline + "\n";
     for (const MetricChange& c : r.changes) {
-      const std::string line =
-          fmt::format("  {} {}: {:.6g} -> {:.6g}\n", c.entry, c.metric, c.before, c.after);
+      const std::string line = fmt::format("  {} {}: {} -> {}\n", c.entry, c.metric, said(c.before),
+                                           c.change == Change::kGone ? "gone" : said(c.after));
       const bool failed =
           c.change == Change::kNew && c.metric == row_of(Metric::kFailed).key && c.after > 0;
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
@@ -172,7 +174,7 @@ UpdateResult update_baselines(const UpdateOptions& o) {
     return {kGood, "the baselines are as they should be; nothing was written\n"};
   UpdateResult result;
   for (const std::string& name : files.names()) result.text += "wrote " + name + "\n";
-  log += fmt::format("- {}: {}{}\n", o.date, o.reason,
+  log += fmt::format("- {:%Y-%m-%d}: {}{}\n", fmt::gmtime(std::time(nullptr)), o.reason,
                      worse.empty() ? "" : fmt::format(" (worse, accepted: {})", o.accept_worse));
   files.add(o.changelog, log);
   files.commit();

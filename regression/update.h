@@ -17,7 +17,6 @@ struct UpdateOptions {
   std::string accept_worse;      ///< why what is worse is right; empty: nothing may be worse
   std::string head, bench;       ///< plug-in and program; an empty one: its baseline stays
   std::string kernels, entries;  ///< regular expressions: the lines of others stay; empty: all
-  std::string date;              ///< YYYY-MM-DD
 };
 
 /// What was done.

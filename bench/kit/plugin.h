@@ -10,8 +10,9 @@
 extern "C" {
 #endif
 
-/** Changes when this struct does; plug-ins of different numbers are not compared. */
-#define TAUEXT_PLUGIN_ABI 2
+/** Changes when this struct does, or what CMake leaves beside a plug-in; those of different numbers
+ * are not compared. */
+#define TAUEXT_PLUGIN_ABI 3
 
 /** So many steps of an instance, one a sample; begins anew (with a reset) after the last sample,
  * and where a sample's t is 0. */

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -83,6 +84,15 @@ std::string whole_number(const std::string& text) {
   if (error == std::errc() && end == text.data() + text.size()) return "";
   return fmt::format("{} is not a whole number from 0 to {}", text,
                      std::numeric_limits<std::uint64_t>::max());
+}
+
+std::string regular_expression(const std::string& text) {
+  try {
+    std::regex{text};
+    return "";
+  } catch (const std::regex_error& e) {
+    return fmt::format("no regular expression: {}", e.what());
+  }
 }
 
 bool is_terminal(int stream) {

@@ -7,8 +7,10 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "bench/score/degradation.h"
+#include "bench/score/golden.h"
 
 namespace tauext {
 namespace {
@@ -32,12 +34,19 @@ std::string recording_flags(const SuiteOptions& o) {
 
 }  // namespace
 
-std::string record_and_replay(const std::string& name, const SuiteOptions& o) {
-  const std::vector<Entry> all = entries();
+std::string record_and_replay(const std::string& golden, const SuiteOptions& options) {
+  SuiteOptions o = options;
+  std::string name = golden;
+  if (const auto at = name.find(kDegraded); at != std::string::npos) {
+    name.erase(at, std::string_view(kDegraded).size());
+    o.sensors = degraded_sensors();
+    o.sensors.seed = options.sensors.seed;
+  }
+  const std::vector<Entry> all = golden_entries();
   const auto e =
       std::find_if(all.begin(), all.end(), [&](const Entry& x) { return x.name() == name; });
   if (e == all.end()) {
-    throw std::invalid_argument(fmt::format("unknown entry '{}'; see tauext-bench --list", name));
+    throw std::invalid_argument(fmt::format("unknown entry '{}'; see tauext-bench --list", golden));
   }
   if (!o.thresholds.sets.empty()) {
     throw std::invalid_argument("--commands: tauext-record and tauext-replay take no --thresholds");

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <regex>
@@ -23,22 +25,7 @@ std::string text_of(double value) {
   return !std::isfinite(value) ? "never" : fmt::format("{:.17g}", value);
 }
 
-// the suite's, and unless somebody selects, each detector that stands in the studies alone behind
-// the paper's first estimator
-std::vector<Entry> all_entries(const Selection& selection) {
-  std::vector<Entry> all = entries(selection);
-  if (!selection.empty()) return all;
-  std::set<std::string> known;
-  for (const Entry& e : all) known.insert(e.name());
-  for (const auto& robot : robots()) {
-    for (const std::string& d : robot->detectors()) {
-      for (Entry& e : entries({.estimators = {"ekf"}, .detectors = {d}})) {
-        if (known.insert(e.name()).second) all.push_back(std::move(e));
-      }
-    }
-  }
-  return all;
-}
+constexpr const char* kAlsoDegraded[] = {"step", "collision"};  // scenarios of any robot
 
 // by entry, by metric, by seed
 using Table = std::map<std::string, std::map<std::string, std::vector<double>>>;
@@ -53,8 +40,9 @@ class Golden {
       throw std::invalid_argument(
           fmt::format("'{}' is no regular expression: {}", o.filter, e.what()));
     }
-    for (const Entry& e : all_entries(o.selection)) {
-      if (std::regex_search(e.name(), wanted)) groups_[e.group()].push_back(e);
+    for (const Entry& e : golden_entries(o.selection)) {
+      add(e, e.group(), wanted);
+      if (also_degraded(e)) add(e, e.group() + kDegraded, wanted);
     }
     if (groups_.empty()) {
       throw std::invalid_argument(
@@ -74,21 +62,38 @@ class Golden {
   }
 
  private:
-  SuiteOptions options(std::size_t seed) const {
+  // with sensors that somebody asked for there is nothing to add
+  bool own_sensors() const {
+    return !o_.suite.sensors.ideal() || !(o_.suite.model_error == ModelError());
+  }
+  bool also_degraded(const Entry& e) const {
+    const auto* const end = std::end(kAlsoDegraded);
+    return !own_sensors() && std::find(std::begin(kAlsoDegraded), end, e.scenario().name) != end;
+  }
+  void add(const Entry& e, const std::string& group, const std::regex& wanted) {
+    if (std::regex_search(name_in(group, e), wanted)) groups_[group].push_back(e);
+  }
+
+  static bool degraded(const std::string& group) { return group.ends_with(kDegraded); }
+  static std::string name_in(const std::string& group, const Entry& e) {
+    return group + e.name().substr(e.group().size());
+  }
+
+  SuiteOptions options(const std::string& group, std::size_t seed) const {
     SuiteOptions s = o_.suite;
-    if (s.sensors.ideal()) s.sensors = golden_sensors();
+    if (s.sensors.ideal()) s.sensors = degraded(group) ? degraded_sensors() : golden_sensors();
     s.sensors.seed = o_.seeds[seed];
     return s;
   }
 
   void score(const std::pair<std::string, std::size_t>& job) {
-    Suite suite(options(job.second));
+    Suite suite(options(job.first, job.second));
     for (const Entry& e : groups_.at(job.first)) {
       Score score = suite.score(e);
       score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
       const std::lock_guard lock(mutex_);
       const auto put = [&](const std::string& key, double value) {
-        auto& values = table_[e.name()][key];
+        auto& values = table_[name_in(job.first, e)][key];
         values.resize(o_.seeds.size(), std::nan(""));
         values[job.second] = value;
       };
@@ -106,19 +111,19 @@ class Golden {
   }
 
   std::string text() const {
-    const Sensors sensors = options(0).sensors;
     std::set<std::string> contacts;
     for (const auto& [group, rivals] : groups_) {
-      const Entry& e = rivals.front();
-      if (e.scenario().has_obstacle()) {
-        contacts.insert(e.robot().name() + "/" + e.scenario().name);
-      }
+      if (rivals.front().scenario().has_obstacle()) contacts.insert(group);
     }
+    const auto described = [&](const std::string& group) {
+      return describe({options(group, 0).sensors, o_.suite.model_error});
+    };
     std::string out = fmt::format(
-        "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n# contacts: {}\n# built: {}\n"
+        "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n{}# contacts: {}\n# built: {}\n"
         "entry\tmetric\tseed {}\n",
-        mujoco_version(), describe({sensors, o_.suite.model_error}), fmt::join(contacts, " "),
-        o_.built, fmt::join(o_.seeds, "\tseed "));
+        mujoco_version(), described(""),
+        own_sensors() ? "" : fmt::format("# degraded: {}\n", described(kDegraded)),
+        fmt::join(contacts, " "), o_.built, fmt::join(o_.seeds, "\tseed "));
     for (const auto& [entry, metrics] : table_) {
       for (const auto& [metric, values] : metrics) {
         std::vector<std::string> texts;
@@ -143,6 +148,38 @@ Sensors golden_sensors() {
   s.velocity_noise = 1e-3;
   s.encoder_step = 4.8e-5;
   return s;
+}
+
+Sensors degraded_sensors() {
+  Sensors s;
+  s.velocity_noise = 1e-2;  // [rad/s] ten times that of a good one
+  s.encoder_step = 4e-4;    // [rad] 14 bits: 2 pi / 2^14
+  // [1], [N], [1] of full scale, [1] of full scale, [N], [N]
+  s.loadcell = {.scale = 1.01,
+                .offset = 2,
+                .hysteresis = 0.002,
+                .nonlinearity = 0.002,
+                .noise = 1,
+                .step = 0.5};
+  s.latency = 1e-3;  // [s] a sample
+  s.jitter = 2e-4;   // [s] a fifth of one
+  s.dropped = s.repeated = 0.01;
+  return s;
+}
+
+std::vector<Entry> golden_entries(const Selection& selection) {
+  std::vector<Entry> all = entries(selection);
+  if (!selection.empty()) return all;
+  std::set<std::string> known;
+  for (const Entry& e : all) known.insert(e.name());
+  for (const auto& robot : robots()) {
+    for (const std::string& d : robot->detectors()) {
+      for (Entry& e : entries({.estimators = {"ekf"}, .detectors = {d}})) {
+        if (known.insert(e.name()).second) all.push_back(std::move(e));
+      }
+    }
+  }
+  return all;
 }
 
 std::string golden_metrics(const GoldenOptions& o) {

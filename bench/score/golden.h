@@ -24,17 +24,29 @@ struct GoldenOptions {
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
 };
 
+/// What an entry's scenario has behind its name where its sensors are the degraded ones.
+inline constexpr const char* kDegraded = "@degraded";
+
 /// Sensors of a good robot, 1e-3 rad/s of velocity noise and an encoder of 17 bits: with ideal ones
 /// nothing would depend on the seed, and a paired comparison needs seeds.
 Sensors golden_sensors();
+
+/// Sensors of a poor one: ten times the noise, 14 bits, a loadcell with all its faults, late and
+/// lost samples.
+Sensors degraded_sensors();
+
+/// The entries of golden metrics: the suite's, and unless somebody selects, each detector that
+/// stands in the studies alone behind the paper's first estimator.
+std::vector<Entry> golden_entries(const Selection& selection = {});
 
 /// Lines "# name: value" of what the numbers depend on, then a line for each entry and metric,
 /// sorted: entry, metric and a value for each seed, apart by tabs. Values are %.17g, "never" where
 /// the metric has none or is no number. "# contacts: .." names the scenarios in which something
 /// stands in the arm's way. The metrics are those that the list calls gated
-/// (bench/score/metric_list.h), of the worst joint and, where the list says so, of each. Unless
-/// somebody selects, every detector is there behind the EKF, those of the studies too. The text
-/// does not depend on the number of threads.
+/// (bench/score/metric_list.h), of the worst joint and, where the list says so, of each. Scenarios
+/// step and collision are there a second time with degraded_sensors(), named with kDegraded behind
+/// them, unless the options have sensors or a model error of their own. The text does not depend on
+/// the number of threads.
 /// @throws std::invalid_argument for a filter that matches nothing or is no regular expression, and
 /// for no seed
 std::string golden_metrics(const GoldenOptions& options);

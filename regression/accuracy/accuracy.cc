@@ -29,13 +29,6 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// a metric that is not in our list is better the less it is
-const MetricRow& known(const std::string& metric) {
-  static constexpr MetricRow kUnknown{};
-  const MetricRow* row = find_metric(metric);
-  return row != nullptr ? *row : kUnknown;
-}
-
 double sign_of(const std::string& metric) {
   return larger_is_better(metric) ? -1 : 1;
 }
@@ -74,15 +67,15 @@ double standard_errors(const std::vector<double>& d) {
 // "never" is worse than every value, unless it is the best; one seed's step over that edge is no
 // verdict
 Change judge(const std::string& metric, const Paired& p, std::size_t seeds) {
-  if (known(metric).better == Better::kNeither) return Change::kChanged;
+  if (metric_row(metric).better == Better::kNeither) return Change::kChanged;
   const int lost = p.lost - p.gained;
-  if (!known(metric).is(MetricRow::kNeverIsBest) &&
+  if (!metric_row(metric).is(MetricRow::kNeverIsBest) &&
       2 * static_cast<std::size_t>(std::abs(lost)) > seeds) {
     return lost > 0 ? Change::kWorse : Change::kBetter;
   }
   if (p.worse.empty()) return Change::kChanged;
   const double m = mean(p.worse);
-  if (known(metric).is(MetricRow::kOneSeedIsWorse) && m > 0) return Change::kWorse;
+  if (metric_row(metric).is(MetricRow::kOneSeedIsWorse) && m > 0) return Change::kWorse;
   if (std::abs(m) <= kWorseBy * std::abs(mean(p.before))) return Change::kChanged;
   if (standard_errors(p.worse) < kStandardErrors) return Change::kChanged;
   return m > 0 ? Change::kWorse : Change::kBetter;
@@ -122,12 +115,14 @@ bool same_values_in_another_order(const GoldenLine& a, const GoldenLine& b) {
 
 // why two files cannot be compared; "" if they can
 std::string incomparable(const Golden& baseline, const Golden& head) {
-  for (const char* name : {"mujoco", "sensors"}) {
+  for (const std::string name : {"mujoco", "sensors", "degraded"}) {
     const auto value = [&](const Golden& g) {
       const auto it = g.header.find(name);
       return it == g.header.end() ? std::string("unknown") : it->second;
     };
     if (value(baseline) == value(head)) continue;
+    // files of before there were any
+    if (name == "degraded" && !baseline.header.contains(name)) continue;
     return fmt::format("the baseline was made with {} '{}', this is '{}'", name, value(baseline),
                        value(head));
   }
@@ -137,7 +132,7 @@ std::string incomparable(const Golden& baseline, const Golden& head) {
 // what may change in a line; a contact, of which head's program speaks, lets it grow
 double tolerance_of(const std::pair<std::string, std::string>& key, const Golden& head) {
   const auto contacts = head.header.find("contacts");
-  const double tolerance = known(key.second).tolerance;
+  const double tolerance = metric_row(key.second).tolerance;
   if (contacts == head.header.end()) return tolerance;
   std::istringstream words(contacts->second);
   for (std::string scenario; words >> scenario;) {
@@ -184,8 +179,18 @@ bool worse_first(const MetricChange& a, const MetricChange& b) {
 
 }  // namespace
 
+const MetricRow& metric_row(const std::string& metric) {
+  static constexpr MetricRow kUnknown{};
+  const MetricRow* row = find_metric(metric.substr(0, metric.find("_joint")));
+  return row != nullptr ? *row : kUnknown;
+}
+
+std::string said(double value) {
+  return std::isnan(value) ? "never" : fmt::format("{:.6g}", value);
+}
+
 bool larger_is_better(const std::string& metric) {
-  return known(metric).better == Better::kMore;
+  return metric_row(metric).better == Better::kMore;
 }
 
 int AccuracyReport::worse() const {

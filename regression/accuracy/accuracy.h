@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/score/metric_list.h"
 #include "regression/accuracy/golden_file.h"
 
 namespace tauext::gate {
@@ -49,6 +50,13 @@ AccuracyReport compare_accuracy(const Golden& baseline, const Golden& head,
 /// T0: the lines of `again`, which has some of the seeds of `once`, that are not the same to the
 /// last bit, as "entry metric, seed n: a then b".
 std::vector<std::string> not_repeated(const Golden& once, const Golden& again);
+
+/// A metric's row, that of all joints for one joint's; one of its own, less is better, if nobody
+/// knows it.
+const MetricRow& metric_row(const std::string& metric);
+
+/// A metric's value for people: six digits, or "never".
+std::string said(double value);
 
 /// Whether larger is better, by bench/score/metric_list.h.
 bool larger_is_better(const std::string& metric);

@@ -63,6 +63,12 @@ void read_metric(const std::string& line, const At& at, Golden& g) {
   if (!g.lines.emplace(std::pair(f[0], f[1]), std::move(l)).second) at.fail("is there twice");
 }
 
+std::string what_else(const std::string& line) {
+  return line.starts_with("# tauext golden metrics 1")
+             ? "golden metrics of an older version: remove the file, and --update writes it anew"
+             : fmt::format("no golden metrics: it must be '{}'", kHeader);
+}
+
 }  // namespace
 
 Golden parse_golden(const std::string& text, const std::string& path) {
@@ -75,7 +81,7 @@ Golden parse_golden(const std::string& text, const std::string& path) {
     const At at{path, ++number};
     const auto colon = line.find(": ");
     if (number == 1) {
-      if (line != kHeader) at.fail(fmt::format("no golden metrics: it must be '{}'", kHeader));
+      if (line != kHeader) at.fail(what_else(line));
     } else if (line == kEnd) {
       end = true;
     } else if (line.starts_with("# ") && colon != std::string::npos) {

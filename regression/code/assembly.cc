@@ -30,7 +30,7 @@ std::string_view operands(std::string_view line) {
 bool says_nothing(std::string_view word) {
   return word.empty() || word[0] == '#' || word.starts_with(".cfi_") ||
          one_of(word, {".file", ".loc", ".ident", ".type", ".size", ".weak", ".hidden", ".globl",
-                       ".global", ".local", ".addrsig", ".addrsig_sym"});
+                       ".global", ".local", ".set", ".addrsig", ".addrsig_sym"});
 }
 
 }  // namespace
@@ -59,6 +59,12 @@ std::string_view label_of(std::string_view line) {
   return label.find_first_of(" \t\"#") == std::string_view::npos ? label : std::string_view();
 }
 
+std::string_view function_of(std::string_view line) {
+  if (first_word(line) != ".type") return {};
+  const std::string_view what = operands(line), name = until_comma(what);
+  return what.substr(name.size()).find("function") == what.npos ? std::string_view() : name;
+}
+
 // reads line by line, and knows which block a line belongs to
 class Assembly::Reader {
  public:
@@ -69,8 +75,8 @@ class Assembly::Reader {
     if (!label.empty()) return begin(label, line);
     const std::string_view word = first_word(line);
     if (one_of(word, {".section", ".text", ".data", ".bss"})) return section(word, operands(line));
-    if (word == ".type" && line.find("function") != std::string_view::npos) {
-      functions_.insert(until_comma(operands(line)));
+    if (const std::string_view function = function_of(line); !function.empty()) {
+      functions_.insert(function);
     }
     if (word == ".comm") add(until_comma(operands(line)), true);
     if (word == ".set") alias(operands(line));
@@ -112,13 +118,9 @@ class Assembly::Reader {
 
   // .set new, old
   void alias(std::string_view what) {
-    const std::string_view name = until_comma(what);
-    const auto comma = what.find(',');
-    if (comma == std::string_view::npos) return;
-    std::string_view old = what.substr(comma + 1);
+    std::string_view old = what.substr(std::min(what.find(',') + 1, what.size()));
     old.remove_prefix(std::min(old.find_first_not_of(" \t"), old.size()));
-    const auto it = to_.by_label_.find(old);
-    if (it != to_.by_label_.end()) to_.by_label_[name] = it->second;
+    to_.aliases_[until_comma(what)] = old;
   }
 
   Assembly& to_;
@@ -131,16 +133,32 @@ class Assembly::Reader {
 
 Assembly::Assembly(std::string text, const std::string& path)
     : text_(std::make_unique<std::string>(std::move(text))) {
+  // the last that a compiler says
+  if (!text_->ends_with('\n') || text_->find(".note.GNU-stack") == std::string::npos) {
+    throw std::runtime_error(path + ": cut off, or no assembly of g++ or clang++; build it anew");
+  }
   Reader reader(*this);
   for (const std::string_view line : lines_of(*text_)) reader.read(line);
   if (std::none_of(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.function; })) {
-    throw std::runtime_error(path + ": no assembly, or none with a function");
+    throw std::runtime_error(path + ": holds no function");
   }
 }
 
 const Block* Assembly::find(std::string_view label) const {
   const auto it = by_label_.find(label);
   return it == by_label_.end() ? nullptr : &blocks_[it->second];
+}
+
+Assembly::Meant Assembly::meant(std::string_view name) const {
+  Meant m{name, ""};
+  // no alias is longer a way than there are aliases; more would be a circle
+  std::size_t steps = 0;
+  for (auto it = aliases_.find(name); it != aliases_.end() && steps++ < aliases_.size();
+       it = aliases_.find(m.label)) {
+    const auto end = std::min(it->second.find_first_of("+- \t"), it->second.size());
+    m = {it->second.substr(0, end), std::string(it->second.substr(end)) + m.offset};
+  }
+  return by_label_.contains(m.label) ? m : Meant();
 }
 
 }  // namespace tauext::gate

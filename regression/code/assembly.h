@@ -24,7 +24,7 @@ struct Block {
 /// As g++ and clang++ write it (-S) for a processor's own syntax.
 class Assembly {
  public:
-  /// @throws std::runtime_error naming the path, if there is no function in it
+  /// @throws std::runtime_error naming the path: cut off, or no function in it
   Assembly(std::string text, const std::string& path);
   Assembly(const Assembly&) = delete;
   Assembly& operator=(const Assembly&) = delete;
@@ -35,12 +35,20 @@ class Assembly {
   /// The block that a label stands in, whether it begins it or not; nullptr if it is in none.
   const Block* find(std::string_view label) const;
 
+  /// What a name is, by .set or by itself: a label, "" if it is none, and an offset like "+24".
+  struct Meant {
+    std::string_view label;
+    std::string offset;
+  };
+  Meant meant(std::string_view name) const;
+
  private:
   class Reader;
 
   std::unique_ptr<std::string> text_;
   std::vector<Block> blocks_;
   std::map<std::string_view, std::size_t> by_label_;
+  std::map<std::string_view, std::string_view> aliases_;  // and the expressions that they are
 };
 
 /// Lines of a text, without their ends.
@@ -51,6 +59,9 @@ std::string_view first_word(std::string_view line);
 
 /// "x" of "x:", "" of any other line.
 std::string_view label_of(std::string_view line);
+
+/// "f" of ".type f, @function", "" of any other line.
+std::string_view function_of(std::string_view line);
 
 /// Calls visit(name) for all that could be the name of a label in a line of assembly, and
 /// other(text) for what is between; registers are none.

@@ -49,8 +49,8 @@ std::string laid_out(const std::string& assembly, std::uint64_t seed, const Layo
   };
   for (const std::string_view line : lines_of(assembly)) {
     const std::string_view word = first_word(line), label = label_of(line);
-    if (word == ".type" && line.find("function") != std::string_view::npos) {
-      functions.insert(line.substr(7, line.find_first_of(", ", 7) - 7));  // "\t.type\tNAME, .."
+    if (const std::string_view function = function_of(line); !function.empty()) {
+      functions.insert(function);
     }
     if (functions.contains(label)) {
       const auto it = names.find(label);

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "mjcf/trace/input_file.h"
 #include "regression/host/child.h"
@@ -17,31 +17,55 @@
 namespace tauext::gate {
 namespace {
 
-// a line of a block with every label by its number, in the order of their first mention
+// what a name is: a label, nullptr and "" if it is none, of a unit, and so far behind it
+struct Place {
+  std::pair<const Assembly*, std::string_view> label = {};
+  std::string offset = {};
+};
+
+Place place_in(const Assembly& unit, std::string_view name) {
+  auto [label, offset] = unit.meant(name);
+  return label.empty() ? Place() : Place{{&unit, label}, std::move(offset)};
+}
+
+// Text of blocks with every label by its number, in the order of their first mention; the places of
+// labels that nothing mentions are not said, since they are the debugger's and the unwinder's.
 class Namer {
  public:
-  template <class Known>
-  void write(std::string_view line, std::string& to, Known&& known) {
-    for_each_name(
-        line,
-        [&](std::string_view name) {
-          if (!known(name)) return void(to.append(name));
-          to += fmt::format("<{}>", numbers_.try_emplace(name, numbers_.size()).first->second);
-        },
-        [&](std::string_view text) { to.append(text); });
+  // resolve(name) says which place a name is, and is called for each mention
+  template <class Resolve>
+  void mention(const Block& block, Resolve&& resolve) {
+    for (const std::string_view line : block.lines) {
+      if (!label_of(line).empty()) continue;
+      const auto mention = [&](std::string_view name) {
+        if (const Place place = resolve(name); place.label.first) {
+          numbers_.try_emplace(place.label, numbers_.size());
+        }
+      };
+      for_each_name(line, mention, [](std::string_view) {});
+    }
+  }
+
+  template <class Resolve>
+  void write(const Block& block, std::string& to, Resolve&& resolve) const {
+    for (const std::string_view line : block.lines) {
+      const std::string_view label = label_of(line);
+      if (!label.empty() && !numbers_.contains(resolve(label).label)) continue;
+      const auto say = [&](std::string_view name) {
+        const Place place = resolve(name);
+        const auto it = numbers_.find(place.label);
+        if (it == numbers_.end()) return void(to.append(name));
+        to += fmt::format("<{}{}>", it->second, place.offset);
+      };
+      for_each_name(line, say, [&](std::string_view text) { to.append(text); });
+      to += '\n';
+    }
     to += '\n';
   }
 
  private:
-  std::map<std::string_view, std::size_t> numbers_;
+  std::map<std::pair<const Assembly*, std::string_view>, std::size_t> numbers_;
 };
-
-// labels that nothing but a debugger or an unwinder asks for
-bool of_no_use(std::string_view label) {
-  return label.starts_with(".LF") || label.starts_with(".LEH") || label.starts_with(".LV") ||
-         label.starts_with(".LB") || label.starts_with(".LHOT") || label.starts_with(".LCOLD") ||
-         label.starts_with(".LLSDA") || label.starts_with(".Ltmp");
-}
 
 }  // namespace
 
@@ -53,9 +77,15 @@ PluginCode::PluginCode(const std::string& plugin) : path_(plugin) {
   }
   const std::string link = read_whole(folder + "/link");
   for (const std::string_view line : lines_of(link)) link_.emplace_back(line);
-  if (link_.size() < 3) throw std::runtime_error(folder + "/link: cut off");
-  folder_ = link_.front();
-  link_.erase(link_.begin());
+  if (link_.size() < 4) throw std::runtime_error(folder + "/link: cut off; build the plug-in anew");
+  // what is judged by its assembly must be made of it
+  const std::string hash = run_child({"sha256sum", plugin});
+  if (hash.find(link_.front()) == std::string::npos) {
+    throw std::runtime_error(folder +
+                             ": is of another build than the plug-in beside it; copy both");
+  }
+  folder_ = link_[1];
+  link_.erase(link_.begin(), link_.begin() + 2);
   for (const std::string& argument : link_) {
     if (argument != fmt::format("@{}", units_.size())) continue;
     const std::string path = fmt::format("{}/{}.s", folder, units_.size());
@@ -65,34 +95,38 @@ PluginCode::PluginCode(const std::string& plugin) : path_(plugin) {
 }
 
 std::string PluginCode::reached(const std::string& function) const {
-  using Place = std::pair<const Assembly*, const Block*>;
-  const auto find = [&](const Assembly& from, std::string_view name) -> Place {
-    if (const Block* own = from.find(name)) return {&from, own};
-    if (name.starts_with(".L")) return {};
-    for (const Assembly& unit : units_) {
-      if (const Block* other = unit.find(name)) return {&unit, other};
+  const auto find = [&](const Assembly& from, std::string_view name) {
+    Place place = place_in(from, name);
+    if (name.starts_with(".L")) return place;
+    for (std::size_t i = 0; i < units_.size() && !place.label.first; ++i) {
+      place = place_in(units_[i], name);
     }
-    return {};
+    return place;
   };
-  std::deque<Place> to_do = {find(units_.front(), function)};
-  if (!to_do.front().second) {
+  if (!find(units_.front(), function).label.first) {
     throw std::runtime_error(fmt::format("{}: {} is not in its assembly", path_, function));
   }
-  std::set<const Block*> seen = {to_do.front().second};
-  std::map<const Assembly*, Namer> namers;
+  Namer namer;
+  std::set<const Block*> seen;
+  std::vector<std::pair<const Assembly*, const Block*>> places;  // and in whose words they are
+  bool all_known = true;
+  const auto reach = [&](const Assembly& from, std::string_view name) {
+    const Place place = find(from, name);
+    const auto [unit, label] = place.label;
+    const Block* const block = unit ? unit->find(label) : nullptr;
+    if (block && seen.insert(block).second) places.emplace_back(unit, block);
+    all_known &= block ? !block->writable : !name.starts_with(".L");
+    return place;
+  };
+  reach(units_.front(), function);
+  for (std::size_t i = 0; i < places.size() && all_known; ++i) {
+    const auto [unit, block] = places[i];
+    namer.mention(*block, [&, unit = unit](std::string_view name) { return reach(*unit, name); });
+  }
+  if (!all_known) return "";
   std::string out;
-  for (; !to_do.empty(); to_do.pop_front()) {
-    const auto [unit, block] = to_do.front();
-    if (block->writable) return "";
-    for (const std::string_view line : block->lines) {
-      if (of_no_use(label_of(line))) continue;
-      namers[unit].write(line, out, [&, unit = unit](std::string_view name) {
-        const Place place = find(*unit, name);
-        if (place.second && seen.insert(place.second).second) to_do.push_back(place);
-        return place.second != nullptr;
-      });
-    }
-    out += '\n';
+  for (const auto& [unit, block] : places) {
+    namer.write(*block, out, [&, unit = unit](std::string_view name) { return find(*unit, name); });
   }
   return out;
 }
@@ -100,14 +134,12 @@ std::string PluginCode::reached(const std::string& function) const {
 std::map<std::string, std::string> PluginCode::shapes() const {
   std::map<std::string, std::string> shapes;
   for (const Assembly& unit : units_) {
+    const auto find = [&](std::string_view name) { return place_in(unit, name); };
     for (const Block& block : unit.blocks()) {
       if (!block.function) continue;
       Namer namer;
-      std::string& shape = shapes[std::string(block.name)];
-      for (const std::string_view line : block.lines) {
-        if (of_no_use(label_of(line))) continue;
-        namer.write(line, shape, [&](std::string_view name) { return unit.find(name) != nullptr; });
-      }
+      namer.mention(block, find);
+      namer.write(block, shapes[std::string(block.name)], find);
     }
   }
   return shapes;
@@ -140,7 +172,13 @@ void PluginCode::lay_out(std::uint64_t seed, const LayoutNames& names,
   const TemporaryFolder work;
   const auto run = [&](std::vector<std::string> argv) {
     argv.insert(argv.begin(), {"env", "--chdir=" + folder_});
-    run_child(argv);
+    try {
+      run_child(argv);
+    } catch (const std::runtime_error&) {  // it has said why
+      throw std::runtime_error(fmt::format(
+          "{}.code/: {} cannot assemble and link it in {}, as its link says; build it here anew",
+          path_, link_.front(), folder_));
+    }
   };
   std::vector<std::string> link = link_;
   for (std::size_t i = 0; i < units_.size(); ++i) {

@@ -23,7 +23,7 @@ class PluginCode {
   /// and what these do, with names that say nothing of how they were chosen: equal where two
   /// functions do the same by the same instructions in the same order. Functions of other libraries
   /// are there by name alone. "" where memory is reached that can change while the program runs, so
-  /// that nobody knows what a call through it calls.
+  /// that nobody knows what a call through it calls, or a local label that is nowhere.
   /// @throws std::runtime_error if there is no such function
   std::string reached(const std::string& function) const;
 

@@ -19,23 +19,34 @@ namespace {
 constexpr const char* kHeader = "# tauext instruction counts 1";
 constexpr const char* kEnd = "# end";
 
+constexpr std::size_t kGainsShown = 3;
+
 // the functions that execute most more than before, the most first
 std::vector<std::string> gains(const std::map<std::string, std::uint64_t>& was,
                                const std::map<std::string, std::uint64_t>& is) {
-  std::vector<std::pair<double, std::string>> all;
+  std::vector<std::pair<std::int64_t, std::string>> all;
   for (const auto& [function, n] : is) {
     const auto f = was.find(function);
-    const double gain =
-        static_cast<double>(n) - (f == was.end() ? 0 : static_cast<double>(f->second));
-    if (gain > 0) all.emplace_back(gain / kCountedSteps, function);
+    const auto gain = static_cast<std::int64_t>(n - (f == was.end() ? 0 : f->second));
+    if (gain > 0) all.emplace_back(gain, function);
   }
   std::sort(all.rbegin(), all.rend());
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 3); ++i) {
-    lines.push_back(
-        fmt::format("{:+.1f} a step in {:.100}", all[i].first, short_name(all[i].second)));
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < std::min(all.size(), kGainsShown); ++i) {
+    texts.push_back(
+        fmt::format("{:+.1f} a step in {:.100}", a_step(all[i].first), short_name(all[i].second)));
   }
-  return lines;
+  return texts;
+}
+
+// the lines that changed most, both ways, as a sum would else not be theirs
+std::vector<std::string> gains(const LineCounts& was, const LineCounts& is) {
+  std::vector<std::string> texts;
+  for (const LineChange& c : changed_lines(was, is)) {
+    if (texts.size() == kGainsShown) break;
+    texts.push_back(fmt::format("{:+.1f} a step at {}:{}", a_step(c.by), c.file, c.line));
+  }
+  return texts;
 }
 
 // a line of the key, of the columns' names or of a kernel
@@ -56,6 +67,10 @@ void read_line(const std::string& line, const std::string& path, Counts& counts)
 }
 
 }  // namespace
+
+double a_step(std::int64_t instructions) {
+  return static_cast<double>(instructions) / kCountedSteps;
+}
 
 std::uint64_t whole_count(const std::string& text, const std::string& path) {
   std::uint64_t value = 0;
@@ -126,10 +141,13 @@ std::vector<CountChange> compare_counts(const Counts& before, const Counts& afte
     const auto old = before.kernels.find(kernel);
     if (old == before.kernels.end() || old->second == count) continue;
     CountChange c{.kernel = kernel, .before = old->second, .after = count};
-    const auto was = before.functions.find(kernel), is = after.functions.find(kernel);
-    if (was != before.functions.end() && is != after.functions.end()) {
+    const auto take = [&c](const auto& of_before, const auto& of_after) {
+      const auto was = of_before.find(c.kernel), is = of_after.find(c.kernel);
+      if (!c.gained.empty() || was == of_before.end() || is == of_after.end()) return;
       c.gained = gains(was->second, is->second);
-    }
+    };
+    take(before.lines, after.lines);
+    take(before.functions, after.functions);
     changes.push_back(std::move(c));
   }
   return changes;

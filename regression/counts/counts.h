@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "regression/counts/lines.h"
+
 namespace tauext::gate {
 
 /// What a count depends on beside the source, by name: arch, compiler, flags, eigen, glibc, libm,
@@ -24,6 +26,8 @@ struct Counts {
   std::map<std::string, std::uint64_t> kernels;
   /// own instructions by kernel and function; empty if read from a file
   std::map<std::string, std::map<std::string, std::uint64_t>> functions;
+  /// the same by source line, of what was compiled with lines
+  std::map<std::string, LineCounts> lines;
 };
 
 /// <folder>/instructions-<hash of the key>.tsv
@@ -47,14 +51,15 @@ struct CountChange {
     return before == 0 ? (after == 0 ? 0 : 1)
                        : static_cast<double>(after) / static_cast<double>(before) - 1;
   }
-  std::vector<std::string> gained;  ///< "function: +n a step", the most first
-  std::string accepted;             ///< why it is right; "" if nobody says so
+  /// "+n a step at file:line", or "in function" where nobody knows the lines; the most first
+  std::vector<std::string> gained;
+  std::string accepted;  ///< why it is right; "" if nobody says so
 };
 
 /// More than that fails; more than the note is said.
 inline constexpr double kCountLimit = 0.01, kCountNote = 0.002;
 
-/// Kernels of both whose count changed by any amount; `gained` where both know their functions.
+/// Kernels of both whose count changed by any amount; `gained` where both know lines or functions.
 /// @throws std::invalid_argument if the keys differ: such counts are never compared
 std::vector<CountChange> compare_counts(const Counts& before, const Counts& after);
 
@@ -63,6 +68,9 @@ bool too_many(const CountChange& change);
 
 /// A function's name without template arguments and parameters, which fill the screen.
 std::string short_name(const std::string& name);
+
+/// Of one step what so many instructions are of kCountedSteps.
+double a_step(std::int64_t instructions);
 
 /// A count as it stands in a file. @throws std::runtime_error naming the path: no whole number
 std::uint64_t whole_count(const std::string& text, const std::string& path);

@@ -7,6 +7,7 @@
 #include <valgrind/callgrind.h>
 
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,7 @@ constexpr int kWarm = 100;  // steps before the count
 // what glibc chooses its libm by, as this process sees it: under valgrind another processor than
 // outside
 std::string libm_variant() {
+#if defined(__x86_64__)
   std::vector<const char*> has;
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx2")) has.push_back("avx2");
@@ -36,6 +38,9 @@ std::string libm_variant() {
   if (__builtin_cpu_supports("fma4")) has.push_back("fma4");
   if (__builtin_cpu_supports("avx512f")) has.push_back("avx512f");
   return has.empty() ? "sse2" : fmt::format("{}", fmt::join(has, "+"));
+#else
+  return "not chosen by processor";
+#endif
 }
 
 Key key_of(const Plugin& p) {
@@ -62,6 +67,12 @@ std::string function_name(const std::string& text, std::map<std::string, std::st
   std::string& name = known[text.substr(0, close + 1)];
   if (close + 2 < text.size()) name = text.substr(close + 2);
   return name;
+}
+
+// "././estimators/ekf.h", as a mapped prefix makes it
+std::string from_the_top(std::string_view file) {
+  while (file.starts_with("./")) file.remove_prefix(2);
+  return std::string(file);
 }
 
 }  // namespace
@@ -92,13 +103,17 @@ CallgrindDump parse_callgrind(const std::string& text, const std::string& path) 
   constexpr std::string_view kTrigger = "desc: Trigger: Client Request: ";
   CallgrindDump dump;
   std::istringstream in(text);
-  std::map<std::string, std::string> names;
-  std::string function;
+  std::map<std::string, std::string> names, files;
+  std::string function, file;
   bool called = false, total = false;  // the line after calls= is the callee's, not ours
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with(kTrigger)) dump.trigger = line.substr(kTrigger.size());
     if (line.starts_with("fn=")) function = function_name(line.substr(3), names);
     if (line.starts_with("cfn=")) function_name(line.substr(4), names);
+    if (line.starts_with("cfi=") || line.starts_with("cfl=")) function_name(line.substr(4), files);
+    if (line.starts_with("fl=") || line.starts_with("fi=") || line.starts_with("fe=")) {
+      file = function_name(line.substr(3), files);
+    }
     if (line.starts_with("totals: ")) {
       dump.total = whole_count(line.substr(8), path);
       total = true;
@@ -107,7 +122,10 @@ CallgrindDump parse_callgrind(const std::string& text, const std::string& path) 
       called = true;
     } else if (!line.empty() && (std::isdigit(static_cast<unsigned char>(line[0])) ||
                                  line[0] == '+' || line[0] == '-' || line[0] == '*')) {
-      if (!called) dump.functions[function] += whole_count(line.substr(line.rfind(' ') + 1), path);
+      const std::uint64_t count = whole_count(line.substr(line.rfind(' ') + 1), path);
+      if (!called) dump.functions[function] += count;
+      const int number = std::atoi(line.c_str());
+      if (!called && number > 0) dump.lines[{from_the_top(file), number}] += count;
       called = false;
     }
   }
@@ -141,6 +159,7 @@ Counts count_instructions(const std::string& plugin, const std::string& filter) 
     if (!std::regex_search(dump.trigger, wanted) || dump.trigger.empty()) continue;
     counts.kernels[dump.trigger] = dump.total;
     counts.functions[dump.trigger] = dump.functions;
+    counts.lines[dump.trigger] = dump.lines;
   }
   return counts;
 }

@@ -27,6 +27,7 @@ struct CallgrindDump {
   std::string trigger;  ///< the kernel's name, "" if it is not one of ours
   std::uint64_t total = 0;
   std::map<std::string, std::uint64_t> functions;  ///< own instructions
+  LineCounts lines;  ///< own instructions of what has lines, by path from the tree's top
 };
 
 /// @param path to be named in errors

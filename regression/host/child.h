@@ -11,6 +11,9 @@ namespace tauext::gate {
 /// Path of the running program.
 std::string this_program();
 
+/// The processor's name in /proc/cpuinfo, or "unknown processor".
+std::string processor();
+
 /// Runs a program (found in PATH unless it has a slash), its standard error ours.
 /// @return its standard output
 /// @throws std::runtime_error naming the program, if it is not there, fails or is killed

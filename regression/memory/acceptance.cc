@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext::gate {
 namespace {
@@ -19,18 +20,29 @@ constexpr const char* kHeader = "# tauext accepted findings 1";
 constexpr const char* kColumns = "layer\tsubject\tat most\tbase\treason";
 constexpr const char* kEnd = "# end";
 
+constexpr const char* kLayers[] = {kTimeLayer,         kColdLayer,      kLongLayer,
+                                   kInstructionsLayer, kCommittedLayer, kAccuracyLayer};
+
 Acceptance acceptance_of(const std::string& line, const std::string& where) {
   std::istringstream in(line);
-  Acceptance a;
-  std::string at_most;
-  for (std::string* field : {&a.layer, &a.subject, &at_most, &a.base, &a.reason}) {
-    if (!std::getline(in, *field, '\t')) throw std::runtime_error(where + ": 5 columns, please");
+  std::vector<std::string> fields;
+  for (std::string field; std::getline(in, field, '\t');) fields.push_back(field);
+  if (fields.size() != 5) {
+    throw std::runtime_error(
+        fmt::format("{}: {} columns, and must be layer, subject, at most, base and reason", where,
+                    fields.size()));
   }
+  Acceptance a{fields[0], fields[1], 0, fields[3], fields[4]};
+  const std::string& at_most = fields[2];
   const char* const end = at_most.data() + at_most.size();
   const auto [stop, error] = std::from_chars(at_most.data(), end, a.at_most);
   if (error != std::errc() || stop != end || !(a.at_most >= 0 && a.at_most < 1e6)) {
-    throw std::runtime_error(fmt::format("{}: '{}' is no share from 0 on", where, at_most));
+    throw std::runtime_error(
+        fmt::format("{}: at most is '{}', and must be a number like 0.03", where, at_most));
   }
+  find_known(
+      kLayers, "layer", a.layer, [](const char* name) { return name; }, where);
+  if (a.base.empty()) throw std::runtime_error(where + ": the column base is empty");
   return a;
 }
 
@@ -51,7 +63,8 @@ std::vector<Acceptance> read_acceptances(const std::string& path) {
   std::istringstream in(read_whole(path));
   int number = 0;
   bool end = false;
-  for (std::string line; !end && std::getline(in, line);) {
+  for (std::string line; std::getline(in, line);) {
+    if (end) throw std::runtime_error(fmt::format("{}: there are lines behind '{}'", path, kEnd));
     const std::string where = fmt::format("{}: line {}", path, ++number);
     if (number <= 2) {
       const char* const wanted = number == 1 ? kHeader : kColumns;

@@ -8,9 +8,14 @@
 
 namespace tauext::gate {
 
+/// The layers of findings that can be accepted.
+inline constexpr const char *kTimeLayer = "time", *kColdLayer = "cold", *kLongLayer = "long",
+                            *kInstructionsLayer = "instructions", *kCommittedLayer = "committed",
+                            *kAccuracyLayer = "accuracy";
+
 /// One finding that is meant.
 struct Acceptance {
-  std::string layer;    ///< time, cold, long, instructions, committed or accuracy
+  std::string layer;    ///< one of those
   std::string subject;  ///< a kernel, or an entry and a metric
   double at_most = 0;   ///< [1] by how much it is worse; more than that is not accepted
   std::string base;     ///< the commit that it is worse than

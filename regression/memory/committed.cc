@@ -58,16 +58,18 @@ void compare_golden(const std::string& before_path, const std::string& path, Mem
   if (!report.no_baseline.empty()) {
     r.moved.push_back({file, "cannot be compared with base's: " + report.no_baseline, true});
   }
-  std::set<std::pair<std::string, std::string>> said;
+  std::set<std::pair<std::string, std::string>> listed;
   for (const MetricChange& c : report.changes) {
-    said.emplace(c.entry, c.metric);
-    r.moved.push_back({fmt::format("{} {} {}", file, c.entry, c.metric),
-                       fmt::format("{:.6g} -> {:.6g}", c.before, c.after),
-                       c.change == Change::kWorse || c.change == Change::kGone});
+    listed.emplace(c.entry, c.metric);
+    r.moved.push_back(
+        {fmt::format("{} {} {}", file, c.entry, c.metric),
+         fmt::format("{} -> {}", c.change == Change::kNew ? "nothing" : said(c.before),
+                     c.change == Change::kGone ? "gone" : said(c.after)),
+         c.change == Change::kWorse || c.change == Change::kGone});
   }
   for (const auto& [key, line] : head.lines) {
     const auto was = base->lines.find(key);
-    if (was == base->lines.end() || said.contains(key)) continue;
+    if (was == base->lines.end() || listed.contains(key)) continue;
     if (same_bits(was->second.values, line.values)) continue;
     r.moved.push_back(
         {fmt::format("{} {} {}", file, key.first, key.second), "within the tolerance", false});

@@ -15,10 +15,6 @@
 namespace tauext::gate {
 namespace {
 
-std::string value(double x) {
-  return std::isnan(x) ? "never" : fmt::format("{:.6g}", x);
-}
-
 std::vector<Finding> time_findings(const GateResult& r) {
   std::vector<Finding> all;
   if (!r.time) return all;
@@ -131,7 +127,7 @@ Finding metric_finding(const MetricChange& c, const std::string& bench, bool com
   Finding f{"accuracy",
             c.entry + " " + c.metric,
             verdict_of(c.change),
-            fmt::format("{} {}  {} -> {}{}  {}", c.entry, c.metric, value(c.before), value(c.after),
+            fmt::format("{} {}  {} -> {}{}  {}", c.entry, c.metric, said(c.before), said(c.after),
                         std::isfinite(percent) ? fmt::format(" ({:+.3g} %)", percent) : "",
                         words_for(c.change)),
             {}};
@@ -172,6 +168,7 @@ std::vector<Finding> memory_findings(const MemoryReport& r) {
                                                          : Verdict::kNote;
     const char* const words = v == Verdict::kFail         ? "WORSE, and nobody accepted it"
                               : v == Verdict::kNoBaseline ? "moved without a reason"
+                              : m.worse                   ? "worse, accepted"
                                                           : "moved";
     all.push_back({"baselines beside base's",
                    m.what,
@@ -255,7 +252,7 @@ std::vector<std::string> summary(const GateResult& r) {
   if (r.instructions) add_summary(*r.instructions, lines);
   if (r.accuracy && r.accuracy->no_baseline.empty()) {
     lines.push_back(fmt::format(
-        "accuracy      {} metrics: {} changed, {} of them worse by more than {:.1f} %",
+        "accuracy      {} metrics: {} changed, {} of them surely worse by more than {:.1f} %",
         r.accuracy->lines, r.accuracy->changes.size(), r.accuracy->worse(), 100 * kWorseBy));
   }
   if (r.memory) {

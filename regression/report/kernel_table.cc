@@ -96,11 +96,24 @@ std::string why(const GateResult& r, const KernelTime& time) {
   const CountChange* count = change_of(r, time.kernel);
   const bool slower = time.verdict.verdict == Verdict::kFail;
   const bool more = count && too_many(*count);
-  if (slower && more) {
+  if (slower && more && count->change() >= (time.verdict.low - 1) / 3) {
     return fmt::format("more work: {:+.1f} % instructions", 100 * count->change());
+  }
+  if (slower && more) {
+    return fmt::format(
+        "more work, but {:+.1f} % instructions do not explain it: longer waits, too (divides, "
+        "chains "
+        "of dependent steps, memory)",
+        100 * count->change());
   }
   if (slower && !counted(r, time.kernel)) {
     return "whether by more work or by waiting: tauext-gate count tells";
+  }
+  if (slower && count && count->change() < -kCountNote) {
+    return fmt::format(
+        "less work ({:+.1f} % instructions), but slower: longer waits (divides, chains "
+        "of dependent steps, memory)",
+        100 * count->change());
   }
   if (slower) {
     return "the same work, but slower: longer waits (divides, chains of dependent steps, memory) "

@@ -65,7 +65,10 @@ std::string advice(ExitCode code) {
     case kGood:
       return "passed";
     case kSlower:
-      return fmt::format("SLOWER (exit {})", int{code});
+    case kLessAccurate:
+      return fmt::format(
+          "{} (exit {}): if it is meant, call ci/gate or tauext-gate-commits with --accept REASON",
+          code == kSlower ? "SLOWER" : "LESS ACCURATE", int{code});
     case kCouldNotRun:
       return fmt::format("HARNESS ERROR (exit {}): no verdict of this run counts", int{code});
     case kUpdateNeeded:
@@ -75,8 +78,6 @@ std::string advice(ExitCode code) {
           int{code});
     case kInconclusive:
       return fmt::format("INCONCLUSIVE (exit {}): if it is for noise, run it again", int{code});
-    case kLessAccurate:
-      return fmt::format("LESS ACCURATE (exit {})", int{code});
   }
   return "";
 }

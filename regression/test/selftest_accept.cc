@@ -11,9 +11,19 @@ class Accept : public Gate {
  protected:
   int check(const std::string& head, const std::string& commit,
             const std::vector<std::string>& more = {}) {
-    std::vector<std::string> args = {
-        "check", "--base",      plugin("base"), "--head",        plugin(head), "--bench",
-        "",      "--baselines", baselines(),    "--base-commit", commit};
+    std::vector<std::string> args = {"check",
+                                     "--base",
+                                     plugin("base"),
+                                     "--head",
+                                     plugin(head),
+                                     "--bench",
+                                     "",
+                                     "--baselines",
+                                     baselines(),
+                                     "--changelog",
+                                     baselines() + "/log.md",
+                                     "--base-commit",
+                                     commit};
     args.insert(args.end(), more.begin(), more.end());
     return run(args);
   }
@@ -24,11 +34,32 @@ TEST_F(Accept, MakesAFindingGreenAndALargerOneNot) {
   EXPECT_EQ(check("slower", "abc"), kSlower) << text_;
   EXPECT_EQ(check("slower", "abc", {"--accept", "three more stages"}), kGood) << text_;
   EXPECT_TRUE(says("accepted up to +") && says(": three more stages")) << text_;
+  EXPECT_EQ(run({"count", "--head", plugin("slower"), "--baselines", baselines()}), kGood)
+      << "the next commit is judged by the new counts: " << text_;
   EXPECT_EQ(check("slower", "abc"), kGood) << "it stands in a file: " << text_;
   EXPECT_TRUE(says("accepted up to +") && says("three more stages")) << text_;
   EXPECT_EQ(check("table", "abc"), kSlower) << "three times as slow: " << text_;
+  EXPECT_TRUE(says("are accepted (three more stages), and this is more")) << text_;
   EXPECT_EQ(check("slower", "def"), kSlower) << "another base: " << text_;
   EXPECT_TRUE(says("stale")) << text_;
+}
+
+TEST_F(Accept, OfAMetricMovesItAndTheNextWorseningFails) {
+  make_golden();
+  const auto judged = [&](const std::string& fault, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> args = {"accuracy",      "--bench",     kBin + "/subject_bench",
+                                     "--baselines",   baselines(),   "--entries",
+                                     kEntries,        "--changelog", baselines() + "/log.md",
+                                     "--base-commit", "abc"};
+    args.insert(args.end(), more.begin(), more.end());
+    return run(args, fault);
+  };
+  EXPECT_EQ(judged("gain=0.9"), kLessAccurate) << text_;
+  EXPECT_EQ(judged("gain=0.9", {"--accept", "less noise"}), kGood) << text_;
+  EXPECT_NE(read_whole(baselines() + "/log.md").find("(worse, accepted: less noise)"),
+            std::string::npos);
+  EXPECT_EQ(judged("gain=0.9"), kGood) << text_;
+  EXPECT_EQ(judged("gain=0.81"), kLessAccurate) << "once more by as much: " << text_;
 }
 
 TEST_F(Accept, WantsAReasonInOneLineAndABase) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is slower makes the gate fail, and nothing else does.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "mjcf/trace/input_file.h"
 #include "regression/test/gate_fixture.h"
@@ -56,6 +60,11 @@ TEST_F(Time, ASlowPathForBadSamplesFails) {
   EXPECT_EQ(time("bad"), kSlower) << text_;
 }
 
+TEST_F(Time, AStepThatIsSlowerAfterOtherWorkFails) {
+  EXPECT_EQ(run({"time", "--base", plugin("line"), "--head", plugin("lines")}), kSlower) << text_;
+  EXPECT_TRUE(says("after other work a step takes")) << text_;
+}
+
 TEST_F(Time, ABranchThatNobodyCanPredictFails) {
   EXPECT_EQ(run({"time", "--base", plugin("few"), "--head", plugin("branch")}), kSlower) << text_;
 }
@@ -66,6 +75,16 @@ TEST_F(Time, ADivideInTheChainFailsThoughInstructionsAreTheSame) {
             kSlower)
       << text_;
   EXPECT_TRUE(says("the same work, but slower")) << text_;
+  EXPECT_EQ(run({"check", "--base", plugin("base"), "--head", plugin("more_divides"), "--bench", "",
+                 "--baselines", baselines()}),
+            kSlower);
+  EXPECT_TRUE(says("instructions do not explain it")) << text_;
+  const std::string subject =
+      read_whole(std::string(TAUEXT_SOURCE) + "/regression/test/subject_plugin.cc");
+  const auto before = subject.substr(0, subject.find("double divisor"));
+  EXPECT_TRUE(says(fmt::format("a step at regression/test/subject_plugin.cc:{}",
+                               1 + std::count(before.begin(), before.end(), '\n'))))
+      << text_;
 }
 
 TEST_F(Time, ReportsAreWrittenAndCanBeRead) {

@@ -9,6 +9,7 @@
 //   SUBJECT_SLEEP           gives up the processor every 10,007 steps
 //   SUBJECT_BAD=n           divides where the sample is bad
 //   SUBJECT_BRANCH          takes a branch that nobody can predict
+//   SUBJECT_LINES=n         a chain of 128 loads from n cache lines, in no order that is foreseen
 //   SUBJECT_TABLE=1         two functions change places in a table, and the dear one is called
 #include <array>
 #include <bit>
@@ -56,6 +57,14 @@ double dear(double x) {
   return divided(x, 100);
 }
 constexpr Term kTable[] = {SUBJECT_TABLE == 0 ? cheap : dear, SUBJECT_TABLE == 0 ? dear : cheap};
+#ifdef SUBJECT_LINES
+constexpr int kInts = 16;  // of a cache line
+constexpr std::array<int, kInts* SUBJECT_LINES> kNext = [] {
+  std::array<int, kInts * SUBJECT_LINES> next{};
+  for (int i = 0; i < SUBJECT_LINES; ++i) next[kInts * i] = kInts * ((53 * i + 29) % SUBJECT_LINES);
+  return next;
+}();
+#endif
 [[maybe_unused]] int steps = 0;  // in no state, so that no reset begins anew
 
 // tau through a chain of low-passes, and back
@@ -94,6 +103,10 @@ class Subject {
 #ifdef SUBJECT_BRANCH
     // the last digits of the end of the chain decide
     if (std::bit_cast<std::uint64_t>(x) >> 8 & 1) asm volatile("nop");
+#endif
+#ifdef SUBJECT_LINES
+    int line = 0;
+    for (int i = 0; i < 128; ++i) line = const_cast<const volatile int*>(kNext.data())[line];
 #endif
 #ifdef SUBJECT_INSTRUCTIONS
     asm volatile(".rept " TEXT(SUBJECT_INSTRUCTIONS) "\n nop\n .endr");

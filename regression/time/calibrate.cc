@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <thread>
 
 #include "mjcf/trace/table_writer.h"
 #include "regression/code/layouts.h"
+#include "regression/host/child.h"
 #include "regression/time/time_layer.h"
 #include "regression/time/time_worker.h"
 
@@ -86,14 +86,6 @@ ByKernel trial(const CalibrateOptions& o, const std::vector<std::string>& kernel
     if (worker.kernels.empty()) break;
   }
   return tried;
-}
-
-std::string processor() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
-  }
-  return "unknown processor";
 }
 
 }  // namespace

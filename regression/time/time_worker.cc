@@ -88,7 +88,6 @@ void run_cold(benchmark::State& state, int steps, std::minstd_rand& random,
     }
   }
   const double base = steps > 0 ? median(lanes[0].cold) : 0;
-  state.counters["cold_ns"] = 1e9 * base;
   state.counters["cold_head"] = steps > 0 ? median(lanes[1].cold) / base : 1;
   state.counters["cold_aa"] = steps > 0 ? median(lanes[2].cold) / base : 1;
 }
@@ -132,7 +131,7 @@ std::vector<WorkerResult> run_worker(const WorkerOptions& o) {
   try {
     const json document = json::parse(out);
     for (const json& b : document.at("benchmarks")) {
-      // its name ends in what Google Benchmark thinks of it: /iterations:75/manual_time
+      // its name ends in what Google Benchmark thinks of it: /iterations:20/manual_time
       WorkerResult r{.kernel = b.value("label", b.at("name").get<std::string>())};
       if (b.value("error_occurred", false)) {
         throw std::runtime_error(r.kernel + ": " + b.value("error_message", "?"));
@@ -141,7 +140,6 @@ std::vector<WorkerResult> run_worker(const WorkerOptions& o) {
       r.head_ns = b.at("head_ns");
       r.head = b.at("head");
       r.aa = b.at("aa");
-      r.cold_ns = b.at("cold_ns");
       r.cold_head = b.at("cold_head");
       r.cold_aa = b.at("cold_aa");
       for (std::size_t i = 0; i < o.injected.size(); ++i) {

@@ -27,7 +27,6 @@ struct WorkerResult {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians
   double head = 1, aa = 1;          ///< [1] medians over the rounds of head / base and copy / base
-  double cold_ns = 0;               ///< [ns] of base's step after other work, median
   double cold_head = 1, cold_aa = 1;  ///< [1] head / base and copy / base of such steps
   std::vector<double> canaries;       ///< [1] of base with `injected` more steps
 };

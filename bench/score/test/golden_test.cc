@@ -32,7 +32,7 @@ TEST(Golden, HasALineForEachEntryAndMetricSorted) {
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   EXPECT_EQ(lines.front(), "# tauext golden metrics 2");
   EXPECT_EQ(lines.back(), "# end");
-  EXPECT_TRUE(std::is_sorted(lines.begin() + 5, lines.end() - 1));
+  EXPECT_TRUE(std::is_sorted(lines.begin() + 6, lines.end() - 1));
   EXPECT_NE(text().find("\nentry\tmetric\tseed 1\tseed 7\n"), std::string::npos) << text();
 }
 
@@ -52,6 +52,27 @@ TEST(Golden, HasAnErrorForEachJointAndEveryDetector) {
   }
   for (const std::string& d : robot("wallmobot3").detectors()) {
     EXPECT_NE(all.find(fmt::format("contact/ekf+{}\tpeak_score\t", d)), std::string::npos) << d;
+  }
+}
+
+TEST(Golden, HasAStepAndACollisionWithPoorSensors) {
+  GoldenOptions o;
+  o.filter = "wallmobot3/(step|collision).*/inverse_dynamics$";
+  o.seeds = {1};
+  const std::string both = golden_metrics(o);
+  EXPECT_NE(both.find("# degraded: velocity_noise=0.01 "), std::string::npos) << both;
+  EXPECT_NE(both.find("\nwallmobot3/step/inverse_dynamics\trmse_Nm\t"), std::string::npos) << both;
+  o.suite.sensors = degraded_sensors();
+  const std::string own = golden_metrics(o);
+  EXPECT_EQ(own.find("@degraded"), std::string::npos) << "who asks for sensors has them alone";
+  const auto value = [](const std::string& text, const std::string& line) {
+    const auto begin = text.find(line) + line.size();
+    return text.substr(begin, text.find('\n', begin) - begin);
+  };
+  for (const std::string scenario : {"\nwallmobot3/step", "\nwallmobot3/collision"}) {
+    const std::string line = "/inverse_dynamics\trmse_Nm\t";
+    ASSERT_NE(both.find(scenario + "@degraded" + line), std::string::npos) << both;
+    EXPECT_EQ(value(own, scenario + line), value(both, scenario + "@degraded" + line));
   }
 }
 

@@ -42,6 +42,7 @@ TEST(GoldenFile, IsRefusedWithItsNameWheneverItIsNotWhole) {
   EXPECT_NE(with("\tnever", "").find("3 columns, where 4 are named"), std::string::npos);
   EXPECT_NE(with("# end", "r/s/e\tlag_s\t1\t1\n# end").find("is there twice"), std::string::npos);
   EXPECT_NE(with("golden", "gilded").find("no golden metrics"), std::string::npos);
+  EXPECT_NE(with("metrics 2", "metrics 1").find("of an older version: remove"), std::string::npos);
 }
 
 }  // namespace

@@ -22,12 +22,15 @@ namespace {
 
 using tauext::test::error_of;
 
+const std::string kEnd = "\t.section\t.note.GNU-stack,\"\",@progbits\n";
+
 // a plug-in's code, as tauext_add_plugin leaves it
 class Code : public testing::Test {
  protected:
-  PluginCode of(const std::string& assembly) {
-    write("0.s", assembly);
-    write("link", folder_.path() + "\ng++\n-shared\n-o\n@out\n@0\n");
+  PluginCode of(const std::string& assembly, const std::string& other = "") {
+    write("0.s", assembly + kEnd);
+    write("1.s", other + kEnd);
+    link(folder_.path() + "\ng++\n-shared\n-o\n@out\n@0\n" + (other.empty() ? "" : "@1\n"));
     return PluginCode(plugin());
   }
   // the compiler's assembly of C++
@@ -38,6 +41,11 @@ class Code : public testing::Test {
         {"g++", "-O2", "-fPIC", "-ffunction-sections", "-fdata-sections", "-S", file, "-o", out});
     std::ifstream in(out);
     return of({std::istreambuf_iterator<char>(in), {}});
+  }
+  // where to link, and how; what is linked is another thing here
+  void link(const std::string& text) const {
+    std::ofstream(plugin()) << "a plug-in";
+    write("link", run_child({"sha256sum", plugin()}).substr(0, 64) + "\n" + text);
   }
   std::string plugin() const { return folder_.path() + "/x.so"; }
   void write(const std::string& name, const std::string& text) const {
@@ -106,8 +114,54 @@ TEST_F(Code, IsAnotherWhereATableOrAConstantIs) {
   EXPECT_NE(one, of(program("f", "7", kOneTwo, "0")).reached("f"));
 }
 
+std::string function(const std::string& name, const std::string& lines) {
+  return fmt::format("\t.type\t{0}, @function\n{0}:\n{1}\tret\n", name, lines);
+}
+
+TEST_F(Code, KnowsWhichFunctionOfAnotherUnitIsCalled) {
+  const std::string g = function("g", "\tmovl\t$1, %eax\n"), h = function("h", "\tnop\n");
+  // both units name both of them, in another order
+  const std::string others = g + h + function("k", "\tcall\th\n\tcall\tg\n");
+  const auto calls = [&](const std::string& which) {
+    return of(function("f", "\tcall\tk\n\tcall\tg\n\tcall\th@PLT\n\tcall\t" + which + "\n"), others)
+        .reached("f");
+  };
+  EXPECT_NE(calls("g"), calls("h"));
+  const auto alias_of = [&](const std::string& which) {
+    return of(function("f", "\tcall\tk\n\tcall\tb\n"), others + "\t.set\tb, " + which + "\n")
+        .reached("f");
+  };
+  EXPECT_NE(alias_of("g"), alias_of("h"));
+  EXPECT_NE(alias_of("b"), alias_of("g")) << "a circle is nobody's name";
+}
+
+TEST_F(Code, KnowsWhereAJumpGoesInEachCompilersLabels) {
+  for (const std::string label : {".L4", ".LBB0_1", ".LVL7"}) {
+    const auto to = [&](const std::string& before, const std::string& behind) {
+      return of(function("f", before + "\tincl\t%eax\n" + behind + "\tjne\t" + label + "\n"))
+          .reached("f");
+    };
+    EXPECT_NE(to(label + ":\n", ""), to("", label + ":\n")) << label;
+    EXPECT_EQ(to(label + ":\n.Ltmp9:\n", ""), to(label + ":\n", ".LFE1:\n"))
+        << "labels that nobody mentions";
+  }
+}
+
+TEST_F(Code, FollowsConstantsThatAreAPartOfOthers) {
+  const auto with = [&](const std::string& numbers, const std::string& at) {
+    return of(function("f", "\tmovsd\t.LC1(%rip), %xmm0\n") + "\t.set\t.LC1,.LC2" + at +
+              "\n\t.set\t.LC2,.LC3+8\n\t.section\t.rodata\n.LC3:\n" + numbers)
+        .reached("f");
+  };
+  const std::string numbers = "\t.quad\t1\n\t.quad\t2\n\t.quad\t3\n";
+  EXPECT_NE(with(numbers, "+8"), with("\t.quad\t1\n\t.quad\t2\n\t.quad\t4\n", "+8"));
+  EXPECT_NE(with(numbers, "+8"), with(numbers, ""));
+}
+
 TEST_F(Code, IsNotClaimedWhereMemoryIsReachedThatMayChange) {
   EXPECT_EQ(of(program("f", "7", kOneTwo + "\t.quad\tcounter\n")).reached("f"), "");
+  EXPECT_EQ(of(program("f", "7", kOneTwo + "\t.quad\t.LANCHOR0+8\n")).reached("f"), "")
+      << "data by way of a label that is not there";
 }
 
 TEST_F(Code, FollowsJumpTablesAndColdParts) {
@@ -174,12 +228,25 @@ TEST_F(Code, SaysWhatIsMissing) {
   const std::string folder = plugin() + ".code";
   const auto error = [&] { return error_of([&] { PluginCode code(plugin()); }); };
   EXPECT_EQ(error(), folder + "/link: No such file or directory; tauext_add_plugin writes it");
-  write("link", "/\ng++\n");
-  EXPECT_EQ(error(), folder + "/link: cut off");
-  write("link", "/\ng++\n-shared\n@0\n");
+  link("/\ng++\n");
+  EXPECT_EQ(error(), folder + "/link: cut off; build the plug-in anew");
+  link("/\ng++\n-shared\n@0\n");
   EXPECT_EQ(error(), folder + "/0.s: No such file or directory");
   write("0.s", "nothing");
-  EXPECT_EQ(error(), folder + "/0.s: no assembly, or none with a function");
+  EXPECT_EQ(error(), folder + "/0.s: cut off, or no assembly of g++ or clang++; build it anew");
+  const std::string whole = program("f", "7", kOneTwo) + kEnd;
+  write("0.s", whole.substr(0, whole.size() - 10));
+  EXPECT_EQ(error(), folder + "/0.s: cut off, or no assembly of g++ or clang++; build it anew");
+  write("0.s", kEnd);
+  EXPECT_EQ(error(), folder + "/0.s: holds no function");
+  write("0.s", whole);
+  link("/nowhere\ng++\n-shared\n-o\n@out\n@0\n");
+  EXPECT_EQ(
+      error_of([&] { PluginCode(plugin()).lay_out(1, {}, plugin()); }),
+      folder +
+          "/: g++ cannot assemble and link it in /nowhere, as its link says; build it here anew");
+  std::ofstream(plugin()) << "another one";
+  EXPECT_EQ(error(), folder + ": is of another build than the plug-in beside it; copy both");
   EXPECT_EQ(error_of([&] { (void)of(program("f", "7", kOneTwo)).reached("g"); }),
             plugin() + ": g is not in its assembly");
 }

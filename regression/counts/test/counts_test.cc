@@ -29,6 +29,58 @@ TEST(Callgrind, SelfCostsAreTheFunctionsOwn) {
   EXPECT_EQ(d.functions.at("Arm::inertia()"), 60u);
 }
 
+TEST(Callgrind, LinesAreTheirFilesWhateverFunctionTheyAreInlinedInto) {
+  const CallgrindDump d = parse_callgrind(
+      "# callgrind format\nfl=(1) ././estimators/a.h\nfn=(1) f\n7 10\nfi=(2) estimators/b.h\n3 4\n"
+      "fe=(1)\n7 1\ncfi=(2)\ncfn=(2) g\ncalls=1 9\n8 60\n8 2\n0 5\n\ntotals: 82\n",
+      "f");
+  EXPECT_EQ(d.lines, (LineCounts{{{"estimators/a.h", 7}, 11},
+                                 {{"estimators/b.h", 3}, 4},
+                                 {{"estimators/a.h", 8}, 2}}))
+      << "not the callee's 60, and nothing of no line";
+}
+
+TEST(Lines, ThatMovedAreNotOthers) {
+  const LineCounts before = {
+      {{"a.h", 10}, 100}, {{"a.h", 11}, 200}, {{"a.h", 12}, 100}, {{"b.h", 1}, 7}};
+  const LineCounts moved = {
+      {{"a.h", 20}, 100}, {{"a.h", 21}, 200}, {{"a.h", 22}, 100}, {{"b.h", 1}, 7}};
+  EXPECT_TRUE(changed_lines(before, moved).empty());
+  LineCounts more = moved;
+  more[{"a.h", 21}] = 250;
+  std::vector<LineChange> c = changed_lines(before, more);
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_EQ(c[0].file, "a.h");
+  EXPECT_EQ(c[0].line, 21);
+  EXPECT_EQ(c[0].by, 50);
+  LineCounts fewer = moved;
+  fewer.erase({"a.h", 21});
+  c = changed_lines(before, fewer);
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_EQ(c[0].line, 22) << "behind what is gone";
+  EXPECT_EQ(c[0].by, -200);
+}
+
+TEST(Lines, ArePairedAsManyAsCanBe) {
+  const LineCounts before = {{{"a", 1}, 5}, {{"a", 2}, 7}, {{"a", 3}, 9}, {{"a", 4}, 11}},
+                   after = {{{"a", 1}, 7}, {{"a", 2}, 9}, {{"a", 3}, 12}};
+  const std::vector<LineChange> c = changed_lines(before, after);
+  ASSERT_EQ(c.size(), 2u);
+  EXPECT_EQ(c[0].by, -5);
+  EXPECT_EQ(c[0].line, 1);
+  EXPECT_EQ(c[1].by, 1);
+  EXPECT_EQ(c[1].line, 3);
+}
+
+TEST(Lines, OfTheLargestChangeAreFirst) {
+  const LineCounts before = {{{"a.h", 1}, 10}, {{"b.h", 1}, 10}},
+                   after = {{{"a.h", 1}, 20}, {{"b.h", 1}, 10}, {{"c.h", 5}, 500}};
+  const std::vector<LineChange> c = changed_lines(before, after);
+  ASSERT_EQ(c.size(), 2u);
+  EXPECT_EQ(c[0].file, "c.h");
+  EXPECT_EQ(c[1].by, 10);
+}
+
 TEST(Callgrind, AFileThatIsCutOffIsRefused) {
   const std::string text = kDump;
   EXPECT_EQ(error_of([&] {
@@ -39,7 +91,7 @@ TEST(Callgrind, AFileThatIsCutOffIsRefused) {
 }
 
 Counts counts(std::uint64_t n) {
-  return {{{"arch", "x86_64"}, {"glibc", "2.36"}}, {{"arm/ekf", n}, {"arm/ndob", 1000}}, {}};
+  return {{{"arch", "x86_64"}, {"glibc", "2.36"}}, {{"arm/ekf", n}, {"arm/ndob", 1000}}, {}, {}};
 }
 
 TEST(Counts, MoreThanOnePercentIsTooMany) {

@@ -141,10 +141,17 @@ TEST(Acceptance, ThatIsNotWholeIsAnError) {
     std::ofstream(path) << bad.replace(bad.find(from), from.size(), to);
     return error_of([&] { read_acceptances(path); });
   };
-  EXPECT_EQ(with("0.03", "lots"), path + ": line 3: 'lots' is no share from 0 on");
-  EXPECT_EQ(with("0.03", "-1"), path + ": line 3: '-1' is no share from 0 on");
-  EXPECT_EQ(with("\twhy", ""), path + ": line 3: 5 columns, please");
-  EXPECT_EQ(with("# end", ""), path + ": line 4: 5 columns, please");
+  EXPECT_EQ(with("0.03", "lots"),
+            path + ": line 3: at most is 'lots', and must be a number like 0.03");
+  EXPECT_EQ(with("0.03", "-1"), path + ": line 3: at most is '-1', and must be a number like 0.03");
+  EXPECT_EQ(with("\twhy", ""),
+            path + ": line 3: 4 columns, and must be layer, subject, at most, base and reason");
+  EXPECT_EQ(with("why", "why\tmore").find(path + ": line 3: 6 columns"), 0u);
+  EXPECT_EQ(with("time", "tima").find("unknown layer 'tima' of " + path + ": line 3; known: "), 0u);
+  EXPECT_EQ(with("# end\n", "# end\nmore\n"), path + ": there are lines behind '# end'");
+  EXPECT_EQ(with("abc", ""), path + ": line 3: the column base is empty");
+  EXPECT_EQ(with("# end", ""),
+            path + ": line 4: 0 columns, and must be layer, subject, at most, base and reason");
   EXPECT_NE(with("accepted findings", "x").find("line 1: it must be"), std::string::npos);
 }
 

@@ -15,35 +15,29 @@ TEST(LongRun, IsNoCauseForComplaintWhereNothingDiffers) {
   EXPECT_EQ(complaint(run()), "");
 }
 
-TEST(LongRun, ComplainsOfAStall) {
-  LongRun r = run();
-  r.worst_ratio = 201;
-  r.worst_more_ns = 1e6;
-  r.worst_at = 100'000;
-  EXPECT_EQ(complaint(r),
+TEST(LongRun, ComplainsOfWhatALimitForbids) {
+  const auto stall = [](double ratio, double more_ns) {
+    LongRun r = run();
+    r.worst_ratio = ratio;
+    r.worst_more_ns = more_ns;
+    r.worst_at = 100'000;
+    return complaint(r);
+  };
+  EXPECT_EQ(stall(201, 1e6),
             "stalls: the 50 steps from sample 100000 on take 1005.0 us, 201.0 times as long as "
             "base's");
-  r.worst_more_ns = 4'000;
-  EXPECT_EQ(complaint(r), "") << "too little to be told from an interrupt";
-  r.worst_more_ns = 1e6;
-  r.worst_ratio = 1.9;
-  EXPECT_EQ(complaint(r), "");
-}
+  EXPECT_EQ(stall(201, 4'000), "") << "too little to be told from an interrupt";
+  EXPECT_EQ(stall(1.9, 1e6), "");
 
-TEST(LongRun, ComplainsOfAStepThatWaits) {
-  LongRun r = run();
-  r.head.waits = 2;
-  EXPECT_EQ(complaint(r), "gives up the processor 2 times in a run, where base does so 0 times");
-  r.base.waits = 2;
-  EXPECT_EQ(complaint(r), "");
-}
-
-TEST(LongRun, ComplainsOfTheMean) {
-  LongRun r = run();
-  r.head.mean_ns = 160;
-  EXPECT_EQ(complaint(r), "takes +60.0 % in the mean of a longer run (limit +50 %)");
-  r.head.mean_ns = 140;
-  EXPECT_EQ(complaint(r), "");
+  const auto beside = [](const LifeTimes& base, const LifeTimes& head) {
+    return complaint({.kernel = "k", .base = base, .head = head});
+  };
+  EXPECT_EQ(beside({.mean_ns = 100}, {.mean_ns = 100, .waits = 2}),
+            "gives up the processor 2 times in a run, where base does so 0 times");
+  EXPECT_EQ(beside({.mean_ns = 100, .waits = 2}, {.mean_ns = 100, .waits = 2}), "");
+  EXPECT_EQ(beside({.mean_ns = 100}, {.mean_ns = 160}),
+            "takes +60.0 % in the mean of a longer run (limit +50 %)");
+  EXPECT_EQ(beside({.mean_ns = 100}, {.mean_ns = 140}), "");
 }
 
 }  // namespace

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What has added up since the reference: in time, kernel by kernel, and in the metrics.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "regression/history/changes.h"
+#include "regression/history/history.h"
+
+namespace tauext::gate {
+
+/// What may add up.
+struct DriftLimits {
+  double time = 0.02;       ///< [1] a step may surely be longer than the reference's by this share
+  double metric = 0.02;     ///< [1] a metric may be worse by this share
+  std::size_t window = 50;  ///< records in which a change of level is looked for
+  ChangeLimits change;      ///< of the logarithm of time
+};
+
+/// One kernel of the last record.
+struct KernelDrift {
+  std::string kernel;
+  /// ln(time / the first reference's), as far back as a chain of references reaches; the last one
+  /// is the last record's.
+  std::vector<double> level;
+  KernelRecord last;
+  double accepted = 0;     ///< [1] by how much it may be slower than the reference, on purpose
+  bool drifted = false;    ///< slower than the reference by more than that and the limit
+  LevelChange change;      ///< the last one of its level in the window; by = 0: none
+  std::string changed_at;  ///< commit, "" if the level did not change
+  bool slower = false;     ///< that change is one for the worse, since the reference, by more than
+                           ///< what is accepted
+};
+
+/// One metric that is worse than the reference's.
+struct MetricDrift {
+  std::string name;  ///< "entry metric"
+  double before = 0, after = 0;
+};
+
+/// What a history says of its last record.
+struct Drift {
+  std::vector<KernelDrift> kernels;
+  std::vector<MetricDrift> metrics;  ///< the worst first
+  int metrics_moved = 0;             ///< since the reference, for better or worse
+  bool slower() const;               ///< whether a kernel is, beyond what is accepted
+  bool any() const { return slower() || !metrics.empty(); }  ///< whether something is worse
+};
+
+/// @param history with at least one record
+Drift drift_of(const std::vector<Record>& history, const DriftLimits& limits = {});
+
+}  // namespace tauext::gate

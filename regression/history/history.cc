@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regression/history/history.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "mjcf/trace/input_file.h"
+
+namespace tauext::gate {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+ordered_json json_of(const KernelRecord& k) {
+  ordered_json j = {{"ratio", k.ratio}, {"low", k.low}, {"high", k.high}, {"surely", k.surely}};
+  if (k.ns) j["ns"] = *k.ns;
+  j["instructions"] = k.instructions;
+  j["instructions_ratio"] = k.instructions_ratio;
+  return j;
+}
+
+// a time that is no number, or not above 0, would be believed by everything behind it
+double positive(const ordered_json& j, const char* key) {
+  const double x = j.at(key).get<double>();
+  if (!(x > 0)) throw std::runtime_error(fmt::format("{} is {}, and must be above 0", key, x));
+  return x;
+}
+
+KernelRecord kernel_of(const ordered_json& j) {
+  KernelRecord k{.ratio = positive(j, "ratio"),
+                 .low = positive(j, "low"),
+                 .high = positive(j, "high"),
+                 .surely = j.at("surely"),
+                 .ns = {},
+                 .instructions = j.at("instructions"),
+                 .instructions_ratio = positive(j, "instructions_ratio")};
+  if (j.contains("ns")) k.ns = positive(j, "ns");
+  return k;
+}
+
+Record record_of(const ordered_json& j) {
+  if (const int version = j.at("version"); version != kVersion) {
+    throw std::runtime_error(
+        fmt::format("of version {}, and this program reads {}", version, kVersion));
+  }
+  Record r{.commit = j.at("commit"),
+           .date = j.at("date"),
+           .title = j.at("title"),
+           .reference = j.at("reference"),
+           .machine = j.at("machine"),
+           .kernels = {},
+           .metrics = {},
+           .gone = {},
+           .accepted = {}};
+  for (const auto& [name, kernel] : j.at("kernels").items()) r.kernels[name] = kernel_of(kernel);
+  for (const auto& [name, value] : j.at("metrics").items()) {
+    r.metrics[name] =
+        value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+  }
+  j.at("gone").get_to(r.gone);
+  for (const auto& a : j.at("accepted")) {
+    r.accepted.push_back(
+        {a.at("layer"), a.at("subject"), a.at("at_most"), a.at("base"), a.at("reason")});
+  }
+  return r;
+}
+
+}  // namespace
+
+std::string format_record(const Record& r) {
+  ordered_json j = {{"version", kVersion}, {"commit", r.commit},       {"date", r.date},
+                    {"title", r.title},    {"reference", r.reference}, {"machine", r.machine}};
+  j["kernels"] = ordered_json::object();
+  for (const auto& [name, kernel] : r.kernels) j["kernels"][name] = json_of(kernel);
+  j["metrics"] = ordered_json::object();
+  for (const auto& [name, value] : r.metrics) {
+    j["metrics"][name] = std::isnan(value) ? ordered_json() : ordered_json(value);
+  }
+  j["gone"] = r.gone;
+  j["accepted"] = ordered_json::array();
+  for (const Acceptance& a : r.accepted) {
+    j["accepted"].push_back({{"layer", a.layer},
+                             {"subject", a.subject},
+                             {"at_most", a.at_most},
+                             {"base", a.base},
+                             {"reason", a.reason}});
+  }
+  // a title of other than UTF-8 is no reason to lose a record
+  return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::vector<Record> parse_history(const std::string& text, const std::string& path) {
+  std::vector<Record> history;
+  std::size_t begin = 0;
+  for (int number = 1; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    try {
+      history.push_back(record_of(ordered_json::parse(text.substr(begin, end - begin))));
+    } catch (const ordered_json::exception& e) {
+      throw std::runtime_error(
+          fmt::format("{}: line {}: no record of a commit: {}", path, number, e.what()));
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(fmt::format("{}: line {}: {}", path, number, e.what()));
+    }
+    begin = end + 1;
+  }
+  return history;
+}
+
+std::vector<Record> read_history(const std::string& path) {
+  if (!std::filesystem::exists(path)) return {};
+  return parse_history(read_json_text(path), path);
+}
+
+std::map<std::string, double> metrics_after(const std::vector<Record>& history,
+                                            std::size_t records) {
+  std::map<std::string, double> all;
+  for (std::size_t i = 0; i < records; ++i) {
+    for (const auto& [name, value] : history[i].metrics) all[name] = value;
+    for (const std::string& name : history[i].gone) all.erase(name);
+  }
+  return all;
+}
+
+}  // namespace tauext::gate
