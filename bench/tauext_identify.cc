@@ -24,14 +24,15 @@ std::string as_table(const std::vector<Term>& terms, const Identification& id) {
   TableWriter table({{"term", "", true},
                      {"unit", "", true},
                      {"estimate"},
-                     {"std error", "1 sigma"},
+                     {"std error", "if white"},
+                     {"std error", "robust"},
                      {"excitation", "rms"},
                      {"own share"}});
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Parameter& p = id.parameters[i];
     table.add({terms[i].name, terms[i].unit, fmt::format("{:.5g}", p.theta),
-               fmt::format("{:.2g}", p.sigma), fmt::format("{:.4g}", p.excitation),
-               fmt::format("{:.3f}", p.own)});
+               fmt::format("{:.2g}", p.sigma), fmt::format("{:.2g}", p.robust),
+               fmt::format("{:.4g}", p.excitation), fmt::format("{:.3f}", p.own)});
   }
   std::string out = table.format();
   out += fmt::format(
@@ -41,14 +42,26 @@ std::string as_table(const std::vector<Term>& terms, const Identification& id) {
   if (id.condition > 100) {
     out += "The motion hardly tells some terms apart: see the smallest own share.\n";
   }
+  if (id.colour > 3) {
+    out += fmt::format(
+        "The residuals are no white noise (Ljung-Box, {:.0f} standard deviations): the model lacks "
+        "something, and theta is biased\nby more than any standard error says.\n",
+        id.colour);
+  }
+  for (const Suspect& s : id.missing) {
+    out += fmt::format(
+        "Missing? {} would explain {:.0f} % of the residuals' variance ({:.0f} "
+        "standard errors).\n",
+        s.name, 100 * s.share, s.surely);
+  }
   return out;
 }
 
 std::string as_csv(const std::vector<Term>& terms, const Identification& id) {
-  std::string out = "term,unit,estimate,std_error\n";
+  std::string out = "term,unit,estimate,std_error,robust_std_error\n";
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    out += fmt::format("{},{},{:.17g},{:.17g}\n", terms[i].name, terms[i].unit,
-                       id.parameters[i].theta, id.parameters[i].sigma);
+    out += fmt::format("{},{},{:.17g},{:.17g},{:.17g}\n", terms[i].name, terms[i].unit,
+                       id.parameters[i].theta, id.parameters[i].sigma, id.parameters[i].robust);
   }
   return out;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "bench/logs/lcm_trace.h"
@@ -61,27 +60,67 @@ void write_estimates(const Trace& trace, const std::vector<Column>& columns,
   file.commit();
 }
 
+// what the unit of t seems to be, if arms are sampled at 50 Hz to 10 kHz
+std::string looks_like(double step) {
+  if (step >= 0.1 && step <= 20) return ", so t looks like milliseconds";
+  if (step >= 100 && step <= 20000) return ", so t looks like microseconds";
+  if (step >= 1e5 && step <= 2e7) return ", so t looks like nanoseconds";
+  return "";
+}
+
 // statuses that an engineer has to know of; false if most samples could not be used
 bool report_status(const Trace& trace, const Column& c) {
-  std::map<Status, int> count;
-  for (const Status s : c.output.status) ++count[s];
-  const int good = count[Status::kOk];
-  const int restarts = std::max(count[Status::kStarted] - 1, 0);
-  if (good + 1 >= trace.size()) return true;
-  say(fmt::format(
-      "{}: {} samples ignored as out of range, {} restarts after gaps, {} divergences, {} with a "
-      "singular inertia",
-      c.estimator, count[Status::kBadMeasurement], restarts, count[Status::kDiverged],
-      count[Status::kSingularInertia]));
-  if (2 * good >= trace.size()) return true;
+  const StatusCounts& counts = c.output.counts;
+  if (counts.left_out() == 0) return true;
+  say(fmt::format("{}: {} of {} samples left out: {}", c.estimator, counts.left_out(),
+                  counts.samples(), counts.text()));
+  if (2 * counts.left_out() <= counts.samples()) return true;
   std::vector<double> steps;
   for (int k = 1; k < trace.size(); ++k) steps.push_back(trace.t[k] - trace.t[k - 1]);
+  if (steps.empty()) return false;
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
+  const double step = steps[steps.size() / 2];
   say(fmt::format(
-      "{}: most samples could not be used, so these are no estimates. Is t in s, q in rad, qd in "
-      "rad/s, tau in N m? Samples are {:g} s apart; more than 0.05 s is a gap",
-      c.estimator, steps[steps.size() / 2]));
+      "{}: most samples could not be used, so these are no estimates. Samples are {:g} s apart{}; "
+      "more than 0.05 s is a gap. Is q in rad, qd in rad/s, tau in N m?",
+      c.estimator, step, looks_like(step)));
   return false;
+}
+
+// Whether tau is rather held from t on or read at t. Between the two mo2's estimates differ by a
+// signal delta that is known; in free motion the one for held is weight delta, weight 0 if that is
+// right and 1 if the other is. A joint counts by its weight's standard error, from samples that
+// are independent of each other, so many fewer as mo2's bandwidth is below that of the samples.
+void warn_of_torque(const Robot& r, const Trace& trace, const std::string& said) {
+  const auto run = [&](const char* torque) {
+    return r.runner(fmt::format("mo2:torque={}", torque), "", trace)->run();
+  };
+  const Output held = run("held"), instant = run("instant");
+  const double step = (trace.t.back() - trace.t.front()) / std::max(trace.size() - 1, 1);
+  const double dependent = std::max(1., 2 / (30 * step));
+  double weighted = 0, weights = 0;
+  for (int j = 0; j < trace.dof(); ++j) {
+    double dd = 0, ad = 0, aa = 0;
+    int count = 0;
+    for (int k = 0; k < trace.size(); ++k) {
+      if (held.status[k] != Status::kOk || (!trace.contact.empty() && trace.contact[k])) continue;
+      const double a = held.tau_ext(j, k), delta = a - instant.tau_ext(j, k);
+      dd += delta * delta, ad += a * delta, aa += a * a;
+      ++count;
+    }
+    if (count < 1000 || dd == 0) continue;
+    const double weight = ad / dd, rest = std::max(aa - ad * weight, 1e-12 * aa) / count;
+    const double certain = dd / (rest * dependent);
+    weighted += certain * weight, weights += certain;
+  }
+  if (weights == 0) return;
+  const double instantly = weighted / weights, sure = 3 / std::sqrt(weights);
+  const bool assumed_instant = said == "instant";
+  if (assumed_instant ? instantly + sure >= 0.5 : instantly - sure <= 0.5) return;
+  say(fmt::format(
+      "tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken "
+      "as the other: see --torque",
+      assumed_instant ? "held from each" : "read at each", instantly, sure));
 }
 
 // what a detector was worth; nothing where the log does not say what happened
@@ -119,63 +158,83 @@ void print_metrics(const Trace& trace, const std::vector<Column>& columns, doubl
   if (!table.empty()) fmt::print(to, "{}", table.format());
 }
 
+struct Flags {
+  std::string log, channel, robot, detector, torque, out;
+  std::vector<std::string> estimators;
+  double score_from = -std::numeric_limits<double>::infinity();
+  bool list = false;
+};
+
+void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("log", f.log, "log to read: CSV or LCM");
+  app.add_option("--channel", f.channel, "of an LCM log with several that hold measurements");
+  app.add_option("--robot", f.robot, "robot (see --list), or its MJCF file")
+      ->type_name("NAME|FILE.xml");
+  app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--detector", f.detector, "NAME[:KEY=VALUE].. behind each estimator");
+  app.add_option("--torque", f.torque,
+                 "when the log's tau acted: held from t on, or at the instant t")
+      ->type_name("held|instant")
+      ->check(CLI::IsMember({"held", "instant"}));
+  app.add_option("--out", f.out, "file to write; - is standard output");
+  app.add_option("--score_from", f.score_from,
+                 "errors count from this time on [s]; else from the begin")
+      ->type_name("S");
+  app.add_flag("--list", f.list, "list robots, estimators and detectors, and stop");
+}
+
+int replay(Flags& f) {
+  if (f.log.empty() || f.robot.empty() || f.estimators.empty() || f.out.empty()) {
+    throw std::invalid_argument(
+        "a log, --robot, --estimator and --out are required; see tauext-replay --help");
+  }
+  if (is_lcm_log(f.out)) {
+    throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", f.out));
+  }
+  refuse_twice("estimator", f.estimators);
+  const Robot& r = robot(f.robot);
+  for (std::string& e : f.estimators) {
+    r.check(e, f.detector);
+    if (f.torque.empty()) continue;
+    e = with_key(e, "torque", f.torque, r.estimator_fields(name_of_specification(e)));
+  }
+  const RecordedLog recorded = read_log_or_csv(f.log, f.channel);
+  const Trace& trace = recorded.trace;
+  if (!(f.score_from <= trace.t.back())) {
+    throw std::invalid_argument(
+        fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));
+  }
+  std::vector<Column> columns;
+  for (const std::string& e : f.estimators) {
+    columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run()});
+  }
+  bool good = recorded.usable();
+  for (const Column& c : columns) good = report_status(trace, c) && good;
+  warn_of_torque(r, trace, f.torque);
+  write_estimates(trace, columns, f.out);
+  print_metrics(trace, columns, f.score_from, f.out == "-" ? stderr : stdout);
+  return good ? kGood : kAnswerIsNo;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app(
       "Runs estimators over a recorded log (an LCM log, or CSV with the columns of tauext-record;\n"
       "tau_ext and contact may be missing) and writes their estimates, one row per usable sample.\n"
-      "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged (old estimate held).\n"
+      "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged, 5 bad time,\n"
+      "6 beyond a limit, 7 jump, 8 frozen, 9 unlikely; with all but 0 the old estimate is held.\n"
       "With the truth in the log, prints the errors too. Exit code 1 if most rows or samples "
       "were unusable.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
-  std::string log, channel, robot_name, detector, out;
-  std::vector<std::string> estimators;
-  double score_from = -std::numeric_limits<double>::infinity();
-  bool list = false;
-  app.add_option("log", log, "log to read: CSV or LCM");
-  app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
-  app.add_option("--robot", robot_name, "robot (see --list), or its MJCF file")
-      ->type_name("NAME|FILE.xml");
-  app.add_option("--estimator", estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--detector", detector, "NAME[:KEY=VALUE].. behind each estimator");
-  app.add_option("--out", out, "file to write; - is standard output");
-  app.add_option("--score_from", score_from,
-                 "errors count from this time on [s]; else from the begin")
-      ->type_name("S");
-  app.add_flag("--list", list, "list robots, estimators and detectors, and stop");
-  return run_program(app, argc, argv, [&] {
-    if (list) {
-      fmt::print("{}", list_known());
-      return kGood;
-    }
-    if (log.empty() || robot_name.empty() || estimators.empty() || out.empty()) {
-      throw std::invalid_argument(
-          "a log, --robot, --estimator and --out are required; see tauext-replay --help");
-    }
-    if (is_lcm_log(out)) {
-      throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", out));
-    }
-    refuse_twice("estimator", estimators);
-    const Robot& r = robot(robot_name);
-    for (const std::string& e : estimators) r.check(e, detector);
-    const RecordedLog recorded = read_log_or_csv(log, channel);
-    const Trace& trace = recorded.trace;
-    if (!(score_from <= trace.t.back())) {
-      throw std::invalid_argument(
-          fmt::format("--score_from {}: the log ends at {} s", score_from, trace.t.back()));
-    }
-    std::vector<Column> columns;
-    for (const std::string& e : estimators) {
-      columns.push_back({e, detector, r.runner(e, detector, trace)->run()});
-    }
-    bool good = recorded.usable();
-    for (const Column& c : columns) good = report_status(trace, c) && good;
-    write_estimates(trace, columns, out);
-    print_metrics(trace, columns, score_from, out == "-" ? stderr : stdout);
-    return good ? kGood : kAnswerIsNo;
+  Flags flags;
+  add_flags(app, flags);
+  return run_program(app, argc, argv, [&]() -> int {
+    if (!flags.list) return replay(flags);
+    fmt::print("{}", list_known());
+    return kGood;
   });
 }

@@ -7,7 +7,8 @@
 /// integrators, and one extra ("active") state of a Kalman filter takes up what is left. Whether
 /// theirs weighs it alike is open.
 ///     a = B^-1 (tau - C qd - g - F),   qdd = a - delta,   delta = B^-1 tau_ext                 (i)
-/// Over [t_k-1, t_k) a is the mean of both ends with tau_k-1 held. Every joint is the same linear
+/// Over [t_k-1, t_k) a is the mean of both ends, with tau_k-1 held (or each end's own tau). Every
+/// joint is the same linear
 /// system
 /// x = [q; qd; delta], so one 3 x 3 covariance serves them all, and the gains do not depend on
 /// data.
@@ -36,7 +37,7 @@ namespace tauext {
 template <RobotModel M>
 class ActiveObserver {
  public:
-  static constexpr const char* kName = "eao";
+  static constexpr const char* kName = "aob";
   static constexpr int kDof = M::kDof;
 
   /// The same for all joints: they move alike.
@@ -47,7 +48,9 @@ class ActiveObserver {
         1e-7;  ///< [(rad/s^2)^2 s] density of the model's error, at least 0; larger: slower
     double R_q = 1e-13;  ///< [rad^2 s] density of the noise of q, positive; 1e-5 rad at 1 ms
     double R_qd = 1e-9;  ///< [(rad/s)^2 s] density of the noise of qd, positive; 1e-3 rad/s at 1 ms
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+    double gate = 100;   ///< [1] standard deviations by which q may jump
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
       using P = Parameters;
@@ -57,7 +60,7 @@ class ActiveObserver {
                 "the model's error; larger is slower"},
           Field{"R_q", &P::R_q, "rad^2 s", 1e-30, 1e6, "the noise of q; larger is slower"},
           Field{"R_qd", &P::R_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
-          max_gap_field<P>());
+          gate_field<P>(), torque_field<P>(), max_gap_field<P>());
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose: at w the load's share of the velocity's
@@ -71,7 +74,9 @@ class ActiveObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit ActiveObserver(const M& model, const Parameters& p = {})
-      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {}
+      : model_(model),
+        p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -80,7 +85,7 @@ class ActiveObserver {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    if (!used(status)) return {tau_ext_, status, sampling_.joints()};
     const Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
     const Ldlt<kDof> B(now.B);
     if (!B.ok()) {
@@ -91,11 +96,16 @@ class ActiveObserver {
     if (status == Status::kStarted) {
       start(y, B);
     } else {
-      const Vec<kDof> a_end = B.solve(Vec<kDof>(tau_ - rest));
+      const Vec<kDof> tau = sampling_.torque_before();
+      if (sampling_.joints() != 0) a_ = Ldlt<kDof>(B_).solve(Vec<kDof>(tau - rest_));
+      const Vec<kDof> a_end =
+          B.solve(Vec<kDof>((p_.torque == TorqueSampling::kHeld ? tau : y.tau) - rest));
       delta_ = B.solve(tau_ext_);                  // (iv)
       predict(sampling_.h(), 0.5 * (a_ + a_end));  // (i)
-      correct(sampling_.h(), y);
-      tau_ext_ = now.B * delta_;
+      nu_q_ += sampling_.h() * nu_qd_;
+      status = sampling_.confirm(unlikely(sampling_.h(), y));
+      if (status == Status::kOk) correct(sampling_.h(), y);
+      if (status == Status::kOk) tau_ext_ = now.B * delta_;
       if (!(q_.allFinite() && qd_.allFinite() && within(tau_ext_, kEstimateLimit))) {
         tau_ext_.setZero();
         start(y, B);
@@ -103,8 +113,9 @@ class ActiveObserver {
       }
     }
     a_ = B.solve(Vec<kDof>(y.tau - rest));
-    tau_ = y.tau;
-    return {tau_ext_, status};
+    B_ = now.B;
+    rest_ = rest;
+    return {tau_ext_, status, sampling_.joints()};
   }
 
   /// P [rad^2 ... (rad/s^2)^2] of [q; qd; delta] of every joint after the last sample.
@@ -120,6 +131,8 @@ class ActiveObserver {
     q_ = y.q;
     qd_ = y.qd;
     delta_ = B.solve(tau_ext_);
+    nu_q_.setZero();
+    nu_qd_.setZero();
     qq_ = 1e3 * p_.R_q, vv_ = 1e3 * p_.R_qd, dd_ = 0.01 * p_.Q_delta;
     vq_ = dq_ = dv_ = 0;
   }
@@ -142,12 +155,20 @@ class ActiveObserver {
     dd_ += Q_d;
   }
 
+  // of q alone: a blow changes qd at once, and no blow q
+  [[gnu::always_inline]] std::uint8_t unlikely(double h,
+                                               const Measurement<kDof>& y) const noexcept {
+    return beyond<kDof>(p_.gate, y.q - q_, nu_q_, Vec<kDof>::Constant(qq_ + p_.R_q / h));
+  }
+
   // (iii)
   [[gnu::always_inline]] void correct(double h, const Measurement<kDof>& y) noexcept {
     const double s_q = 1 / (qq_ + p_.R_q / h);
     update(qq_, vq_, dq_, s_q, y.q - q_);
     const double s_qd = 1 / (vv_ + p_.R_qd / h);
     update(vq_, vv_, dv_, s_qd, y.qd - qd_);
+    nu_q_ = y.q - q_;
+    nu_qd_ = y.qd - qd_;
   }
 
   [[gnu::always_inline]] void update(double c_q, double c_v, double c_d, double s_inverse,
@@ -166,13 +187,15 @@ class ActiveObserver {
 
   M model_;
   Parameters p_;
-  Sampling sampling_;
-  Vec<kDof> q_ = Vec<kDof>::Zero();                             // [rad]
-  Vec<kDof> qd_ = Vec<kDof>::Zero();                            // [rad/s]
-  Vec<kDof> delta_ = Vec<kDof>::Zero();                         // [rad/s^2]
+  Sampling<kDof> sampling_;
+  Vec<kDof> q_ = Vec<kDof>::Zero();                     // [rad]
+  Vec<kDof> qd_ = Vec<kDof>::Zero();                    // [rad/s]
+  Vec<kDof> delta_ = Vec<kDof>::Zero();                 // [rad/s^2]
+  Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
   double qq_ = 0, vq_ = 0, dq_ = 0, vv_ = 0, dv_ = 0, dd_ = 0;  // of P
   Vec<kDof> a_ = Vec<kDof>::Zero();        // [rad/s^2] of (i) at the last sample
-  Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
+  Mat<kDof> B_ = Mat<kDof>::Identity();    // [kg m^2] there
+  Vec<kDof> rest_ = Vec<kDof>::Zero();     // [N m] C qd + g + F there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 

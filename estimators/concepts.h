@@ -104,6 +104,15 @@ Detection detect(D& d, const Measurement<D::kDof>& y, const Vec<D::kDof>& tau_ex
   }
 }
 
+/// One step behind an estimator: silent where a sample was left out, from the start where the
+/// estimate diverged.
+template <CollisionDetector D>
+Detection detect(D& d, const Measurement<D::kDof>& y, const Estimate<D::kDof>& e) noexcept {
+  if (used(e.status)) return detect(d, y, e.tau_ext);
+  if (e.status == Status::kDiverged) d.reset();
+  return {};
+}
+
 /// A detector whose thresholds can be set from data: joint i marks where statistic()[i] of the last
 /// update reaches Parameters::threshold[i]. Twice the tau_ext gives 2^kDegree times the statistic.
 template <class D>

@@ -17,7 +17,9 @@
 /// with S factorised and never inverted. Of the symmetric blocks one triangle is computed and
 /// mirrored.
 ///
-/// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w.
+/// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w. R moves with the
+/// pose, by orders of magnitude where a straight arm is nearly singular, so a Q_d that is constant
+/// suits one pose; what is tuned for a bandwidth takes Q_d from each pose's R.
 #pragma once
 
 #include <tuple>
@@ -35,8 +37,10 @@ class DisturbanceKalmanFilter {
   static constexpr const char* kName = "dkf";
   static constexpr int kDof = M::kDof;
 
-  /// Q_d has no default that fits every arm.
+  /// Neither w nor Q_d has a default that fits every arm.
   struct Parameters {
+    double w =
+        0;  ///< [rad/s] positive: Q_d = w^4 B Q_qd B^T in every pose, P0 what follows from it
     Mat<kDof> Q_d =
         Mat<kDof>::Zero();  ///< [(N m)^2/s] density of ddot, symmetric, positive definite:
                             ///< larger is faster and noisier
@@ -49,35 +53,38 @@ class DisturbanceKalmanFilter {
     Vec<kDof> P0_qd =
         Vec<kDof>::Constant(1e-8);       ///< [(rad/s)^2] variance of the first qd, at least 0
     Mat<kDof> P0_d = Mat<kDof>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
-    double max_gap = 0.05;               ///< [s] a longer gap restarts the filter
+    /// [1] standard deviations by which the momentum may jump; a blow makes hundreds
+    double gate = 1000;
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
-    /// The matrices Q_d and P0_d come from for_bandwidth, and cannot be set by name.
+    /// w comes from for_bandwidth; it and the matrices Q_d and P0_d cannot be set by name.
     static constexpr auto fields() {
       using P = Parameters;
       return std::tuple(
           Field{"Q_p", &P::Q_p, "(N m)^2 s", 0, 1e20, "the model's error; larger is slower"},
           Field{"Q_qd", &P::Q_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
           Field{"P0_qd", &P::P0_qd, "(rad/s)^2", 0, 1e12, "variance of the first qd"},
-          max_gap_field<P>());
+          gate_field<P>(), torque_field<P>(), max_gap_field<P>());
     }
 
-    /// Q_d = w^4 B(0) Q_qd B(0)^T: at q = 0 every joint is Butterworth's of -3 dB at w [rad/s],
-    /// however B couples them, and in other poses about so. P0 is what the filter settles to.
-    static Parameters for_bandwidth(const M& model, double w) {
+    /// In every pose every joint is Butterworth's of -3 dB at w [rad/s], however B couples them. P0
+    /// is what the filter settles to.
+    static Parameters for_bandwidth(const M&, double w) {
       Parameters p;
-      const Mat<kDof> B = model.inertia(Vec<kDof>::Zero());
-      const Mat<kDof> R = B * p.Q_qd.asDiagonal() * B.transpose();
-      p.Q_d = w * w * w * w * R;
+      p.w = w;
       p.P0_qd = kRoot2 * w * p.Q_qd;
-      p.P0_d = kRoot2 * w * w * w * R;
       return p;
     }
   };
 
   /// @throws std::invalid_argument for parameters out of range
   explicit DisturbanceKalmanFilter(const M& model, const Parameters& p)
-      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {
-    require(Ldlt<kDof>(p.Q_d).ok(), "Q_d of dkf must be positive definite");
+      : p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque),
+        momentum_(model) {
+    require(p.w >= 0, "w [rad/s] of dkf must not be negative");
+    require(p.w > 0 || Ldlt<kDof>(p.Q_d).ok(), "Q_d of dkf must be positive definite");
     require(p.P0_d.diagonal().minCoeff() >= 0, "P0_d of dkf must not be negative");
     mirror(p_.Q_d);
     mirror(p_.P0_d);
@@ -90,14 +97,21 @@ class DisturbanceKalmanFilter {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {d_, status};
-    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (!used(status)) return {d_, status, sampling_.joints()};
+    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       start(step);
-      return {d_, status};
+      return {d_, status, sampling_.joints()};
+    }
+    const Mat<kDof> R = step.B * p_.Q_qd.asDiagonal() * step.B.transpose();  // (ii), times h
+    if (p_.w > 0) {
+      p_.Q_d = p_.w * p_.w * p_.w * p_.w * R;
+      mirror(p_.Q_d);
     }
     predict(sampling_.h(), step.n);
-    if (!correct(sampling_.h(), step)) {
+    const Mat<kDof> S = P_pp_ + R / sampling_.h();
+    status = sampling_.confirm(beyond<kDof>(p_.gate, step.p - p_hat_, nu_, S.diagonal()));
+    if (status == Status::kOk && !correct(S, step)) {
       sampling_.reset();
       return {d_, Status::kSingularInertia};
     }
@@ -106,7 +120,7 @@ class DisturbanceKalmanFilter {
       start(step);
       status = Status::kDiverged;
     }
-    return {d_, status};
+    return {d_, status, sampling_.joints()};
   }
 
   /// P [(N m s)^2 ... (N m)^2] of [p; d] after the last sample; symmetric.
@@ -121,9 +135,14 @@ class DisturbanceKalmanFilter {
 
   void start(const MomentumStep<kDof>& step) noexcept {
     p_hat_ = step.p;
+    nu_.setZero();
     P_pp_.noalias() = step.B * p_.P0_qd.asDiagonal() * step.B.transpose();
     mirror(P_pp_);
     P_dp_.setZero();
+    if (p_.w > 0) {
+      p_.P0_d = kRoot2 * p_.w * p_.w * p_.w * step.B * p_.Q_qd.asDiagonal() * step.B.transpose();
+      mirror(p_.P0_d);
+    }
     P_dd_ = p_.P0_d;
   }
 
@@ -137,11 +156,12 @@ class DisturbanceKalmanFilter {
   }
 
   // (iii); false if S is not positive definite
-  [[gnu::always_inline]] bool correct(double h, const MomentumStep<kDof>& step) noexcept {
-    const Mat<kDof> R = step.B * (p_.Q_qd / h).asDiagonal() * step.B.transpose();
-    const Ldlt<kDof> S(P_pp_ + R);
+  [[gnu::always_inline]] bool correct(const Mat<kDof>& variance,
+                                      const MomentumStep<kDof>& step) noexcept {
+    const Ldlt<kDof> S(variance);
     if (!S.ok()) return false;
-    const Vec<kDof> innovation = S.solve(Vec<kDof>(step.p - p_hat_));
+    nu_ = step.p - p_hat_;
+    const Vec<kDof> innovation = S.solve(nu_);
     const Mat<kDof> G_p = S.solve(P_pp_), G_d = S.solve(Mat<kDof>(P_dp_.transpose()));
     p_hat_ += P_pp_ * innovation;
     d_ += P_dp_ * innovation;
@@ -163,9 +183,10 @@ class DisturbanceKalmanFilter {
   }
 
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Momentum<M> momentum_;
   Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
+  Vec<kDof> nu_ = Vec<kDof>::Zero();     // [N m s] innovation of the last correction
   Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate
   // blocks of P
   Mat<kDof> P_pp_ = Mat<kDof>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;

@@ -46,7 +46,9 @@ class Ekf {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Ekf(const M& model, const Parameters& p)
-      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {
+      : model_(model),
+        p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque) {
     for (int b = 0; b < 3; ++b) Q_[b] = diagonal(p.Q, b);
     start({});
   }
@@ -57,20 +59,21 @@ class Ekf {
   }
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
-    const Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return estimate(status);
+    Status status = sampling_.accept(y);
+    if (!used(status)) return estimate(status);
     if (status == Status::kStarted) {
       start(y);
       return estimate(status);
     }
-    const Vec<kDof>& tau = p_.alignment == Alignment::kHeld ? tau_ : y.tau;
+    const Vec<kDof> tau = p_.alignment == Alignment::kHeld ? sampling_.torque(y) : y.tau;
     const double steps = p_.Ts > 0 ? sampling_.h() / p_.Ts : 1;
     if (!predict(sampling_.h(), tau, steps)) {
       sampling_.reset();
       return estimate(Status::kSingularInertia);
     }
-    correct(y, 1 / steps);
-    tau_ = y.tau;
+    nu_q_ += sampling_.h() * nu_qd_;
+    status = sampling_.confirm(unlikely(y, 1 / steps));
+    if (status == Status::kOk) correct(y, 1 / steps);
     if (!(x_[0].allFinite() && x_[1].allFinite() && within(x_[2], kEstimateLimit))) {
       x_[2].setZero();
       start(y);
@@ -106,7 +109,9 @@ class Ekf {
   using Block = detail::Block<kDof>;
   using Column = Vec<kRows>;
 
-  Estimate<kDof> estimate(Status s) const noexcept { return {x_[2].template head<kDof>(), s}; }
+  Estimate<kDof> estimate(Status s) const noexcept {
+    return {x_[2].template head<kDof>(), s, sampling_.joints()};
+  }
 
   void start(const Measurement<kDof>& y) noexcept {
     const bool zero = p_.start == Start::kZero;
@@ -119,7 +124,8 @@ class Ekf {
     vq_.setZero();
     dq_.setZero();
     dv_.setZero();
-    tau_ = y.tau;
+    nu_q_.setZero();
+    nu_qd_.setZero();
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
@@ -156,6 +162,14 @@ class Ekf {
     return true;
   }
 
+  // of q alone: a blow changes qd at once, and no blow q
+  [[gnu::always_inline]] std::uint8_t unlikely(const Measurement<kDof>& y,
+                                               double R_scale) const noexcept {
+    const Vec<kDof> variance =
+        qq_.diagonal().template head<kDof>() + R_scale * p_.R.template head<kDof>();
+    return beyond<kDof>(p_.gate, y.q - x_[0].template head<kDof>(), nu_q_, variance);
+  }
+
   [[gnu::noinline]] void correct(const Measurement<kDof>& y, double R_scale) noexcept {
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
@@ -173,6 +187,8 @@ class Ekf {
       subtract(c[0], c[1], s_inverse, qv);
     }
     vq_ = transposed(qv);
+    nu_q_ = y.q - x_[0].template head<kDof>();
+    nu_qd_ = y.qd - x_[1].template head<kDof>();
   }
 
   // (ii), all but the block between q and qd
@@ -224,11 +240,11 @@ class Ekf {
 
   M model_;
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Block Q_[3];                                                      // diagonal blocks of Q
   Column x_[3] = {Column::Zero(), Column::Zero(), Column::Zero()};  // q, qd, d
   Block qq_, vq_, dq_, vv_, dv_, dd_;                               // of P
-  Vec<kDof> tau_ = Vec<kDof>::Zero();                               // [N m] at the last used sample
+  Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
 };
 
 }  // namespace tauext

@@ -37,7 +37,11 @@ struct EkfParameters {
   Integration integration = Integration::kSecondOrder;  ///< (iii), or (10) alone
   Alignment alignment = Alignment::kHeld;               ///< which tau belongs to a step
   Start start = Start::kFirstMeasurement;               ///< what the first sample does to the state
-  double max_gap = 0.05;                                ///< [s] a longer gap restarts the filter
+  /// [1] standard deviations by which q may jump; the printed R knows no noise, so with it there is
+  /// no gate
+  double gate = 1e12;
+  TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+  double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
   static constexpr auto fields() {
     using P = EkfParameters;
@@ -48,7 +52,7 @@ struct EkfParameters {
         Field{"Ts", &P::Ts, "s", 0, 1, "the step that Q and R are meant for; 0: any"},
         integration_field<P>(),
         Field{"alignment", &P::alignment, "", 0, 0, "paper errs by a sample of tau"},
-        start_field<P>(), max_gap_field<P>());
+        start_field<P>(), gate_field<P>(), torque_field<P>(), max_gap_field<P>());
   }
 
   /// (32) for the three joints of wallmobot3, (38) for the one of testbed1.
@@ -94,6 +98,7 @@ struct EkfParameters {
     p.Q << kQ_q * ones, kQ_v * ones, Q_d;
     p.R << kR_q * ones, kR_v * ones;
     p.Ts = 1e-3;
+    p.gate = 100;
     return p;
   }
 };

@@ -35,10 +35,12 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
 
   struct Parameters {
     double bandwidth = 30;  ///< [rad/s] -3 dB, positive: larger is faster and noisier
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
-      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+      return std::tuple(bandwidth_field<Parameters>(), torque_field<Parameters>(),
+                        max_gap_field<Parameters>());
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose.
@@ -47,7 +49,9 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit HigherOrderMomentumObserver(const M& model, const Parameters& p = {})
-      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
+      : p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque),
+        momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -57,11 +61,11 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {x_.col(0), status};
-    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (!used(status)) return {x_.col(0), status, sampling_.joints()};
+    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       x_.template rightCols<Order - 1>().setZero();
-      return {x_.col(0), status};
+      return {x_.col(0), status, sampling_.joints()};
     }
     const double h = sampling_.h();
     if (new_step_(h)) Phi_ = transition(p_.bandwidth * h);
@@ -73,7 +77,7 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
       x_.setZero();
       status = Status::kDiverged;
     }
-    return {x_.col(0), status};
+    return {x_.col(0), status, sampling_.joints()};
   }
 
  private:
@@ -97,7 +101,7 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
   }
 
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Momentum<M> momentum_;
   StepChange new_step_;
   Mat<Order> Phi_ = Mat<Order>::Identity();

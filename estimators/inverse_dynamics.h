@@ -27,10 +27,12 @@ class InverseDynamics {
   struct Parameters {
     double bandwidth =
         30;  ///< [rad/s] of the filter: larger is faster and noisier (ours; (4) has none)
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the filter
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
     static constexpr auto fields() {
-      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+      return std::tuple(bandwidth_field<Parameters>(), torque_field<Parameters>(),
+                        max_gap_field<Parameters>());
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose.
@@ -39,7 +41,9 @@ class InverseDynamics {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit InverseDynamics(const M& model, const Parameters& p = {})
-      : model_(model), p_(check_parameters(p, kName)), sampling_(p.max_gap) {}
+      : model_(model),
+        p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -49,14 +53,14 @@ class InverseDynamics {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    if (!used(status)) return {tau_ext_, status, sampling_.joints()};
     Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
     now.bias += model_.friction(y.qd);
     if (status == Status::kOk) {
       const double h = sampling_.h();
       const Vec<kDof> qdd = (y.qd - qd_) / h;
       const Vec<kDof> raw =
-          tau_ - 0.5 * ((now.B + before_.B) * qdd + now.bias + before_.bias);  // (4)
+          sampling_.torque(y) - 0.5 * ((now.B + before_.B) * qdd + now.bias + before_.bias);  // (4)
       if (new_step_(h)) share_ = -std::expm1(-p_.bandwidth * h);
       tau_ext_ += share_ * (raw - tau_ext_);
       if (!within(tau_ext_, kEstimateLimit)) {
@@ -66,20 +70,18 @@ class InverseDynamics {
     }
     before_ = now;
     qd_ = y.qd;
-    tau_ = y.tau;
-    return {tau_ext_, status};
+    return {tau_ext_, status, sampling_.joints()};
   }
 
  private:
   M model_;
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   StepChange new_step_;
   double share_ = 0;  // [1] 1 - a
   // at the last used sample, bias with friction
   Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
-  Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 

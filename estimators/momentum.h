@@ -2,7 +2,8 @@
 /// @file
 /// The generalised momentum of an arm and what drives it, which is all that momentum observers see:
 ///     p = B qd,   pdot = n - tau_ext,   n = tau - F - g + C^T qd                           (i)
-/// Over [t_k-1, t_k) tau is tau_k-1 (held); the other terms of n are the mean of both ends.
+/// Over [t_k-1, t_k) tau is tau_k-1 (held; sampled at instants, the mean of both ends); the other
+/// terms of n are the mean of both ends.
 #pragma once
 
 #include "estimators/concepts.h"
@@ -26,17 +27,18 @@ class Momentum {
 
   explicit Momentum(const M& model) : model_(model) {}  ///< of this robot
 
-  /// Goes on to sample y; of what is returned at the first sample only B and p mean anything.
-  [[gnu::always_inline]] MomentumStep<kDof> advance(const Measurement<kDof>& y) noexcept {
+  /// Goes on to sample y, tau [N m] having acted meanwhile; of what is returned at the first sample
+  /// only B and p mean anything.
+  [[gnu::always_inline]] MomentumStep<kDof> advance(const Measurement<kDof>& y,
+                                                    const Vec<kDof>& tau) noexcept {
     MomentumStep<kDof> s;
     s.B = model_.inertia(y.q);
     s.p = s.B * y.qd;
     const Vec<kDof> rest = model_.momentum_bias(y.q, y.qd) - model_.friction(y.qd);
     s.dp = s.p - p_;
-    s.n = tau_ + 0.5 * (rest + rest_);
+    s.n = tau + 0.5 * (rest + rest_);
     p_ = s.p;
     rest_ = rest;
-    tau_ = y.tau;
     return s;
   }
 
@@ -44,7 +46,6 @@ class Momentum {
   M model_;
   Vec<kDof> p_ = Vec<kDof>::Zero();     // [N m s] at the last sample
   Vec<kDof> rest_ = Vec<kDof>::Zero();  // [N m] n without tau there
-  Vec<kDof> tau_ = Vec<kDof>::Zero();   // [N m] there
 };
 
 }  // namespace tauext

@@ -33,12 +33,13 @@ class MomentumObserver {
     /// [rad/s] bandwidth of every joint, positive: larger is faster and noisier; 90 % of a step
     /// after ln 10 / K, a ramp is followed slope / K behind
     Vec<kDof> K = Vec<kDof>::Constant(30);
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
       return std::tuple(Field{"K", &Parameters::K, "rad/s", kLeastBandwidth, kMostBandwidth,
                               "larger is faster and noisier"},
-                        max_gap_field<Parameters>());
+                        torque_field<Parameters>(), max_gap_field<Parameters>());
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose.
@@ -47,7 +48,9 @@ class MomentumObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit MomentumObserver(const M& model, const Parameters& p = {})
-      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
+      : p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque),
+        momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -57,8 +60,8 @@ class MomentumObserver {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {tau_ext_, status};
-    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (!used(status)) return {tau_ext_, status, sampling_.joints()};
+    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kOk) {
       const double h = sampling_.h();
       if (new_step_(h)) share_ = (-h * p_.K).unaryExpr([](double x) { return -std::expm1(x); });
@@ -68,12 +71,12 @@ class MomentumObserver {
         status = Status::kDiverged;
       }
     }
-    return {tau_ext_, status};
+    return {tau_ext_, status, sampling_.joints()};
   }
 
  private:
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Momentum<M> momentum_;
   StepChange new_step_;
   Vec<kDof> share_ = Vec<kDof>::Zero();    // [1] 1 - a of (ii)

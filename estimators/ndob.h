@@ -39,12 +39,14 @@ class Ndob {
     Vec<kDof> X = Vec<kDof>::Zero();
     Integration integration = Integration::kSecondOrder;  ///< (i), or (18) at k-1 alone
     Start start = Start::kFirstMeasurement;               ///< z_0 = X qd_0, or 0
+    TorqueSampling torque = TorqueSampling::kHeld;        ///< when tau acted
     double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
       using P = Parameters;
       return std::tuple(Field{"X", &P::X, "N m s/rad", 1e-12, 1e12, "larger is faster and noisier"},
-                        integration_field<P>(), start_field<P>(), max_gap_field<P>());
+                        integration_field<P>(), start_field<P>(), torque_field<P>(),
+                        max_gap_field<P>());
     }
 
     /// Section 5.2: X = 2000 diag(0.3, 0.5, 0.3), for wallmobot3.
@@ -61,7 +63,7 @@ class Ndob {
   explicit Ndob(const M& model, const Parameters& p)
       : model_(model),
         p_(check_parameters(p, kName)),
-        sampling_(p.max_gap),
+        sampling_(p.max_gap, limits_of(model), p.torque),
         X_(detail::pad_vector<kDof>(p.X)) {}
 
   void reset() noexcept {
@@ -71,12 +73,12 @@ class Ndob {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {tau_ext_, status};
+    if (!used(status)) return {tau_ext_, status, sampling_.joints()};
     Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
     now.bias += model_.friction(y.qd);
     if (status == Status::kStarted) {
       start(y);
-    } else if (advance(sampling_.h(), now, y.qd)) {
+    } else if (advance(sampling_.h(), now, y)) {
       tau_ext_ = z_.template head<kDof>() - p_.X.cwiseProduct(y.qd);  // (17)
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
@@ -89,17 +91,17 @@ class Ndob {
     }
     before_ = now;
     qd_ = y.qd;
-    tau_ = y.tau;
-    return {tau_ext_, status};
+    return {tau_ext_, status, sampling_.joints()};
   }
 
  private:
   using Column = Vec<detail::kPadded<kDof>>;
 
   [[gnu::always_inline]] bool advance(double h, const Dynamics<kDof>& now,
-                                      const Vec<kDof>& qd) noexcept {
+                                      const Measurement<kDof>& y) noexcept {
+    const Vec<kDof> tau = sampling_.torque(y);
     if (p_.integration == Integration::kEuler) {
-      return advance(h, before_.B, tau_ - before_.bias - tau_ext_);
+      return advance(h, before_.B, tau - before_.bias - tau_ext_);
     }
     Mat<kDof> B;  // of (i), its lower triangle, element by element: see lanes.h
 #pragma GCC unroll 8
@@ -108,8 +110,8 @@ class Ndob {
       for (int i = j; i < kDof; ++i) B(i, j) = 0.5 * (before_.B(i, j) + now.B(i, j));
       B(j, j) += 0.5 * h * p_.X[j];
     }
-    const Vec<kDof> change = p_.X.cwiseProduct(qd - qd_);
-    return advance(h, B, tau_ - tau_ext_ - 0.5 * (before_.bias + now.bias - change));
+    const Vec<kDof> change = p_.X.cwiseProduct(y.qd - qd_);
+    return advance(h, B, tau - tau_ext_ - 0.5 * (before_.bias + now.bias - change));
   }
 
   // false if B is not positive definite
@@ -128,12 +130,11 @@ class Ndob {
 
   M model_;
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Column X_, z_ = Column::Zero();  // [N m s/rad], [N m] padded
   // at the last used sample, bias with friction
   Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
-  Vec<kDof> tau_ = Vec<kDof>::Zero();      // [N m] there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 

@@ -30,10 +30,12 @@ class NdobInertia {
 
   struct Parameters {
     double bandwidth = 30;  ///< [rad/s] w, positive: larger is faster and noisier
-    double max_gap = 0.05;  ///< [s] a longer gap restarts the observer
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
-      return std::tuple(bandwidth_field<Parameters>(), max_gap_field<Parameters>());
+      return std::tuple(bandwidth_field<Parameters>(), torque_field<Parameters>(),
+                        max_gap_field<Parameters>());
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose.
@@ -42,7 +44,9 @@ class NdobInertia {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit NdobInertia(const M& model, const Parameters& p = {})
-      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
+      : p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque),
+        momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -51,8 +55,8 @@ class NdobInertia {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {tau_ext_, status};
-    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (!used(status)) return {tau_ext_, status, sampling_.joints()};
+    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
     const double w = p_.bandwidth;
     if (status == Status::kStarted) {
       z_ = tau_ext_ + w * step.p;
@@ -66,12 +70,12 @@ class NdobInertia {
         status = Status::kDiverged;
       }
     }
-    return {tau_ext_, status};
+    return {tau_ext_, status, sampling_.joints()};
   }
 
  private:
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Momentum<M> momentum_;
   Vec<kDof> z_ = Vec<kDof>::Zero();        // [N m]
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate

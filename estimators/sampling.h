@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What an estimator does with a sample before any arithmetic: every estimator asks here first.
+/// A sample is used if its time is the next one (samples/clock.h) and every joint's reading is one
+/// that the arm can have (samples/limits.h): inside its limits, and, from the last used sample on,
+///     |q_k - q_k-1 - h (qd_k + qd_k-1) / 2| <= 0.005 + 8 h |qd_k-1|                         (i)
+///     |qd_k - qd_k-1| <= 0.02 + h qdd_max                                                   (ii)
+/// Others are left out, and the estimate is held. A jump by (ii) that the next sample bears out was
+/// a blow, which costs that one sample; one by (i), such as an encoder's wrap by 2 pi, is a new
+/// position when kClockSamples in a row agree on it. A torque that is held is not needed before the
+/// next sample, which tells: if tau has jumped by more than dtau_max and back, the one before the
+/// jump takes its place, and the next kOk names the joints. A joint that says it moves (qd is not
+/// 0) while q and qd stay the same to the last bit, for 0.5 mrad of that motion, is frozen; its
+/// samples are left out until it speaks again, so a reading that is repeated is no reading.
 #pragma once
 
 #include <array>
@@ -9,12 +20,12 @@
 #include <stdexcept>
 
 #include "estimators/parameters.h"
+#include "estimators/samples/clock.h"
+#include "estimators/samples/limits.h"
+#include "estimators/samples/options.h"
 #include "estimators/types.h"
 
 namespace tauext {
-
-/// A norm [rad, rad/s, N m] beyond which a reading is a broken sensor and no robot's.
-inline constexpr double kMeasurementLimit = 1e6;
 
 /// A norm [N m] beyond which an estimate has diverged.
 inline constexpr double kEstimateLimit = 1e9;
@@ -37,6 +48,28 @@ constexpr auto max_gap_field() {
   return Field{"max_gap", &P::max_gap, "s", 1e-4, 1e3, "a longer gap restarts the estimator"};
 }
 
+/// The gate of a filter, as its Parameters list it.
+template <class P>
+constexpr auto gate_field() {
+  return Field{"gate", &P::gate, "1", 1, 1e12, "larger believes larger jumps"};
+}
+
+/// Which joints' innovation has jumped beyond the gate [1], in standard deviations, bit 0 for the
+/// first: (innovation_i - expected_i)^2 > gate^2 variance_i. Not the innovation alone: a load that
+/// a slow filter has not found yet makes that as large as any outlier, but bit by bit.
+template <int N>
+[[gnu::always_inline]] inline std::uint8_t beyond(double gate, const Vec<N>& innovation,
+                                                  const Vec<N>& expected,
+                                                  const Vec<N>& variance) noexcept {
+  unsigned mask = 0;
+#pragma GCC unroll 8
+  for (int j = 0; j < N; ++j) {
+    const double jump = innovation[j] - expected[j];
+    mask |= static_cast<unsigned>(jump * jump > gate * gate * variance[j]) << j;
+  }
+  return static_cast<std::uint8_t>(mask);
+}
+
 /// The one bandwidth [rad/s] of an estimator, as its Parameters list it.
 template <class P>
 constexpr auto bandwidth_field() {
@@ -44,42 +77,191 @@ constexpr auto bandwidth_field() {
                kLeastBandwidth, kMostBandwidth, "larger is faster and noisier"};
 }
 
-/// Time and status of the samples an estimator has used.
+/// The samples that an estimator of N joints has used, and its verdict on the next one.
+template <int N>
 class Sampling {
  public:
   /// @param max_gap [s] longest step to integrate over
-  /// @throws std::invalid_argument if it is not positive
-  explicit Sampling(double max_gap) : max_gap_(max_gap) {
+  /// @param limits of the arm: limits_of(model)
+  /// @param torque when tau acts
+  /// @throws std::invalid_argument if max_gap is not positive
+  explicit Sampling(double max_gap, const ArmLimits<N>& limits = {},
+                    TorqueSampling torque = TorqueSampling::kHeld)
+      : clock_(max_gap), limits_(limits), torque_(torque) {
     require(max_gap > 0, "max_gap [s] must be positive");
   }
 
-  void reset() noexcept { started_ = false; }
+  /// The next sample makes a start.
+  void reset() noexcept {
+    clock_.reset();
+    waiting_ = 0;
+    travel_ = 0;
+    joints_ = jumped_ = 0;
+    doubted_ = false;
+  }
 
-  /// Whether y can be used: kOk to step by h(), kStarted to start at y, kBadMeasurement to ignore
-  /// it.
-  template <int N>
+  /// Whether y can be used: kOk to step by h(), kStarted to start at y, else what is wrong with it,
+  /// and it has to be left out.
   [[gnu::always_inline]] Status accept(const Measurement<N>& y) noexcept {
-    const bool in_order = !started_ || y.t > t_;
-    if (!std::isfinite(y.t) || !in_order || !within(y.q, kMeasurementLimit) ||
-        !within(y.qd, kMeasurementLimit) || !within(y.tau, kMeasurementLimit)) {
-      return Status::kBadMeasurement;
+    if (clock_.follows(y.t) && jumped_ == 0 && plain(y)) [[likely]] {
+      clock_.accept(y.t);
+      remember(y);
+      travel_ = 0;
+      return Status::kOk;
     }
-    h_ = y.t - t_;
-    t_ = y.t;
-    if (!started_ || h_ > max_gap_) {
-      started_ = true;
-      return Status::kStarted;
+    return judge(y);
+  }
+
+  /// For a filter that finds these joints of the sample just accepted unlikely: kUnlikely, not to
+  /// be corrected by it. kOk if there are none, and where the next sample bears it out.
+  [[gnu::always_inline]] Status confirm(std::uint8_t unlikely) noexcept {
+    doubted_ = unlikely != 0 && !doubted_;
+    if (!doubted_) [[likely]]
+      return Status::kOk;
+    joints_ = unlikely;
+    return Status::kUnlikely;
+  }
+
+  /// [N m] that acted over the step to this sample, which was accepted.
+  [[gnu::always_inline]] Vec<N> torque(const Measurement<N>& y) const noexcept {
+    return torque_ == TorqueSampling::kHeld ? held_ : Vec<N>(0.5 * (held_ + y.tau));
+  }
+
+  /// [N m] tau of the used sample before this one.
+  const Vec<N>& torque_before() const noexcept { return held_; }
+
+  double h() const noexcept { return clock_.h(); }  ///< [s] from the last used sample to this one
+
+  /// Which joints the last verdict is about, bit 0 for the first; 0 where it is about none.
+  std::uint8_t joints() const noexcept { return joints_; }
+
+ private:
+  static_assert(N <= 8, "a bit for each joint");
+  static constexpr double kTravel = 5e-4;  // [rad] more than a step of any encoder
+
+  // (i)
+  [[gnu::always_inline]] static bool continuous(const Measurement<N>& a, const Measurement<N>& b,
+                                                double h, int j) noexcept {
+    return std::abs(b.q[j] - a.q[j] - 0.5 * h * (b.qd[j] + a.qd[j])) <=
+           0.005 + 8 * h * std::abs(a.qd[j]);
+  }
+  // (ii)
+  [[gnu::always_inline]] bool calm(const Measurement<N>& a, const Measurement<N>& b, double h,
+                                   int j) const noexcept {
+    return std::abs(b.qd[j] - a.qd[j]) <= 0.02 + h * limits_.qdd[j];
+  }
+  [[gnu::always_inline]] bool smooth(double a, double b, int j) const noexcept {
+    return std::abs(b - a) <= limits_.dtau[j];
+  }
+  [[gnu::always_inline]] bool inside(const Measurement<N>& y, int j) const noexcept {
+    return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
+           (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
+  }
+  [[gnu::always_inline]] static bool same(const Measurement<N>& a, const Measurement<N>& b,
+                                          int j) noexcept {
+    return (b.qd[j] != 0) & (b.q[j] == a.q[j]) & (b.qd[j] == a.qd[j]);
+  }
+
+  // all of it at once: false where judge() has to look
+  [[gnu::always_inline]] bool plain(const Measurement<N>& y) const noexcept {
+    const double h = y.t - last_.t;
+    bool ok = true;
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      ok &= inside(y, j) & continuous(last_, y, h, j) & calm(last_, y, h, j) &
+            smooth(last_.tau[j], y.tau[j], j) & !same(last_, y, j);
     }
+    return ok;
+  }
+
+  [[gnu::always_inline]] void remember(const Measurement<N>& y) noexcept {
+    held_ = last_.tau;
+    last_ = y;
+    waiting_ = 0;
+    joints_ = 0;
+  }
+
+  template <class Wrong>
+  std::uint8_t which(Wrong wrong) const noexcept {
+    int mask = 0;
+    for (int j = 0; j < N; ++j) mask |= wrong(j) ? 1 << j : 0;
+    return static_cast<std::uint8_t>(mask);
+  }
+
+  [[gnu::noinline]] Status judge(const Measurement<N>& y) noexcept {
+    const auto readable = [](double x) { return std::abs(x) <= kMeasurementLimit; };
+    joints_ = which(
+        [&](int j) { return !readable(y.q[j]) || !readable(y.qd[j]) || !readable(y.tau[j]); });
+    if (joints_ != 0) return Status::kBadMeasurement;
+    joints_ = which([&](int j) { return !inside(y, j); });
+    if (joints_ != 0) return Status::kOutOfRange;
+    if (frozen(y)) return Status::kFrozen;
+    const Clock before = clock_;
+    const Status time = clock_.accept(y.t);
+    if (time == Status::kBadTime) return time;
+    if (time == Status::kStarted) return start(y);
+    const Status status = judge_step(y);
+    if (!used(status)) clock_ = before;
+    return status;
+  }
+
+  Status start(const Measurement<N>& y) noexcept {
+    remember(y);
+    travel_ = 0;
+    jumped_ = 0;
+    return Status::kStarted;
+  }
+
+  // whether a joint says that it has moved since the last sample or longer, and its reading has not
+  bool frozen(const Measurement<N>& y) noexcept {
+    const double h = y.t - last_.t;
+    joints_ = which([&](int j) { return h > 0 && same(last_, y, j); });
+    double moved = 0;
+    for (int j = 0; j < N; ++j) moved += (joints_ >> j & 1) * h * std::abs(y.qd[j]);
+    return travel_ + moved > kTravel;
+  }
+
+  // what came h() after the last one
+  Status judge_step(const Measurement<N>& y) noexcept {
+    const auto leaps = which([&](int j) { return !continuous(last_, y, h(), j); });
+    const auto jumps = which([&](int j) { return !smooth(last_.tau[j], y.tau[j], j); });
+    auto jolts = which([&](int j) { return !calm(last_, y, h(), j); });
+    if (torque_ == TorqueSampling::kInstant) jolts |= jumps;
+    joints_ = leaps | jolts;
+    if (joints_ == 0 || (leaps == 0 && waiting_ > 0)) return go_on(y, jumps);
+    const double h = y.t - waits_.t;
+    const auto strays = which([&](int j) { return !continuous(waits_, y, h, j); });
+    waiting_ = waiting_ > 0 && h > 0 && strays == 0 ? waiting_ + 1 : 1;
+    waits_ = y;
+    return waiting_ < kClockSamples ? Status::kJump : start(y);
+  }
+
+  // y, whose tau has jumped at these joints
+  Status go_on(const Measurement<N>& y, std::uint8_t jumps) noexcept {
+    const auto still = which([&](int j) { return same(last_, y, j); });
+    if (still == 0) travel_ = 0;
+    for (int j = 0; j < N; ++j) travel_ += (still >> j & 1) * h() * std::abs(y.qd[j]);
+    const auto back =
+        which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
+    for (int j = 0; j < N; ++j) {
+      if (back >> j & 1) last_.tau[j] = held_[j];
+    }
+    remember(y);
+    joints_ = back;
+    jumped_ = jumps & ~back;
     return Status::kOk;
   }
 
-  double h() const noexcept { return h_; }  ///< [s] from the last used sample to this one
-
- private:
-  double max_gap_;
-  double t_ = 0;
-  double h_ = 0;
-  bool started_ = false;
+  Clock clock_;
+  ArmLimits<N> limits_;
+  TorqueSampling torque_;
+  Measurement<N> last_;           // that was used
+  Vec<N> held_ = Vec<N>::Zero();  // [N m] tau of the one before
+  Measurement<N> waits_;          // that jumped, waiting_ in a row
+  int waiting_ = 0;
+  double travel_ = 0;  // [rad] that a joint whose reading has not changed says to have moved
+  std::uint8_t joints_ = 0, jumped_ = 0;  // of the verdict; whose last tau has jumped
+  bool doubted_ = false;                  // a filter the last sample
 };
 
 /// Whether a step [s] needs anew what was made for the last one. Time stamps on a grid differ in
@@ -96,39 +278,5 @@ class StepChange {
  private:
   double h_ = 0;
 };
-
-/// How a nonlinear model is stepped from k-1 to k.
-enum class Integration : std::uint8_t {
-  kSecondOrder,  ///< an error of h^2: the mean of both ends, or the Taylor terms of h^2
-  kEuler,  ///< from the values at k-1 alone, as the paper prints: in motion an error of h/2 B qddd
-};
-
-constexpr auto choices(Integration) {
-  return std::array{Choice<Integration>{"second_order", Integration::kSecondOrder},
-                    Choice<Integration>{"euler", Integration::kEuler}};
-}
-
-/// What an observer assumes before its first sample.
-enum class Start : std::uint8_t {
-  kFirstMeasurement,  ///< the arm moves as first measured and nothing touches it
-  kZero,              ///< the state is zero, as the paper prints (its arm starts at rest at q = 0)
-};
-
-constexpr auto choices(Start) {
-  return std::array{Choice<Start>{"first_measurement", Start::kFirstMeasurement},
-                    Choice<Start>{"zero", Start::kZero}};
-}
-
-/// How the model is stepped, as Parameters list it.
-template <class P>
-constexpr auto integration_field() {
-  return Field{"integration", &P::integration, "", 0, 0, "euler, as printed, errs in motion"};
-}
-
-/// What is assumed at first, as Parameters list it.
-template <class P>
-constexpr auto start_field() {
-  return Field{"start", &P::start, "", 0, 0, "zero, as printed, errs for an arm in motion"};
-}
 
 }  // namespace tauext

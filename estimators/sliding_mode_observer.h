@@ -40,7 +40,8 @@ class SlidingModeObserver {
     Vec<kDof> S2 = Vec<kDof>::Zero();  ///< [1/s^2] positive: of the linear part, w^2
     Vec<kDof> T1 = Vec<kDof>::Zero();  ///< [sqrt(N m / s)] at least 0, about sqrt(2 S1): damps S1
     Vec<kDof> T2 = Vec<kDof>::Zero();  ///< [1/s] at least 0: damps S2
-    double max_gap = 0.05;             ///< [s] a longer gap restarts the observer
+    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
+    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
       using P = Parameters;
@@ -49,7 +50,7 @@ class SlidingModeObserver {
           Field{"S2", &P::S2, "1/s^2", 1e-12, 1e15,
                 "of the linear part; larger is faster, noisier"},
           Field{"T1", &P::T1, "sqrt(N m/s)", 0, 1e12, "damps S1"},
-          Field{"T2", &P::T2, "1/s", 0, 1e12, "damps S2"}, max_gap_field<P>());
+          Field{"T2", &P::T2, "1/s", 0, 1e12, "damps S2"}, torque_field<P>(), max_gap_field<P>());
     }
 
     /// The linear part is mo2 of bandwidth w [rad/s]: T2 = sqrt2 w, S2 = w^2. The sliding terms are
@@ -68,7 +69,9 @@ class SlidingModeObserver {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit SlidingModeObserver(const M& model, const Parameters& p)
-      : p_(check_parameters(p, kName)), sampling_(p.max_gap), momentum_(model) {}
+      : p_(check_parameters(p, kName)),
+        sampling_(p.max_gap, limits_of(model), p.torque),
+        momentum_(model) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -77,11 +80,11 @@ class SlidingModeObserver {
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
     Status status = sampling_.accept(y);
-    if (status == Status::kBadMeasurement) return {d_, status};
-    const MomentumStep<kDof> step = momentum_.advance(y);
+    if (!used(status)) return {d_, status, sampling_.joints()};
+    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       e_.setZero();
-      return {d_, status};
+      return {d_, status, sampling_.joints()};
     }
     const double h = sampling_.h();
     const Vec<kDof> b = e_ - step.dp + h * (step.n - d_);
@@ -92,7 +95,7 @@ class SlidingModeObserver {
       d_.setZero();
       status = Status::kDiverged;
     }
-    return {d_, status};
+    return {d_, status, sampling_.joints()};
   }
 
  private:
@@ -114,7 +117,7 @@ class SlidingModeObserver {
   }
 
   Parameters p_;
-  Sampling sampling_;
+  Sampling<kDof> sampling_;
   Momentum<M> momentum_;
   Vec<kDof> e_ = Vec<kDof>::Zero();  // [N m s] p_hat - p
   Vec<kDof> d_ = Vec<kDof>::Zero();  // [N m] the last estimate

@@ -37,17 +37,42 @@ struct Measurement {
 /// What became of a sample. With all but kOk the estimate is the previous one (0 at first).
 enum class Status : std::uint8_t {
   kOk,       ///< used
-  kStarted,  ///< used to start: the first sample, or the first after too long a gap; estimate held
-  kBadMeasurement,   ///< not finite, out of range, or not later than the last one; ignored
+  kStarted,  ///< used to start: the first sample, or the first of a new clock, or after too long a
+             ///< gap or fault; estimate held
+  kBadMeasurement,   ///< no number, or none that a sensor says; ignored
   kSingularInertia,  ///< B(q) of the model was not positive definite; estimate held
   kDiverged,         ///< the new estimate was not finite or out of range; started anew from 0
+  kBadTime,          ///< t is not the next one; ignored
+  kOutOfRange,       ///< beyond the limits of the arm; ignored
+  kJump,             ///< a change that the arm cannot make from one sample to the next; ignored
+  kFrozen,           ///< a joint says that it moves, and its readings stand still; ignored
+  kUnlikely,         ///< a filter's prediction says otherwise, beyond its gate; not corrected by it
 };
+
+inline constexpr int kStatusCount = 10;  ///< of Status
+
+/// What tables and messages call it.
+constexpr const char* name_of(Status s) noexcept {
+  constexpr const char* kNames[kStatusCount] = {
+      "ok",       "started",  "bad measurement", "singular inertia",
+      "diverged", "bad time", "beyond a limit",  "jump",
+      "frozen",   "unlikely"};
+  return kNames[static_cast<int>(s)];
+}
+
+/// Whether an estimator goes on or starts with a sample of this status.
+constexpr bool used(Status s) noexcept {
+  return s <= Status::kStarted;
+}
 
 /// An estimate of tau_ext from the samples 0..k.
 template <int N>
 struct Estimate {
   Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
   Status status = Status::kOk;      ///< whether tau_ext may be used
+  /// That the status is about, bit 0 for the first; with kOk those whose torque of the sample
+  /// before was an outlier, which was replaced.
+  std::uint8_t joints = 0;
 };
 
 /// What a detector takes a contact for.

@@ -72,6 +72,7 @@ void accept_findings(const GateOptions& options, const std::string& base, const 
   std::erase_if(standing, [&](const Acceptance& a) { return a.base != base; });
   accept(standing, base, r);
   const std::vector<Acceptance> added = acceptable(r, base, reason);
+  const GateResult refused = r;
   std::erase_if(all, [&](const Acceptance& a) {
     return std::any_of(added.begin(), added.end(), [&](const Acceptance& b) {
       return a.layer == b.layer && a.subject == b.subject;
@@ -79,6 +80,14 @@ void accept_findings(const GateOptions& options, const std::string& base, const 
   });
   all.insert(all.end(), added.begin(), added.end());
   accept(added, base, r);
+  const ExitCode left = exit_code(r);
+  if (left == kCouldNotRun || left == kSlower || left == kLessAccurate) {
+    r = refused;  // baselines that moved with it would hide what is left
+    r.notes.push_back(
+        fmt::format("nothing was accepted: {} of the findings could be, and what is left cannot",
+                    added.size()));
+    return;
+  }
   move_committed(options, base, reason, r);
   release_input(path);  // it is made of what it was
   AtomicFile file(path);

@@ -41,6 +41,7 @@ void add_history(CLI::App& app, HistoryFlags& f) {
 }
 
 ExitCode append(const HistoryFlags& f) {
+  check_record(f.measure.record);
   if (f.measure.bench.empty()) say("no --bench: no metrics are recorded");
   const std::vector<Record> history = read_history(f.file);
   std::string text = history.empty() ? "" : read_whole(f.file);

@@ -13,7 +13,7 @@ struct Jump {
   void reset() noexcept { *this = Jump(); }
 
   tauext::Detection update(double t, const tauext::Vec<N>& tau_ext) noexcept {
-    if (!marking.accepts(t)) return marking.held();
+    if (!marking.accept(t)) return marking.held();
     if (marking.silent(t)) before = last = tau_ext;                // the first sample
     const double jump = (tau_ext - before).cwiseAbs().maxCoeff();  // [N m]
     before = last;

@@ -29,12 +29,12 @@ struct Twice {
       once = raw + a * (once - raw);
       d = once + a * (d - once);
     }
-    if (status != Status::kBadMeasurement) last = y;
+    if (used(status)) last = y;
     return {d, status};
   }
   M model;
   double pole;  // [rad/s] of both filters
-  Sampling sampling{0.05};
+  Sampling<kDof> sampling{0.05, limits_of(model)};
   Measurement<kDof> last;
   Vec<kDof> once = Vec<kDof>::Zero(), d = once;
 };

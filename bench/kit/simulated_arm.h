@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A simulated arm for tests that need samples and no simulator: RK4 of a model's own forward
-/// dynamics under computed torque, tau and tau_ext held over each sample. Not for benchmarks: it
-/// knows no friction that sticks, no contact, and nothing that the model does not know.
+/// A simulated arm for tests that need samples and no simulator: RK4 of a model's own dynamics
+/// under computed torque, tau and tau_ext held over each sample. Not for benchmarks: it knows no
+/// friction that sticks, no contact, and nothing that the model does not know.
 #pragma once
 
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "estimators/math/ldlt.h"
 #include "estimators/wallmobot3.h"
 
 namespace tauext::simulated {
@@ -42,7 +43,10 @@ std::vector<Measurement<Arm::kDof>> simulate(const std::vector<double>& times,
     if (k + 1 == times.size()) break;
     const double h = times[k + 1] - t;
     const V u = tau - tau_ext(t);
-    const auto qdd = [&](const V& x, const V& v) { return arm.forward_dynamics(x, v, u).qdd; };
+    const auto qdd = [&](const V& x, const V& v) -> V {
+      const V rest = arm.bias(x, v) + arm.friction(v);
+      return Ldlt<Arm::kDof>(arm.inertia(x)).solve(V(u - rest));
+    };
     const V v1 = qd, a1 = qdd(q, v1);
     const V v2 = qd + h / 2 * a1, a2 = qdd(q + h / 2 * v1, v2);
     const V v3 = qd + h / 2 * a2, a3 = qdd(q + h / 2 * v2, v3);

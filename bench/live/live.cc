@@ -21,7 +21,12 @@ static_assert(estimate_t::kOk == static_cast<int>(Status::kOk) &&
               estimate_t::kStarted == static_cast<int>(Status::kStarted) &&
               estimate_t::kBadMeasurement == static_cast<int>(Status::kBadMeasurement) &&
               estimate_t::kSingularInertia == static_cast<int>(Status::kSingularInertia) &&
-              estimate_t::kDiverged == static_cast<int>(Status::kDiverged));
+              estimate_t::kDiverged == static_cast<int>(Status::kDiverged) &&
+              estimate_t::kBadTime == static_cast<int>(Status::kBadTime) &&
+              estimate_t::kOutOfRange == static_cast<int>(Status::kOutOfRange) &&
+              estimate_t::kJump == static_cast<int>(Status::kJump) &&
+              estimate_t::kFrozen == static_cast<int>(Status::kFrozen) &&
+              estimate_t::kUnlikely == static_cast<int>(Status::kUnlikely));
 static_assert(detection_t::kNone == static_cast<int>(Contact::kNone) &&
               detection_t::kIntentional == static_cast<int>(Contact::kIntentional) &&
               detection_t::kCollision == static_cast<int>(Contact::kCollision) &&
@@ -105,6 +110,7 @@ void LiveEstimation::take(const Reading& r) noexcept {
       add<std::int64_t>(e.figures.unusable, 1);
     }
     e.started = e.started || s.status == Status::kStarted;
+    e.figures.counts.add(s.status, s.joints);
     if (s.detection.mark) add<std::int64_t>(e.figures.marks, 1);
     if (r.reference != ReferenceKind::kNone) compare(r, sample_.tau_ext_hat, e.figures);
     if (stream_ == nullptr) continue;

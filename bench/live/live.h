@@ -23,7 +23,8 @@ struct LiveFigures {
   /// samples that made no estimate, but for the first one after a reset: bad ones, gaps,
   /// divergences
   std::atomic<std::int64_t> unusable = 0;
-  std::atomic<std::int64_t> marks = 0;                    ///< of its detector
+  StatusCounts counts;                  ///< the same by reason; to be read when the loop has ended
+  std::atomic<std::int64_t> marks = 0;  ///< of its detector
   std::atomic<std::int64_t> compared = 0;                 ///< samples with a reference
   std::array<std::atomic<double>, kMaxJoints> squares{};  ///< [N^2 m^2] of the error, summed
   std::atomic<double> largest_error = 0;                  ///< [N m] of any joint

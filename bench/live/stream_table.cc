@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "estimators/types.h"
 #include "lcmtypes/emitter.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
@@ -23,8 +24,7 @@ const char* contact_name(std::int8_t contact) {
 }
 
 const char* status_name(std::int8_t status) {
-  constexpr const char* kNames[] = {"ok", "started", "bad sample", "singular", "diverged"};
-  return status >= 0 && status < 5 ? kNames[status] : "?";
+  return status >= 0 && status < kStatusCount ? name_of(static_cast<Status>(status)) : "?";
 }
 
 }  // namespace

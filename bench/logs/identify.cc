@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "estimators/types.h"
 #include "mjcf/trace/known.h"
@@ -67,6 +69,59 @@ void check(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
   }
 }
 
+// what may be missing from the model: the terms that it has not
+std::vector<Term> others(const std::vector<Term>& model) {
+  std::vector<Term> rest;
+  for (const Term& t : terms()) {
+    const auto same = [&](const Term& m) { return m.name == t.name; };
+    if (t.column && std::none_of(model.begin(), model.end(), same)) rest.push_back(t);
+  }
+  return rest;
+}
+
+using Window = std::pair<int, int>;  // samples, from the first to the one where the next begins
+
+std::vector<Window> windows_of(const Trace& log, const Windows& w, int& left_out) {
+  std::vector<Window> all;
+  for (int a = 0; a + 1 < log.size();) {
+    int b = a + 1;
+    while (b + 1 < log.size() && log.t[b] - log.t[a] < w.length * (1 - 1e-9)) ++b;
+    if (log.t[b] - log.t[a] < w.length * (1 - 1e-9)) break;  // the rest is no whole window
+    if (usable(log, a, b, w.min_speed)) {
+      all.emplace_back(a, b);
+    } else {
+      ++left_out;
+    }
+    a = b;
+  }
+  return all;
+}
+
+// what the residuals say; a loadcell that is not linear adds powers of tau
+void add_residuals(const Trace& log, const std::vector<Term>& model,
+                   const std::vector<Window>& windows, const MatrixXd& A, const VectorXd& residuals,
+                   Identification& id) {
+  const std::vector<Term> rest = others(model);
+  const auto n = static_cast<Eigen::Index>(rest.size());
+  MatrixXd columns(A.rows(), n + 2);
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    const auto [a, b] = windows[static_cast<std::size_t>(i)];
+    const VectorXd r = row(log, a, b, rest);
+    columns.row(i) << r.head(n).transpose(), r[n] * r[n], r[n] * r[n] * r[n];
+  }
+  std::vector<std::string> names;
+  for (const Term& t : rest) names.push_back(t.name);
+  names.insert(names.end(),
+               {"a loadcell that is not linear (tau^2)", "a loadcell that is not linear (tau^3)"});
+  const MatrixXd inverse = (A.transpose() * A).inverse();
+  const VectorXd robust = robust_errors(A, inverse, residuals);
+  for (std::size_t i = 0; i < id.parameters.size(); ++i) {
+    id.parameters[i].robust = robust[static_cast<Eigen::Index>(i)];
+  }
+  id.colour = colour(residuals);
+  id.missing = suspects(A, inverse, residuals, columns, names);
+}
+
 }  // namespace
 
 const std::vector<Term>& terms() {
@@ -101,21 +156,10 @@ std::vector<Term> find_terms(const std::vector<std::string>& names) {
 Identification identify(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
   check(log, terms, w);
   Identification id;
-  std::vector<VectorXd> rows;
-  for (int a = 0; a + 1 < log.size();) {
-    int b = a + 1;
-    while (b + 1 < log.size() && log.t[b] - log.t[a] < w.length * (1 - 1e-9)) ++b;
-    if (log.t[b] - log.t[a] < w.length * (1 - 1e-9)) break;  // the rest is no whole window
-    if (usable(log, a, b, w.min_speed)) {
-      rows.push_back(row(log, a, b, terms));
-    } else {
-      ++id.left_out;
-    }
-    a = b;
-  }
-  id.windows = static_cast<int>(rows.size());
+  const std::vector<Window> windows = windows_of(log, w, id.left_out);
+  id.windows = static_cast<int>(windows.size());
   const auto n = static_cast<Eigen::Index>(terms.size()),
-             m = static_cast<Eigen::Index>(rows.size());
+             m = static_cast<Eigen::Index>(windows.size());
   if (m < 3 * n) {
     throw std::invalid_argument(fmt::format(
         "{} usable windows of {} s for {} parameters, at least {} are needed; {} were left out as "
@@ -126,8 +170,10 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   MatrixXd A(m, n);
   VectorXd y(m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    A.row(i) = rows[i].head(n);
-    y[i] = rows[i][n];
+    const auto [a, b] = windows[static_cast<std::size_t>(i)];
+    const VectorXd r = row(log, a, b, terms);
+    A.row(i) = r.head(n);
+    y[i] = r[n];
   }
   const VectorXd norm = A.colwise().norm();
   const MatrixXd scaled = A * norm.cwiseMax(kLeast).cwiseInverse().asDiagonal();
@@ -147,13 +193,14 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
         terms[least].name, id.condition));
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
-  const double variance = (y - A * theta).squaredNorm() / static_cast<double>(m - n);
-  id.residual = std::sqrt(variance);
+  const VectorXd residuals = y - A * theta;
+  id.residual = std::sqrt(residuals.squaredNorm() / static_cast<double>(m - n));
   for (Eigen::Index i = 0; i < n; ++i) {
-    id.parameters.push_back({theta[i], id.residual * root[i] / norm[i],
+    id.parameters.push_back({theta[i], id.residual * root[i] / norm[i], 0,
                              norm[i] / std::sqrt(static_cast<double>(m)),
                              std::min(1 / root[i], 1.)});
   }
+  add_residuals(log, terms, windows, A, residuals, id);
   return id;
 }
 

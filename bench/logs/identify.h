@@ -13,13 +13,16 @@
 /// in the log.
 ///
 /// (i) is solved by linear least squares over all windows; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2
-/// the residuals' variance.
+/// the residuals' variance, which holds if they are white noise. residuals.h says whether they are,
+/// what a sigma is if not, and which term is probably missing. What no term here can tell: a
+/// loadcell's hysteresis looks like dry friction, and its gain like all of theta.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "bench/logs/residuals.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
@@ -48,7 +51,8 @@ struct Windows {
 /// A parameter and how well the motion shows it.
 struct Parameter {
   double theta = 0;       ///< in the term's unit
-  double sigma = 0;       ///< standard error, in the same unit
+  double sigma = 0;       ///< standard error, in the same unit, if the residuals are white
+  double robust = 0;      ///< standard error whatever they are
   double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
   double own = 0;         ///< [1] share of the column that the others cannot imitate, 0 to 1
 };
@@ -58,6 +62,8 @@ struct Identification {
   std::vector<Parameter> parameters;  ///< in the order of the terms
   double condition = 0;               ///< [1] of the regressor with its columns scaled to norm 1
   double residual = 0;                ///< [N m] standard deviation of (i)
+  double colour = 0;                  ///< [1] of the residuals; above 3 they are no noise
+  std::vector<Suspect> missing;       ///< what may be missing; the likeliest first
   int windows = 0;                    ///< that were used
   int left_out = 0;                   ///< that were not
 };

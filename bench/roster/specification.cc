@@ -47,6 +47,16 @@ std::string at_bandwidth(const std::string& estimator, double w) {
   return fmt::format("{}:bandwidth={}", estimator, w);
 }
 
+std::string with_key(const std::string& specification, const std::string& key,
+                     const std::string& value, const std::vector<FieldHelp>& known) {
+  const Specification s = parse_specification(specification);
+  const bool set =
+      std::any_of(s.keys.begin(), s.keys.end(), [&](const auto& k) { return k.first == key; });
+  const bool can =
+      std::any_of(known.begin(), known.end(), [&](const FieldHelp& f) { return f.key == key; });
+  return set || !can ? specification : fmt::format("{}:{}={}", specification, key, value);
+}
+
 std::string describe_fields(const std::vector<FieldHelp>& fields) {
   std::vector<std::string> all;
   for (const FieldHelp& f : fields) {

@@ -46,6 +46,10 @@ struct FieldHelp {
   std::string key, unit, range, effect;  ///< as Field has them, in words
 };
 
+/// The specification with one more key, unless it has set that, or nothing in `known` is called so.
+std::string with_key(const std::string& specification, const std::string& key,
+                     const std::string& value, const std::vector<FieldHelp>& known);
+
 /// "key [unit] range, .." of all fields.
 std::string describe_fields(const std::vector<FieldHelp>& fields);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "estimators/concepts.h"
+#include "estimators/samples/status_counts.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
@@ -66,7 +67,7 @@ class DetectorStageOf final : public DetectorStage<D::kDof> {
   /// As DetectorStage says.
   void run(std::span<const Measurement<D::kDof>> at, std::span<const Estimate<D::kDof>> in,
            std::span<Detection> out) override {
-    for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k].tau_ext);
+    for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k]);
   }
   Vec<D::kDof> statistic() const override {
     if constexpr (CalibratableDetector<D>) {
@@ -92,6 +93,7 @@ struct Output {
   Eigen::MatrixXd tau_ext;          ///< [N m]
   std::vector<Status> status;       ///< of the estimates
   std::vector<std::uint8_t> marks;  ///< empty without a detector
+  StatusCounts counts;              ///< of the statuses
 };
 
 /// An estimator, and a detector behind it if there is one, bound to the samples of a trace.
@@ -108,6 +110,7 @@ class Runner {
 /// What became of one sample of a live run.
 struct Stepped {
   Status status = Status::kOk;  ///< of the estimate
+  std::uint8_t joints = 0;      ///< that it is about, bit 0 for the first
   Detection detection;          ///< of the detector, if there is one
 };
 
@@ -145,6 +148,7 @@ class StepperOf final : public Stepper {
     if (detector_) detector_->run({&y, 1}, {&estimate, 1}, {&out.detection, 1});
     Vec<N>::Map(tau_ext) = estimate.tau_ext;
     out.status = estimate.status;
+    out.joints = estimate.joints;
     return out;
   }
 
@@ -166,13 +170,14 @@ class RunnerOf final : public Runner {
   }
 
   Output run() override {
-    Output out{Eigen::MatrixXd(N, samples_.size()), {}, {}};
+    Output out{Eigen::MatrixXd(N, samples_.size()), {}, {}, {}};
     next_ = 0;
     for (std::size_t done = 0; done < samples_.size();) {
       const std::size_t first = next_, n = advance();
       for (std::size_t k = 0; k < n; ++k) {
         out.tau_ext.col(first + k) = estimates_[k].tau_ext;
         out.status.push_back(estimates_[k].status);
+        out.counts.add(estimates_[k].status, estimates_[k].joints);
         if (detector_) out.marks.push_back(detections_[k].mark);
       }
       done += n;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/score/metric_list.h"
+#include "estimators/samples/status_counts.h"
 
 namespace tauext {
 
@@ -22,7 +23,8 @@ inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 /// and the values of the joints where the metric is judged joint by joint.
 class Score {
  public:
-  std::string error;  ///< why the entry failed; "" if it did not
+  std::string error;    ///< why the entry failed; "" if it did not
+  StatusCounts counts;  ///< of the samples that were scored, by reason and joint
 
   /// Nothing for a metric that does not exist for the run.
   std::optional<double> get(Metric m) const { return values_[index(m)]; }
@@ -41,7 +43,8 @@ class Score {
   /// Sets the joints' values and that of the worst of them.
   void set_joints(Metric m, std::vector<double> values);
 
-  /// Every value by its key, those of joints after that of the entry.
+  /// Every value by its key, those of joints after that of the entry; behind them the samples left
+  /// out, by reason and joint.
   std::vector<std::pair<std::string, double>> by_key() const;
 
  private:

@@ -14,22 +14,6 @@
 namespace tauext {
 namespace {
 
-const char* name_of(Status s) {
-  switch (s) {
-    case Status::kOk:
-      return "ok";
-    case Status::kStarted:
-      return "started";
-    case Status::kBadMeasurement:
-      return "bad measurement";
-    case Status::kSingularInertia:
-      return "singular inertia";
-    case Status::kDiverged:
-      return "diverged";
-  }
-  return "?";
-}
-
 double allocations_per_step(Runner& runner) {
   runner.batch();  // the first batch may fill caches of its own
   const auto before = allocations();
@@ -43,10 +27,12 @@ std::string bad_status(const Trace& trace, const Output& out) {
   for (int k = 0; k < trace.size(); ++k) {
     if (!out.tau_ext.col(k).allFinite()) return fmt::format("not finite at t = {} s", trace.t[k]);
     const Status s = out.status[k];
-    if (s == Status::kOk || (s == Status::kStarted && k == 0)) continue;
+    if (s != Status::kSingularInertia && s != Status::kDiverged) continue;
     return fmt::format("{} at t = {} s", name_of(s), trace.t[k]);
   }
-  return "";
+  if (2 * out.counts.left_out() <= trace.size()) return "";
+  return fmt::format("{} of {} samples left out: {}", out.counts.left_out(), trace.size(),
+                     out.counts.text());
 }
 
 std::string failure(const Trace& ideal, const Output& out, double from) {
@@ -127,6 +113,10 @@ Score Suite::score(const Entry& e) {
   score.error = error(e, ideal, noisy);
   const Trace& trace = scored(e);
   const Output& out = options_.sensors.ideal() ? ideal : noisy;
+  score.counts = out.counts;
+  if (const auto n = out.counts.left_out(); n > 0) {
+    score.set(Metric::kLeftOut, static_cast<double>(n));
+  }
   add_error_metrics(trace, out, s.score_from, score);
   add_noise_metric(trace, ideal, noisy, s.score_from, score);
   add_response_metrics(trace, out, s, score);

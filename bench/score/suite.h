@@ -24,7 +24,8 @@ struct SuiteOptions {
   double noise_probe = 1e-3;  ///< [rad/s] velocity noise behind noise_Nm when `sensors` are ideal
 };
 
-/// The first estimate that is not finite or whose status says that it is an old one; "" for none.
+/// The first estimate that is not finite, diverged or had a singular inertia, or that most samples
+/// were left out; "" if none of it.
 std::string bad_status(const Trace& trace, const Output& output);
 
 /// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one

@@ -51,7 +51,7 @@ TEST_F(Programs, OwnDetectorMarksTheCollisionBehindEveryEstimator) {
 TEST_F(Programs, OwnRobotRunsEveryCommonEstimator) {
   const Outcome o = run(std::string("examples/own_robot --benchmark_filter=pendulum/") + kQuick);
   ASSERT_EQ(o.code, 0) << o.text;
-  for (const char* e : {"mo1", "mo3", "dkf", "smo", "eao", "ndob_wb"}) {
+  for (const char* e : {"mo1", "mo3", "dkf", "smo", "aob", "ndob_wb"}) {
     const auto fields = row(o, std::string("pendulum/step/") + e);
     ASSERT_GT(fields.size(), 7u) << e << "\n" << o.text;
     EXPECT_LT(std::stod(fields[7]), 0.001) << "N m in the end, " << e;

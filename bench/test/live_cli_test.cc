@@ -157,11 +157,11 @@ TEST_F(LivePrograms, WhatANetworkDoesToMessagesIsHandledAndCounted) {
 
 TEST_F(LivePrograms, ARobotFromAFileEstimatesWhatTheClosedFormDoes) {
   ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario in_motion --out log.lcm").code, 0);
-  const std::string rest = " --from log.lcm --estimator mo1,dkf,eao --speed 100";
+  const std::string rest = " --from log.lcm --estimator mo1,dkf,aob --speed 100";
   const Outcome closed = run("tauext-live --robot wallmobot3" + rest);
   const Outcome file = run("tauext-live --robot " TAUEXT_MJCF "/wallmobot3.xml" + rest);
   ASSERT_EQ(file.code, 0) << file.text;
-  for (const char* e : {"mo1", "dkf", "eao"}) {
+  for (const char* e : {"mo1", "dkf", "aob"}) {
     const std::regex rmse(std::string("\n") + e + " +([0-9.]+) +([0-9.]+) ");
     std::smatch a, b;
     ASSERT_TRUE(std::regex_search(closed.text, a, rmse)) << closed.text;

@@ -129,7 +129,7 @@ TEST_F(Programs, IdentifyPrintsTheParametersAndWritesThem) {
   EXPECT_TRUE(o.says("condition number")) << o.text;
   EXPECT_TRUE(o.says("gravity_cos  kg m      11.66")) << o.text;
   const std::string csv = content("theta.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "term,unit,estimate,std_error");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "term,unit,estimate,std_error,robust_std_error");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   const Outcome term = run("tauext-identify log.csv --terms magic --out t2.csv");
   EXPECT_EQ(term.code, 2);

@@ -37,7 +37,7 @@ function(tauext_add_plugin target)
   target_link_libraries(${target} PRIVATE tauext::estimators)
   # paths of the checkout must not make two equal builds differ; lines are for tauext-gate explain, and change no code
   target_compile_options(${target} PRIVATE ${flags} -g1 -Wno-array-bounds -ffunction-sections -fdata-sections -save-temps=obj
-    -ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}=.)
+    -ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}/=./)
   target_compile_definitions(${target} PRIVATE TAUEXT_PLUGIN_FLAGS="${text}")
   set_target_properties(${target} PROPERTIES PREFIX "" UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin

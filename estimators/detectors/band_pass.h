@@ -53,11 +53,12 @@ class BandPass {
 
   void reset() noexcept {
     marking_.reset();
-    statistic_.setZero();
+    forget();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       slow_.start(t, tau_ext);
       quick_.start(t, Vec<N>::Zero());
@@ -72,6 +73,8 @@ class BandPass {
   const Vec<N>& statistic() const noexcept { return statistic_; }
 
  private:
+  void forget() noexcept { statistic_.setZero(); }
+
   Parameters p_;
   LowPass<N> slow_, quick_;
   Marking marking_;

@@ -78,13 +78,12 @@ class Clamping {
 
   void reset() noexcept {
     marking_.reset();
-    z_.setZero();
-    statistic_.setZero();
-    blocks_.fill(0);
+    forget();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       baseline_.start(t, tau_ext);
       smooth_.start(t, Vec<N>::Zero());
@@ -104,6 +103,12 @@ class Clamping {
   const Vec<N>& change() const noexcept { return z_; }
 
  private:
+  void forget() noexcept {
+    z_.setZero();
+    statistic_.setZero();
+    blocks_.fill(0);
+  }
+
   static constexpr int kBlocks = 8;
 
   // (iii)

@@ -50,19 +50,26 @@ class ContactClassifier {
       : p_(check_parameters(p, kName)), collision_(p.collision), clamping_(p.clamping) {}
 
   void reset() noexcept {
+    clock_.reset();
     collision_.reset();
     clamping_.reset();
-    hit_ = clamped_ = clamp_marked_ = false;
-    last_ = {};
+    forget();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!collision_.accepts(t)) return {false, last_.score, last_.contact};
+    const Status status = clock_.accept(t);
+    if (!used(status)) return {false, last_.score, last_.contact};
+    if (status == Status::kStarted) forget();
     last_ = classified(t, tau_ext);
     return last_;
   }
 
  private:
+  void forget() noexcept {
+    hit_ = clamped_ = clamp_marked_ = false;
+    last_ = {};
+  }
+
   Detection classified(double t, const Vec<N>& tau_ext) noexcept {
     const Detection hit = collision_.update(t, tau_ext);
     const Detection clamp = clamping_.update(t, tau_ext);
@@ -92,6 +99,7 @@ class ContactClassifier {
   Parameters p_;
   PanTompkins<N> collision_;
   Clamping<N> clamping_;
+  Clock clock_{Marking::kMaxGap};  // theirs
   bool hit_ = false, clamped_ = false, clamp_marked_ = false;
   double hit_at_ = 0, clamp_marked_at_ = 0;  // [s]
   Detection last_;

@@ -54,13 +54,12 @@ class Cusum {
 
   void reset() noexcept {
     marking_.reset();
-    up_.setZero();
-    down_.setZero();
-    statistic_.setZero();
+    forget();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
@@ -79,6 +78,12 @@ class Cusum {
   const Vec<N>& statistic() const noexcept { return statistic_; }
 
  private:
+  void forget() noexcept {
+    up_.setZero();
+    down_.setZero();
+    statistic_.setZero();
+  }
+
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   Parameters p_;

@@ -48,7 +48,7 @@ class DynamicThreshold {
   }
 
   Detection update(const Measurement<N>& y, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(y.t) || !within(y.qd, kMeasurementLimit)) return marking_.held();
+    if (!within(y.qd, kMeasurementLimit) || !marking_.accept(y.t)) return marking_.held();
     const Vec<N> growth = (1 + y.qd.array().abs() / p_.speed).matrix();
     statistic_ = tau_ext.cwiseAbs().cwiseQuotient(growth);
     return marking_(y.t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);

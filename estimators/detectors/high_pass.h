@@ -46,11 +46,12 @@ class HighPass {
 
   void reset() noexcept {
     marking_.reset();
-    statistic_.setZero();
+    forget();
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       low_.start(t, tau_ext);
     } else {
@@ -63,6 +64,8 @@ class HighPass {
   const Vec<N>& statistic() const noexcept { return statistic_; }
 
  private:
+  void forget() noexcept { statistic_.setZero(); }
+
   Parameters p_;
   LowPass<N> low_;
   Marking marking_;

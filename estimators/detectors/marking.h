@@ -3,10 +3,10 @@
 /// The last stage of every detector: from a score to fiducial marks.
 ///     mark where the score rises through 1, but not within `refractory` of the last mark
 /// and silence during `start_up`, in which an estimator finds a payload that it was not told of. A
-/// score that is above 1 when the silence ends is marked there.
+/// score that is above 1 when the silence ends is marked there. Times are judged as an estimator's
+/// (samples/clock.h); where the clock starts anew, so does all of this.
 #pragma once
 
-#include <cmath>
 #include <tuple>
 
 #include "estimators/sampling.h"
@@ -30,6 +30,8 @@ constexpr auto threshold_field(const char* unit) {
 /// Marks of one detector.
 class Marking {
  public:
+  static constexpr double kMaxGap = 1;  ///< [s] between samples; a longer one starts anew
+
   /// @param refractory [s] after a mark without another
   /// @param start_up [s] after the first sample without any
   /// @throws std::invalid_argument if one of them is negative
@@ -39,15 +41,25 @@ class Marking {
   }
 
   void reset() noexcept {
-    started_ = marked_ = false;
-    score_ = 0;
+    clock_.reset();
+    forget();
   }
 
-  /// Whether a sample can be used: t is a number and later than the last one.
-  bool accepts(double t) const noexcept { return std::isfinite(t) && (!started_ || t > t_); }
+  /// Whether a sample can be used: t is the next one, or that of a new clock.
+  bool accept(double t) noexcept {
+    const Status status = clock_.accept(t);
+    if (status == Status::kStarted && started_) {
+      forget();
+      score_ = 1;  // what has lasted since before is no rise
+    }
+    return used(status);
+  }
 
   /// The answer to a sample that cannot.
   Detection held() const noexcept { return {false, score_, Contact::kNone}; }
+
+  /// Whether t is the first sample, of a stream or of a new clock.
+  bool starts() const noexcept { return !started_; }
 
   /// Whether t lies in the silence at the begin.
   bool silent(double t) const noexcept { return !started_ || t - started_at_ < start_up_; }
@@ -58,7 +70,6 @@ class Marking {
       started_ = true;
       started_at_ = t;
     }
-    t_ = t;
     if (silent(t)) return {false, score, Contact::kNone};
     const bool rises = score >= 1 && score_ < 1;
     const bool mark = rises && (!marked_ || t - marked_at_ >= refractory_);
@@ -71,9 +82,15 @@ class Marking {
   }
 
  private:
+  void forget() noexcept {
+    started_ = marked_ = false;
+    score_ = 0;
+  }
+
   double refractory_, start_up_;
-  double t_ = 0, started_at_ = 0, marked_at_ = 0;  // [s]
-  double score_ = 0;                               // the last one outside the silence
+  Clock clock_{kMaxGap};
+  double started_at_ = 0, marked_at_ = 0;  // [s]
+  double score_ = 0;                       // the last one outside the silence
   bool started_ = false, marked_ = false;
 };
 

@@ -56,17 +56,13 @@ class PanTompkins {
       : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
 
   void reset() noexcept {
-    count_ = 0;
-    held_.setZero();
-    held_at_.setZero();
     marking_.reset();
+    forget();
   }
 
-  /// Whether a sample at t [s] can be used; if not, update() holds its answer.
-  bool accepts(double t) const noexcept { return marking_.accepts(t); }
-
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
     const int newest = static_cast<int>(count_++ % kHistory);
     t_[newest] = t;
     tau_ext_[newest] = tau_ext;
@@ -87,6 +83,12 @@ class PanTompkins {
 
  private:
   static constexpr int kHistory = 4 * kMaxStride + 1;
+
+  void forget() noexcept {
+    count_ = 0;
+    held_.setZero();
+    held_at_.setZero();
+  }
 
   // (i), [N m/s]
   Vec<N> slope(int newest) const noexcept {

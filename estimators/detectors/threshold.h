@@ -45,7 +45,7 @@ class Threshold {
   }
 
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
-    if (!marking_.accepts(t)) return marking_.held();
+    if (!marking_.accept(t)) return marking_.held();
     statistic_ = tau_ext.cwiseAbs();
     return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
   }

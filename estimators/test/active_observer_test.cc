@@ -14,7 +14,7 @@ namespace tauext::test {
 namespace {
 
 template <class Arm>
-ActiveObserver<Arm> eao(double w, const Arm& arm = Arm()) {
+ActiveObserver<Arm> aob(double w, const Arm& arm = Arm()) {
   return ActiveObserver<Arm>(arm, ActiveObserver<Arm>::Parameters::for_bandwidth(arm, w));
 }
 
@@ -50,7 +50,7 @@ class TextbookJoint {
   }
 };
 
-TEST(Eao, AgreesWithTheDenseTextbookFilter) {
+TEST(Aob, AgreesWithTheDenseTextbookFilter) {
   const Testbed1 arm;
   const auto p = ActiveObserver<Testbed1>::Parameters::for_bandwidth(arm, 30);
   ActiveObserver<Testbed1> filter(arm, p);
@@ -68,12 +68,12 @@ TEST(Eao, AgreesWithTheDenseTextbookFilter) {
   }
 }
 
-TEST(Eao, PassesASineAtItsBandwidthAtAbout3dB) {
+TEST(Aob, PassesASineAtItsBandwidthAtAbout3dB) {
   Testbed1::Parameters smooth;
   smooth.theta4 = 0;
   const Testbed1 arm(smooth);
   for (const double w : {10., 30., 100., 300.}) {
-    auto filter = eao(w, arm);
+    auto filter = aob(w, arm);
     const auto sine = [=](double t) -> Vec<1> { return Vec<1>(5 * std::sin(w * t)); };
     double a = 0, b = 0;
     const double from = 2 * M_PI / w * 4, to = 2 * M_PI / w * 8;
@@ -87,10 +87,10 @@ TEST(Eao, PassesASineAtItsBandwidthAtAbout3dB) {
   }
 }
 
-TEST(Eao, EveryJointRespondsAlikeWhereverTheyAre) {
+TEST(Aob, EveryJointRespondsAlikeWhereverTheyAre) {
   // coupled joints, one filter: the shapes of their steps are one
   const WallMoBot3 arm;
-  auto filter = eao<WallMoBot3>(30);
+  auto filter = aob<WallMoBot3>(30);
   const Vec<3> load(50, -20, 30);
   Measurement<3> y;
   y.q << 0.4, -0.3, 0.8;
@@ -102,8 +102,8 @@ TEST(Eao, EveryJointRespondsAlikeWhereverTheyAre) {
   }
 }
 
-TEST(Eao, StartedInMotionItIsRightFromTheFirstSample) {
-  auto filter = eao<WallMoBot3>(30);
+TEST(Aob, StartedInMotionItIsRightFromTheFirstSample) {
+  auto filter = aob<WallMoBot3>(30);
   double worst = 0;
   for (const auto& y : simulate(grid(5, 1e-3), constant(0), {.amplitude = 0.3, .w = 2})) {
     worst = std::max(worst, filter.update(y).tau_ext.cwiseAbs().maxCoeff());
@@ -111,8 +111,8 @@ TEST(Eao, StartedInMotionItIsRightFromTheFirstSample) {
   EXPECT_LT(worst, 0.01) << "N m";
 }
 
-TEST(Eao, RefusesDensitiesThatMeanNothing) {
-  EXPECT_THROW(eao<WallMoBot3>(0), std::invalid_argument);
+TEST(Aob, RefusesDensitiesThatMeanNothing) {
+  EXPECT_THROW(aob<WallMoBot3>(0), std::invalid_argument);
   EXPECT_THROW(ActiveObserver<WallMoBot3>(WallMoBot3(), {.R_q = 0}), std::invalid_argument);
 }
 

@@ -137,6 +137,36 @@ TYPED_TEST(Bandwidth, AnswersAreAlikeAtEverySampleTimeAndWithJitter) {
   EXPECT_LT(difference(times), 0.02 * C::kLoad) << "jitter";
 }
 
+// an arm whose torque changes continuously, read at the instants of its samples
+TYPED_TEST(Bandwidth, TorqueReadAtInstantsCostsAMovingArmNothing) {
+  using V = Vec<TestFixture::N>;
+  const auto arm = Case<typename TestFixture::Arm>::arm();
+  const auto rms = [&](TorqueSampling torque) {
+    auto p = TestFixture::E::Parameters::for_bandwidth(arm, 30);
+    p.torque = torque;
+    typename TestFixture::E e(arm, p);
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < 6000; ++k) {
+      const double t = k * 1e-3;
+      Measurement<TestFixture::N> y;
+      y.t = t;
+      y.q = V::Constant(0.3 * std::sin(2 * t));
+      y.qd = V::Constant(0.6 * std::cos(2 * t));
+      const V qdd = V::Constant(-1.2 * std::sin(2 * t));
+      y.tau = arm.inertia(y.q) * qdd + arm.bias(y.q, y.qd) + arm.friction(y.qd);  // (3)
+      const V d = this->step(e, y).tau_ext;
+      if (t < 1) continue;
+      sum += d.cwiseAbs2().maxCoeff();
+      ++count;
+    }
+    return std::sqrt(sum / count);
+  };
+  const double instant = rms(TorqueSampling::kInstant), held = rms(TorqueSampling::kHeld);
+  EXPECT_LE(instant, 0.01) << "N m";
+  EXPECT_GE(held, 4 * instant) << "N m";
+}
+
 TYPED_TEST(Bandwidth, ANaNSampleIsFlaggedAndHeld) {
   auto e = this->estimator(30);
   auto samples = this->samples(grid(2, 1e-3), 0, 5);

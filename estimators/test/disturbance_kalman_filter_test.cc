@@ -36,7 +36,7 @@ TEST(Dkf, WithAConstantBIsTheSecondOrderMomentumObserver) {
 }
 
 TEST(Dkf, HeldAtQ0EveryJointIsTheSecondOrderMomentumObserver) {
-  // B(0) couples the joints by up to nine tenths, and Q_d undoes it
+  // B(0) couples the joints by up to nine tenths, and w undoes it
   const WallMoBot3 arm;
   auto filter = dkf<WallMoBot3>(30);
   MomentumObserver2<WallMoBot3> mo2(arm, {.bandwidth = 30});
@@ -63,22 +63,23 @@ struct TextbookDkf {
   }
   Vec<3> update(const Measurement<3>& y) {
     const Mat<3> B = arm.inertia(y.q), I = Mat<3>::Identity(), O = Mat<3>::Zero();
+    const Mat<3> R = B * p.Q_qd.asDiagonal() * B.transpose(), Q_d = std::pow(p.w, 4) * R;
     if (!started) {
       started = true;
       x << B * y.qd, Vec<3>::Zero();
-      P << B * p.P0_qd.asDiagonal() * B.transpose(), O, O, p.P0_d;
+      P << B * p.P0_qd.asDiagonal() * B.transpose(), O, O, std::sqrt(2.) * std::pow(p.w, 3) * R;
     } else {
       const double h = y.t - before.t;
       Mat<6> Phi, Q;
       Phi << I, -h * I, O, I;
-      Q << h * h * h / 3 * p.Q_d + h * Mat<3>(p.Q_p.asDiagonal()), -h * h / 2 * p.Q_d,
-          -h * h / 2 * p.Q_d, h * p.Q_d;
+      Q << h * h * h / 3 * Q_d + h * Mat<3>(p.Q_p.asDiagonal()), -h * h / 2 * Q_d, -h * h / 2 * Q_d,
+          h * Q_d;
       Eigen::Matrix<double, 3, 6> H;
       H << I, O;
       x = Phi * x;
       x.head<3>() += h * (before.tau + 0.5 * (rest(y) + rest(before)));
       P = Mat<6>(Phi * P * Phi.transpose()) + Q;
-      const Mat<3> S = H * P * H.transpose() + B * (p.Q_qd / h).asDiagonal() * B.transpose();
+      const Mat<3> S = H * P * H.transpose() + R / h;
       const Eigen::Matrix<double, 6, 3> K = P * H.transpose() * S.inverse();
       x += K * (B * y.qd - H * x);
       P = Mat<6>((Mat<6>::Identity() - K * H) * P);

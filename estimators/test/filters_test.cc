@@ -66,11 +66,11 @@ TEST(Marking, IsSilentAtTheBeginAndMarksWhatIsThereWhenTheSilenceEnds) {
 
 TEST(Marking, RefusesTimesThatAreNoneOrNoLater) {
   Marking m(0.1, 0);
-  EXPECT_TRUE(m.accepts(5));
+  EXPECT_TRUE(m.accept(5));
   m(5, 0.3, Contact::kCollision);
   for (const double t : {5., 4.9, std::numeric_limits<double>::quiet_NaN(),
                          std::numeric_limits<double>::infinity()}) {
-    EXPECT_FALSE(m.accepts(t)) << t;
+    EXPECT_FALSE(m.accept(t)) << t;
   }
   EXPECT_EQ(m.held().score, 0.3);
   EXPECT_THROW(Marking(-1, 0), std::invalid_argument);

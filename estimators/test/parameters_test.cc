@@ -89,10 +89,10 @@ TEST(Parameters, OfEveryEstimatorAreRefusedBeyondTheirLimitsByName) {
   EXPECT_EQ(of_estimator<MomentumObserver3<M>>(), 2);
   EXPECT_EQ(of_estimator<NdobInertia<M>>(), 2);
   EXPECT_EQ(of_estimator<Ndob<M>>(), 2);
-  EXPECT_EQ(of_estimator<DisturbanceKalmanFilter<M>>(), 4);
+  EXPECT_EQ(of_estimator<DisturbanceKalmanFilter<M>>(), 5);
   EXPECT_EQ(of_estimator<SlidingModeObserver<M>>(), 5);
-  EXPECT_EQ(of_estimator<ActiveObserver<M>>(), 5);
-  EXPECT_EQ(of_estimator<Ekf<M>>(), 5);
+  EXPECT_EQ(of_estimator<ActiveObserver<M>>(), 6);
+  EXPECT_EQ(of_estimator<Ekf<M>>(), 6);
 }
 
 TEST(Parameters, OfEveryDetectorAreRefusedBeyondTheirLimitsByName) {

@@ -16,6 +16,7 @@
 
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/timed_rows.h"
 
 namespace tauext {
 namespace {
@@ -87,8 +88,8 @@ Columns parse_header(std::string_view line, const std::string& path) {
 }
 
 // the row's numbers, or why it cannot be used
-const char* parse_row(std::string_view line, const Columns& c, double last_t,
-                      std::vector<double>& values, SkippedRows& skipped) {
+const char* parse_row(std::string_view line, const Columns& c, std::vector<double>& values,
+                      SkippedRows& skipped) {
   const auto fields = split(line);
   if (static_cast<int>(fields.size()) != c.count) {
     ++skipped.wrong_field_count;
@@ -108,10 +109,6 @@ const char* parse_row(std::string_view line, const Columns& c, double last_t,
       ++skipped.not_finite;
       return "a field is not finite";
     }
-  }
-  if (!(values[c.t] > last_t)) {
-    ++skipped.time_order;
-    return "time does not increase";
   }
   return nullptr;
 }
@@ -217,24 +214,22 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   }
   if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark, as Excel writes
   const Columns c = parse_header(line, path);
-  std::vector<std::vector<double>> rows;
+  TimedRows timed(c.t, *skipped);
   std::vector<double> values;
-  double last_t = -std::numeric_limits<double>::infinity();
   while (lines.next(line)) {
     if (line.empty() || line == "\r") continue;
-    const char* reason = parse_row(line, c, last_t, values, *skipped);
+    const char* reason = parse_row(line, c, values, *skipped);
     if (reason == nullptr && in.eof()) {  // no line end: the last number may be cut
       ++skipped->wrong_field_count;
       reason = "the last line is incomplete";
     }
     if (reason != nullptr) {
-      if (skipped->first.size() < 3)
-        skipped->first.push_back(fmt::format("line {}: {}", lines.number(), reason));
+      skipped->say(lines.number(), reason);
       continue;
     }
-    last_t = values[c.t];
-    rows.push_back(values);
+    timed.take(values, lines.number());
   }
+  const std::vector<std::vector<double>> rows = timed.finish();
   if (in.bad()) throw std::runtime_error(fmt::format("{}: {}", path, std::strerror(errno)));
   if (rows.empty()) {
     throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,

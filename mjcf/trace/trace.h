@@ -55,17 +55,8 @@ struct Trace {
 /// The samples of these indices alone, in increasing order.
 Trace select_samples(const Trace& trace, const std::vector<int>& samples);
 
-/// Rows that read_csv left out, by the reason.
-struct SkippedRows {
-  int not_finite = 0;              ///< a field was NaN or infinite
-  int wrong_field_count = 0;       ///< too few or too many fields
-  int not_a_number = 0;            ///< a field could not be read as a number
-  int time_order = 0;              ///< t did not increase
-  std::vector<std::string> first;  ///< "line 7: ...", of the first few
-
-  /// All of them.
-  int total() const { return not_finite + wrong_field_count + not_a_number + time_order; }
-};
+/// Rows that read_csv left out: timed_rows.h.
+struct SkippedRows;
 
 /// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to
 /// standard output if the path is "-". The file appears whole or not at all.
@@ -73,7 +64,8 @@ struct SkippedRows {
 void write_csv(const Trace& trace, const std::string& path);
 
 /// Reads such a file; columns are found by name, tau_ext* and contact may be missing, other columns
-/// are ignored. Bad rows are skipped and counted.
+/// are ignored. Bad rows are skipped and counted; time stamps are judged as an estimator's are
+/// (estimators/samples/clock.h), but for gaps, which may be of any length.
 /// @throws std::runtime_error naming path and reason: unreadable, no usable header, no usable row
 Trace read_csv(const std::string& path, SkippedRows* skipped);
 

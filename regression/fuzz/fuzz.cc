@@ -30,6 +30,7 @@
 #include "lcmtypes/wire.h"
 #include "mjcf/plant/layout.h"
 #include "mjcf/plant/model.h"
+#include "mjcf/trace/timed_rows.h"
 #include "mjcf/trace/trace.h"
 #include "regression/accuracy/golden_file.h"
 #include "regression/counts/counts.h"

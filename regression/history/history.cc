@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext::gate {
 namespace {
@@ -42,6 +46,10 @@ KernelRecord kernel_of(const ordered_json& j) {
                  .instructions = j.at("instructions"),
                  .instructions_ratio = positive(j, "instructions_ratio")};
   if (j.contains("ns")) k.ns = positive(j, "ns");
+  if (!(k.low <= k.ratio && k.ratio <= k.high) || k.instructions < 0) {
+    throw std::runtime_error(fmt::format("a ratio {} from {} to {} with {} instructions a step",
+                                         k.ratio, k.low, k.high, k.instructions));
+  }
   return k;
 }
 
@@ -59,6 +67,10 @@ Record record_of(const ordered_json& j) {
            .metrics = {},
            .gone = {},
            .accepted = {}};
+  check_record(r);
+  for (const char* key : {"kernels", "metrics"}) {
+    if (!j.at(key).is_object()) throw std::runtime_error(fmt::format("{} is no object", key));
+  }
   for (const auto& [name, kernel] : j.at("kernels").items()) r.kernels[name] = kernel_of(kernel);
   for (const auto& [name, value] : j.at("metrics").items()) {
     r.metrics[name] =
@@ -73,6 +85,19 @@ Record record_of(const ordered_json& j) {
 }
 
 }  // namespace
+
+void check_record(const Record& r) {
+  const auto plain = [](const std::string& text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+      return std::isalnum(c) || std::strchr("-_.:+", c) != nullptr;
+    });
+  };
+  for (const auto& [what, text] : {std::pair("commit", r.commit), {"date", r.date}}) {
+    if (plain(text)) continue;
+    throw std::runtime_error(
+        fmt::format("the {} is '{}', and must be one word", what, printable(text)));
+  }
+}
 
 std::string format_record(const Record& r) {
   ordered_json j = {{"version", kVersion}, {"commit", r.commit},       {"date", r.date},
@@ -103,6 +128,11 @@ std::vector<Record> parse_history(const std::string& text, const std::string& pa
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     try {
       history.push_back(record_of(ordered_json::parse(text.substr(begin, end - begin))));
+      const std::string& commit = history.back().commit;
+      if (std::count_if(history.begin(), history.end(),
+                        [&](const Record& r) { return r.commit == commit; }) > 1) {
+        throw std::runtime_error(commit + " is on record twice");
+      }
     } catch (const ordered_json::exception& e) {
       throw std::runtime_error(
           fmt::format("{}: line {}: no record of a commit: {}", path, number, e.what()));

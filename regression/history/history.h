@@ -37,6 +37,9 @@ struct Record {
   std::vector<Acceptance> accepted;  ///< in the commit's tree
 };
 
+/// @throws std::runtime_error unless commit and date are one word each
+void check_record(const Record& record);
+
 /// One line of the file, without an end.
 std::string format_record(const Record& record);
 

@@ -2,21 +2,39 @@
 #include "regression/host/plugin_host.h"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
 namespace tauext::gate {
+namespace {
+
+// dlopen dies of a library that is cut off; the section headers are its end
+bool cut_off(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  Elf64_Ehdr head{};
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head)) return false;  // dlopen says why
+  if (std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0) return false;
+  const std::uint64_t size = std::filesystem::file_size(file);
+  return head.e_shoff > size ||
+         std::uint64_t{head.e_shnum} * head.e_shentsize > size - head.e_shoff;
+}
+
+}  // namespace
 
 Plugin::Plugin(const std::string& file_path, const std::string& shown) {
   const std::string path = shown.empty() ? file_path : shown;
   // with a slash dlopen looks at this file and nowhere else
   const std::string file = std::filesystem::absolute(file_path).string();
+  if (cut_off(file)) throw std::runtime_error(path + ": cut off; build the plug-in anew");
   library_ = std::shared_ptr<void>(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* l) {
     if (l) ::dlclose(l);
   });

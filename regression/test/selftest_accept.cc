@@ -60,6 +60,12 @@ TEST_F(Accept, OfAMetricMovesItAndTheNextWorseningFails) {
             std::string::npos);
   EXPECT_EQ(judged("gain=0.9"), kGood) << text_;
   EXPECT_EQ(judged("gain=0.81"), kLessAccurate) << "once more by as much: " << text_;
+  // an entry that fails cannot be accepted, and takes nothing with it
+  const std::string before = read_whole(baselines() + "/accuracy.tsv");
+  EXPECT_EQ(judged("sign", {"--accept", "meant"}), kLessAccurate) << text_;
+  EXPECT_NE(text_.find("nothing was accepted"), std::string::npos) << text_;
+  EXPECT_EQ(read_whole(baselines() + "/accuracy.tsv"), before);
+  EXPECT_EQ(judged("sign"), kLessAccurate) << text_;
 }
 
 TEST_F(Accept, WantsAReasonInOneLineAndABase) {

@@ -89,6 +89,8 @@ TEST_F(Usage, WrongFlagsAndFilesSayWhatIsWrong) {
   const std::string text = baselines() + "/text.so";
   write(text, "no plug-in");
   refuses({"time", "--base", text, "--head", plugin("base")}, "no plug-in");
+  write(text, read_whole(plugin("base")).substr(0, 20000));
+  refuses({"time", "--base", text, "--head", plugin("base")}, "cut off; build the plug-in anew");
   refuses({"time", "--base", plugin("base"), "--head", plugin("base"), "--junit", "/nowhere/x"},
           "/nowhere/x");
   EXPECT_EQ(run({"count", "--head", plugin("base"), "--baselines", "/nowhere"}), kUpdateNeeded);

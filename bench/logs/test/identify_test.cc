@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "mjcf/record.h"
@@ -56,6 +58,76 @@ TEST(Identify, OtherFrictionModelsFitByNamingTheirTerms) {
   const Identification id = identify(log, model);
   const double expected[] = {0.5, 1.5, 2.5, 0.7, 0.2};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(id.parameters[i].theta, expected[i], 1e-5) << i;
+}
+
+// what an arm with this torque beside (36) makes of the model of (36)
+template <class Torque>
+Identification with_untold(Torque&& untold) {
+  Trace log = synthetic([&](double q, double qd, double qdd) {
+    const double tau = kTheta[0] * qdd +
+                       kGravity * (kTheta[1] * std::cos(q) + kTheta[2] * std::sin(q)) +
+                       (qd > 0 ? kTheta[3] : -kTheta[3]);
+    return tau + untold(qd, tau);
+  });
+  Sensors sensors;
+  sensors.velocity_noise = 1e-3;
+  sensors.loadcell_noise = 0.2;
+  return identify(measure(log, sensors), kEquation36);
+}
+
+TEST(Identify, NamesTheTermThatIsMissing) {
+  const Identification white = with_untold([](double, double) { return 0; });
+  EXPECT_LT(white.colour, 3);
+  EXPECT_TRUE(white.missing.empty());
+  const Identification viscous = with_untold([](double qd, double) { return 0.5 * qd; });
+  EXPECT_GT(viscous.colour, 3);
+  ASSERT_FALSE(viscous.missing.empty());
+  EXPECT_EQ(viscous.missing[0].name, "viscous");
+  const Identification bent = with_untold([](double, double tau) { return 1e-4 * tau * tau; });
+  EXPECT_GT(bent.colour, 3);
+  ASSERT_FALSE(bent.missing.empty());
+  EXPECT_EQ(bent.missing[0].name, "a loadcell that is not linear (tau^2)");
+}
+
+// y = theta x with noise of first order, the exact variance of whose mean is known by simulation
+TEST(Residuals, RobustErrorsHoldForColouredNoiseAndTheOthersDoNot) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  constexpr int kRuns = 400, kSamples = 500;
+  double spread = 0, robust = 0, white = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    Eigen::MatrixXd A(kSamples, 1);
+    Eigen::VectorXd noise(kSamples);
+    double state = 0;
+    for (int k = 0; k < kSamples; ++k) {
+      state = 0.8 * state + normal(generator);
+      noise[k] = state;
+      A(k, 0) = 1 + 0.5 * std::sin(0.05 * k);
+    }
+    const Eigen::MatrixXd inverse = (A.transpose() * A).inverse();
+    const double theta = (inverse * A.transpose() * noise)(0);  // of 0
+    const Eigen::VectorXd residuals = noise - A * theta;
+    spread += theta * theta / kRuns;
+    robust += std::pow(robust_errors(A, inverse, residuals)[0], 2) / kRuns;
+    white += residuals.squaredNorm() / (kSamples - 1) * inverse(0) / kRuns;
+  }
+  EXPECT_NEAR(std::sqrt(robust / spread), 1, 0.2);
+  EXPECT_LT(std::sqrt(white / spread), 0.5) << "what they were";
+}
+
+TEST(Residuals, ColourIsAStandardNormalOfWhiteNoise) {
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> normal;
+  double sum = 0, squares = 0;
+  constexpr int kRuns = 400;
+  for (int run = 0; run < kRuns; ++run) {
+    Eigen::VectorXd noise(300);
+    for (double& x : noise) x = normal(generator);
+    const double z = colour(noise);
+    sum += z / kRuns, squares += z * z / kRuns;
+  }
+  EXPECT_NEAR(sum, 0, 0.2);
+  EXPECT_NEAR(std::sqrt(squares), 1, 0.2);
 }
 
 TEST(Identify, UnderNoiseItIsWithinThreeSigmaAndSigmaIsHonest) {

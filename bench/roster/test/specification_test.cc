@@ -108,7 +108,7 @@ TEST(Specification, SetsTheBandwidthOfEveryTunableEstimator) {
 
 TEST(Specification, TunableEstimatorsAreThoseOfBothRobotsThatHaveAFormulaForABandwidth) {
   const std::vector<std::string> tunable{
-      "inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf", "smo", "eao", "ekf", "ndob"};
+      "inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf", "smo", "aob", "ekf", "ndob"};
   EXPECT_EQ(wallmobot3().tunable(), tunable);
   EXPECT_EQ(robot("testbed1").tunable(), tunable);
 }
@@ -143,7 +143,8 @@ TEST(Specification, HasAValueForEachJointOrOneForAll) {
 }
 
 TEST(Specification, ThatMeansNothingSaysWhatWouldListingUnitsAndLimits) {
-  const std::string known = "; known: bandwidth [rad/s] 0.001 to 1e+06, max_gap [s] 0.0001 to 1000";
+  const std::string known =
+      "; known: bandwidth [rad/s] 0.001 to 1e+06, torque held|instant, max_gap [s] 0.0001 to 1000";
   EXPECT_EQ(error_by_name("mo2:bandwdith=50"),
             "mo2:bandwdith=50: there is no key 'bandwdith'" + known);
   EXPECT_EQ(error_by_name("mo2:bandwidth=0"),

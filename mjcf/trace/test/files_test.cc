@@ -16,6 +16,7 @@
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/timed_rows.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext::test {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/trace/trace.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/test/same_trace.h"
 #include "mjcf/trace/test/some_trace.h"
+#include "mjcf/trace/timed_rows.h"
 
 namespace tauext::test {
 namespace {
@@ -82,6 +84,33 @@ TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
   EXPECT_EQ(skipped.first[0], "line 3: a field is not finite");
   EXPECT_FALSE(t.has_truth());
   EXPECT_TRUE(t.contact.empty());
+}
+
+TEST_F(TraceFile, OneFalseTimeCostsOneRowAndANewClockNone) {
+  const auto read = [this](const std::vector<double>& times, SkippedRows& skipped) {
+    std::string csv = kHead;
+    for (const double t : times) csv += fmt::format("{:.17g},1,2,3,4,5,6\n", t);
+    return read_csv(written(csv), &skipped).t;
+  };
+  SkippedRows one, first, back, gap;
+  const std::vector<double> good = {0, 0.001, 0.002, 0.003};
+  EXPECT_EQ(read({0, 0.001, 1e9, 0.002, 0.003}, one), good);
+  EXPECT_EQ(one.time_order, 1);
+  EXPECT_EQ(one.first.at(0), "line 4: its time is not the next one");
+  EXPECT_EQ(read({1e9, 0, 0.001, 0.002, 0.003}, first), good);
+  EXPECT_EQ(first.time_order, 1);
+  EXPECT_EQ(first.first.at(0), "line 2: its time is not the next one");
+  const std::vector<double> later = read({8, 8.001, 8.002, 3, 3.001, 3.002}, back);
+  ASSERT_EQ(later.size(), 6u);
+  EXPECT_NEAR(later[3], 9.002, 1e-9);
+  EXPECT_NEAR(later[5], 9.004, 1e-9);
+  EXPECT_EQ(back.total(), 0);
+  EXPECT_EQ(back.notes.at(0),
+            "line 5: its clock was set back by 5.002 s; 6.002 s are added to the times from there "
+            "on");
+  EXPECT_EQ(read({0, 0.001, 5, 5.001, 5.002, 5.003}, gap).size(), 6u);
+  EXPECT_EQ(gap.total(), 0);
+  EXPECT_TRUE(gap.notes.empty());
 }
 
 TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {

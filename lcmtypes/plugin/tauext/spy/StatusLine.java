@@ -10,7 +10,8 @@ import javax.swing.JLabel;
 /** What became of the messages, in a line; red while something is wrong. */
 final class StatusLine extends JLabel {
   private static final String[] kStatus = {
-    "ok", "started", "bad measurement", "singular inertia", "diverged"
+    "ok", "started", "bad measurement", "singular inertia", "diverged",
+    "bad time", "beyond a limit", "jump", "frozen", "unlikely"
   };
   private static final double kSilent_s = 1.5;
 

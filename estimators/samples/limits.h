@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What an arm can do, beyond which a reading is a broken sensor's.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "estimators/concepts.h"
+#include "estimators/math/ldlt.h"
+
+namespace tauext {
+
+/// A reading [rad, rad/s, N m] beyond which it is no robot's.
+inline constexpr double kMeasurementLimit = 1e6;
+
+/// Per joint; by default what no robot of any kind exceeds.
+template <int N>
+struct ArmLimits {
+  Vec<N> q_least = Vec<N>::Constant(-kMeasurementLimit);  ///< [rad] range of the position
+  Vec<N> q_most = Vec<N>::Constant(kMeasurementLimit);    ///< [rad]
+  Vec<N> qd = Vec<N>::Constant(100);                      ///< [rad/s] speed
+  Vec<N> tau = Vec<N>::Constant(kMeasurementLimit);       ///< [N m] torque
+  Vec<N> qdd = Vec<N>::Constant(kMeasurementLimit);       ///< [rad/s^2] change of speed, in time
+  Vec<N> dtau = Vec<N>::Constant(kMeasurementLimit);      ///< [N m] change of torque, at once
+};
+
+/// Of this arm: what it says of itself (`limits()`), or what follows from its model. There the
+/// scale of a joint's torque is what holds the arm and accelerates it by 5 rad/s^2, in the worst of
+/// 64 poses,
+///     scale_i = max |g_i| + 5 max B_ii,   qdd_i = 20 rad/s^2 + 2 max |(B^-1 g)_i|  (free falls)
+///     tau_i = 50 scale_i + 5 max_j scale_j,   dtau_i = 0.1 scale_i + 0.05 max_j scale_j
+template <RobotModel M>
+ArmLimits<M::kDof> limits_of(const M& model) {
+  constexpr int N = M::kDof;
+  if constexpr (requires { ArmLimits<N>(model.limits()); }) {
+    return model.limits();
+  } else {
+    Vec<N> weight = Vec<N>::Zero(), inertia = weight, fall = weight, q = weight;
+    std::uint64_t random = 1;  // Knuth's generator
+    for (int pose = 0; pose < 64; ++pose) {
+      const Mat<N> B = model.inertia(q);
+      const Ldlt<N> factor(B);
+      if (factor.ok()) {
+        const Vec<N> g = model.gravity(q);
+        weight = weight.cwiseMax(g.cwiseAbs());
+        inertia = inertia.cwiseMax(B.diagonal());
+        fall = fall.cwiseMax(factor.solve(g).cwiseAbs());
+      }
+      for (int j = 0; j < N; ++j) {
+        random = random * 6364136223846793005u + 1442695040888963407u;
+        q[j] = 6.283185307179586 * (static_cast<double>(random >> 11) * 0x1p-53 - 0.5);
+      }
+    }
+    ArmLimits<N> out;
+    const Vec<N> scale = weight + 5 * inertia;
+    if (!(scale.minCoeff() > 0) || !scale.allFinite() || !fall.allFinite()) return out;
+    const Vec<N> most = Vec<N>::Constant(scale.maxCoeff());
+    out.tau = (50 * scale + 5 * most).cwiseMin(kMeasurementLimit);
+    out.dtau = 0.1 * scale + 0.05 * most;
+    out.qdd = Vec<N>::Constant(20) + 2 * fall;
+    return out;
+  }
+}
+
+}  // namespace tauext
