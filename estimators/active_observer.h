@@ -25,6 +25,7 @@
 ///     delta = B(q_k)^-1 B(q_k-1) delta                                                      (iv)
 #pragma once
 
+#include <cstdint>
 #include <tuple>
 
 #include "estimators/concepts.h"

@@ -26,6 +26,8 @@
 /// run alive. The N rows of a block are padded with zeros to whole SIMD registers.
 #pragma once
 
+#include <cstdint>
+
 #include "estimators/concepts.h"
 #include "estimators/ekf_parameters.h"
 #include "estimators/math/lanes.h"

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -22,12 +21,14 @@ struct Fault {
   /// What becomes of a recording from sample k on.
   std::function<void(Samples&, std::size_t k)> apply;
   int samples = 1;  ///< for which it lasts at most; a new clock is one at once
-  /// [1] times the largest error without it that it may cost: after a gap an observer has the past
-  /// of one sample alone, whose noise nothing takes back.
+  /// [1] times the largest error without it that it may cost: an observer that starts anew has the
+  /// past of one sample alone, whose noise nothing takes back.
   double cost = 2;
 };
 
 namespace detail {
+
+inline constexpr double kRestart = 6;  // times the error
 
 template <class Sample, class Change>
 Fault<Sample> once(const char* name, Change change) {
@@ -35,10 +36,12 @@ Fault<Sample> once(const char* name, Change change) {
 }
 
 template <class Sample, class Change>
-Fault<Sample> from_then_on(const char* name, Change change) {
-  return {name, [change](auto& s, std::size_t k) {
+Fault<Sample> from_then_on(const char* name, double cost, Change change) {
+  return {name,
+          [change](auto& s, std::size_t k) {
             for (; k < s.size(); ++k) change(s[k]);
-          }};
+          },
+          1, cost};
 }
 
 // sample by sample as the first one, but for its time
@@ -55,10 +58,10 @@ template <class Sample>
 Fault<Sample> lost(const char* name, std::ptrdiff_t n) {
   return {name,
           [n](auto& s, std::size_t k) {
-            const auto first = std::next(s.begin(), static_cast<std::ptrdiff_t>(k));
-            s.erase(first, std::next(first, n));
+            const auto first = s.begin() + static_cast<std::ptrdiff_t>(k);
+            s.erase(first, first + n);
           },
-          1, 4};
+          1, kRestart};
 }
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
@@ -69,17 +72,17 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 template <class Sample>
 std::vector<Fault<Sample>> clock_faults() {
   using Y = Sample;
-  using detail::from_then_on, detail::once, detail::lost;
+  using detail::from_then_on, detail::kRestart, detail::lost, detail::once;
   return {
       once<Y>("one stamp of 1e9 s", [](Y& y) { y.t = 1e9; }),
       once<Y>("one stamp a second ahead", [](Y& y) { y.t += 1; }),
       once<Y>("one stamp 20 ms ahead", [](Y& y) { y.t += 0.02; }),
       once<Y>("one stamp an hour back", [](Y& y) { y.t -= 3600; }),
       once<Y>("one stamp that is no number", [](Y& y) { y.t = detail::kNoNumber; }),
-      from_then_on<Y>("a clock set back an hour", [](Y& y) { y.t -= 3600; }),
-      from_then_on<Y>("a clock set back 5 ms", [](Y& y) { y.t -= 0.005; }),
-      from_then_on<Y>("a clock set ahead a second", [](Y& y) { y.t += 1; }),
-      from_then_on<Y>("a clock that becomes Unix time", [](Y& y) { y.t += 1.7e9; }),
+      from_then_on<Y>("a clock set back an hour", kRestart, [](Y& y) { y.t -= 3600; }),
+      from_then_on<Y>("a clock set back 5 ms", kRestart, [](Y& y) { y.t -= 0.005; }),
+      from_then_on<Y>("a clock set ahead a second", kRestart, [](Y& y) { y.t += 1; }),
+      from_then_on<Y>("a clock that becomes Unix time", kRestart, [](Y& y) { y.t += 1.7e9; }),
       detail::for_some<Y>("a clock that stands still for 20 samples", 20,
                           [](const Y& first, Y& y) { y.t = first.t; }),
       lost<Y>("20 samples lost", 20),
@@ -91,7 +94,7 @@ std::vector<Fault<Sample>> clock_faults() {
 template <class Sample>
 std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
   using Y = Sample;
-  using detail::for_some, detail::from_then_on, detail::once;
+  using detail::for_some, detail::from_then_on, detail::kRestart, detail::once;
   constexpr double kTurn = 6.283185307179586;
   const auto freeze = [](const Y& first, Y& y) {
     const double t = y.t;
@@ -101,7 +104,7 @@ std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
   return {
       once<Y>("q once 0.1 rad off", [j](Y& y) { y.q[j] += 0.1; }),
       once<Y>("q once a turn off", [j](Y& y) { y.q[j] += kTurn; }),
-      from_then_on<Y>("an encoder that wraps by a turn", [j](Y& y) { y.q[j] -= kTurn; }),
+      from_then_on<Y>("an encoder that wraps by a turn", kRestart, [j](Y& y) { y.q[j] -= kTurn; }),
       once<Y>("qd once 1 rad/s off", [j](Y& y) { y.qd[j] -= 1; }),
       once<Y>("qd once 1000 rad/s off", [j](Y& y) { y.qd[j] += 1000; }),
       once<Y>("tau once far off", [j, torque](Y& y) { y.tau[j] += torque; }),
