@@ -98,7 +98,8 @@ class ActiveObserver {
       start(y, B);
     } else {
       const Vec<kDof> tau = sampling_.torque_before();
-      if (sampling_.joints() != 0) a_ = Ldlt<kDof>(B_).solve(Vec<kDof>(tau - rest_));
+      if (sampling_.joints() != 0) [[unlikely]]
+        put_right(tau);
       const Vec<kDof> a_end =
           B.solve(Vec<kDof>((p_.torque == TorqueSampling::kHeld ? tau : y.tau) - rest));
       delta_ = B.solve(tau_ext_);                  // (iv)
@@ -114,8 +115,6 @@ class ActiveObserver {
       }
     }
     a_ = B.solve(Vec<kDof>(y.tau - rest));
-    B_ = now.B;
-    rest_ = rest;
     return {tau_ext_, status, sampling_.joints()};
   }
 
@@ -136,6 +135,13 @@ class ActiveObserver {
     nu_qd_.setZero();
     qq_ = 1e3 * p_.R_q, vv_ = 1e3 * p_.R_qd, dd_ = 0.01 * p_.Q_delta;
     vq_ = dq_ = dv_ = 0;
+  }
+
+  // [N m] tau of the last sample, which was another, and the turns of this one
+  [[gnu::noinline]] void put_right(const Vec<kDof>& tau) noexcept {
+    const Dynamics<kDof> last = dynamics(model_, q_, qd_);
+    a_ = Ldlt<kDof>(last.B).solve(Vec<kDof>(tau - last.bias - model_.friction(qd_)));
+    if (sampling_.wrapped()) q_ += sampling_.turns();
   }
 
   // (ii)
@@ -195,8 +201,6 @@ class ActiveObserver {
   Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
   double qq_ = 0, vq_ = 0, dq_ = 0, vv_ = 0, dv_ = 0, dd_ = 0;  // of P
   Vec<kDof> a_ = Vec<kDof>::Zero();        // [rad/s^2] of (i) at the last sample
-  Mat<kDof> B_ = Mat<kDof>::Identity();    // [kg m^2] there
-  Vec<kDof> rest_ = Vec<kDof>::Zero();     // [N m] C qd + g + F there
   Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
 };
 

@@ -67,6 +67,8 @@ class Ekf {
       start(y);
       return estimate(status);
     }
+    if (sampling_.wrapped()) [[unlikely]]
+      x_[0] += detail::pad_vector<kDof>(sampling_.turns());
     const Vec<kDof> tau = p_.alignment == Alignment::kHeld ? sampling_.torque(y) : y.tau;
     const double steps = p_.Ts > 0 ? sampling_.h() / p_.Ts : 1;
     if (!predict(sampling_.h(), tau, steps)) {

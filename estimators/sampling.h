@@ -6,8 +6,9 @@
 ///     |q_k - q_k-1 - h (qd_k + qd_k-1) / 2| <= 0.005 + 8 h |qd_k-1|                         (i)
 ///     |qd_k - qd_k-1| <= 0.02 + h qdd_max                                                   (ii)
 /// Others are left out, and the estimate is held. A jump by (ii) that the next sample bears out was
-/// a blow, which costs that one sample; one by (i), such as an encoder's wrap by 2 pi, is a new
-/// position when kClockSamples in a row agree on it. A torque that is held is not needed before the
+/// a blow, which costs that one sample; one by (i) is a new position when kClockSamples in a row
+/// agree on it, unless it is by whole turns: that is the same position of a hinge, and costs
+/// nothing. A torque that is held is not needed before the
 /// next sample, which tells: if tau has jumped by more than dtau_max and back, the one before the
 /// jump takes its place, and the next kOk names the joints. A joint that says it moves (qd is not
 /// 0) while q and qd stay the same to the last bit, for 0.5 mrad of that motion, is frozen; its
@@ -132,6 +133,11 @@ class Sampling {
 
   double h() const noexcept { return clock_.h(); }  ///< [s] from the last used sample to this one
 
+  /// Whether q has wrapped at the sample that was just accepted.
+  bool wrapped() const noexcept { return wrapped_; }
+  /// [rad] by which it then has; a filter of q has to do the same.
+  const Vec<N>& turns() const noexcept { return turns_; }
+
   /// Which joints the last verdict is about, bit 0 for the first; 0 where it is about none.
   std::uint8_t joints() const noexcept { return joints_; }
 
@@ -179,6 +185,7 @@ class Sampling {
     last_ = y;
     waiting_ = 0;
     joints_ = 0;
+    wrapped_ = false;
   }
 
   template <class Wrong>
@@ -223,7 +230,11 @@ class Sampling {
 
   // what came h() after the last one
   Status judge_step(const Measurement<N>& y) noexcept {
-    const auto leaps = which([&](int j) { return !continuous(last_, y, h(), j); });
+    constexpr double kTurn = 6.283185307179586;
+    Measurement<N> from = last_;
+    for (int j = 0; j < N; ++j) turns_[j] = kTurn * std::round((y.q[j] - last_.q[j]) / kTurn);
+    from.q += turns_;
+    const auto leaps = which([&](int j) { return !continuous(from, y, h(), j); });
     const auto jumps = which([&](int j) { return !smooth(last_.tau[j], y.tau[j], j); });
     auto jolts = which([&](int j) { return !calm(last_, y, h(), j); });
     if (torque_ == TorqueSampling::kInstant) jolts |= jumps;
@@ -247,7 +258,8 @@ class Sampling {
       if (back >> j & 1) last_.tau[j] = held_[j];
     }
     remember(y);
-    joints_ = back;
+    joints_ = back | which([&](int j) { return turns_[j] != 0; });
+    wrapped_ = joints_ != back;
     jumped_ = jumps & ~back;
     return Status::kOk;
   }
@@ -257,10 +269,12 @@ class Sampling {
   TorqueSampling torque_;
   Measurement<N> last_;           // that was used
   Vec<N> held_ = Vec<N>::Zero();  // [N m] tau of the one before
+  Vec<N> turns_ = held_;          // [rad] by which q has wrapped, if it has
   Measurement<N> waits_;          // that jumped, waiting_ in a row
   int waiting_ = 0;
   double travel_ = 0;  // [rad] that a joint whose reading has not changed says to have moved
   std::uint8_t joints_ = 0, jumped_ = 0;  // of the verdict; whose last tau has jumped
+  bool wrapped_ = false;                  // q, at the last sample
   bool doubted_ = false;                  // a filter the last sample
 };
 

@@ -70,8 +70,8 @@ template <int N>
 struct Estimate {
   Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
   Status status = Status::kOk;      ///< whether tau_ext may be used
-  /// That the status is about, bit 0 for the first; with kOk those whose torque of the sample
-  /// before was an outlier, which was replaced.
+  /// That the status is about, bit 0 for the first; with kOk those whose readings were put right:
+  /// a torque of the sample before that was an outlier, a q that has wrapped by a turn.
   std::uint8_t joints = 0;
 };
 

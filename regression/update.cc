@@ -121,8 +121,10 @@ Changes update_golden(const UpdateOptions& o, Files& files) {
     }
     if (!r.no_baseline.empty()) changes.worse += "  cannot be compared: " + r.no_baseline + "\n";
     for (const MetricChange& c : r.changes) {
-      const std::string line = fmt::format("  {} {}: {} -> {}\n", c.entry, c.metric, said(c.before),
-                                           c.change == Change::kGone ? "gone" : said(c.after));
+      const std::string line =
+          fmt::format("  {} {}: {} -> {}{}\n", c.entry, c.metric, said(c.before),
+                      c.change == Change::kGone ? "gone" : said(c.after),
+                      c.note.empty() ? "" : " (" + c.note + ")");
       const bool failed =
           c.change == Change::kNew && c.metric == row_of(Metric::kFailed).key && c.after > 0;
       const bool bad = failed || c.change == Change::kWorse || c.change == Change::kGone;
@@ -174,8 +176,11 @@ UpdateResult update_baselines(const UpdateOptions& o) {
     return {kGood, "the baselines are as they should be; nothing was written\n"};
   UpdateResult result;
   for (const std::string& name : files.names()) result.text += "wrote " + name + "\n";
-  log += fmt::format("- {:%Y-%m-%d}: {}{}\n", fmt::gmtime(std::time(nullptr)), o.reason,
-                     worse.empty() ? "" : fmt::format(" (worse, accepted: {})", o.accept_worse));
+  log += fmt::format(
+      "- {:%Y-%m-%d}: {}{}\n", fmt::gmtime(std::time(nullptr)), o.reason,
+      worse.empty() ? ""
+                    : fmt::format(" ({} worse, accepted: {})",
+                                  std::count(worse.begin(), worse.end(), '\n'), o.accept_worse));
   files.add(o.changelog, log);
   files.commit();
   result.text += first_lines(worse + counts.other + metrics.other, 20) + "The reason is in " +

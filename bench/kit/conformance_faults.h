@@ -33,7 +33,7 @@ class FaultClaims {
     error_ = largest_error(run(good_));
   }
 
-  /// A sample that is left out is said to be, and a torque that is replaced; all samples are used
+  /// A sample that is left out is said to be, and a reading that is put right; all samples are used
   /// again 25 samples after the fault; and where one sample or the clock is at fault, no estimate
   /// that is said to be good is off by more than its `cost` times what it is without the fault.
   void bears(const Fault<Measurement<N>>& fault) const {

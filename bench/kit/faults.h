@@ -94,7 +94,7 @@ std::vector<Fault<Sample>> clock_faults() {
 template <class Sample>
 std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
   using Y = Sample;
-  using detail::for_some, detail::from_then_on, detail::kRestart, detail::once;
+  using detail::for_some, detail::from_then_on, detail::once;
   constexpr double kTurn = 6.283185307179586;
   const auto freeze = [](const Y& first, Y& y) {
     const double t = y.t;
@@ -104,7 +104,7 @@ std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
   return {
       once<Y>("q once 0.1 rad off", [j](Y& y) { y.q[j] += 0.1; }),
       once<Y>("q once a turn off", [j](Y& y) { y.q[j] += kTurn; }),
-      from_then_on<Y>("an encoder that wraps by a turn", kRestart, [j](Y& y) { y.q[j] -= kTurn; }),
+      from_then_on<Y>("an encoder that wraps by a turn", 2, [j](Y& y) { y.q[j] -= kTurn; }),
       once<Y>("qd once 1 rad/s off", [j](Y& y) { y.qd[j] -= 1; }),
       once<Y>("qd once 1000 rad/s off", [j](Y& y) { y.qd[j] += 1000; }),
       once<Y>("tau once far off", [j, torque](Y& y) { y.tau[j] += torque; }),

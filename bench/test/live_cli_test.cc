@@ -185,9 +185,10 @@ TEST_F(LivePrograms, TheBenchmarkIsOnTheAirAsEntriesFinish) {
 
 TEST_F(LivePrograms, InterruptedItSumsUp) {
   for (const std::string signal : {"INT", "TERM"}) {
-    const Outcome o = run_script(
-        std::string(kRun) + "--loop > out 2>&1 & live=$!\nsays out playing; sleep 0.3; kill -" +
-        signal + " $live; wait $live; code=$?; cat out; exit $code");
+    const Outcome o =
+        run_script("rm -f out; " + std::string(kRun) +
+                   "--loop > out 2>&1 & live=$!\nsays out playing; sleep 0.3; kill -" + signal +
+                   " $live; wait $live; code=$?; cat out; exit $code");
     EXPECT_EQ(o.code, 0) << o.text;
     EXPECT_TRUE(o.says("loop       late by")) << o.text;
   }

@@ -67,7 +67,7 @@ class StatusCounts {
       if (status == Status::kOk && joints.empty()) continue;
       if (!out.empty()) out += ", ";
       if (status == Status::kOk) {
-        out += "torques replaced" + joints;
+        out += "readings put right" + joints;
       } else {
         out += std::to_string(n) + " " + (status == Status::kStarted ? "anew" : name_of(status)) +
                joints;

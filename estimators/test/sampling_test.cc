@@ -181,9 +181,24 @@ TEST(Sampling, BelievesABlowAtTheSecondSample) {
   EXPECT_NEAR(r.s.h(), 2e-3, 1e-12);
 }
 
-TEST(Sampling, TakesAWrapAtTheThirdSample) {
+TEST(Sampling, TurnsWithAnEncoderThatWraps) {
   AtRest r;
-  r.at[1] = 6.283185307179586;
+  const double turn = 6.283185307179586;
+  r.at[1] = -turn;
+  EXPECT_EQ(r.take(), Status::kOk);
+  EXPECT_TRUE(r.s.wrapped());
+  EXPECT_EQ(r.s.turns(), Vec<3>(0, -turn, 0));
+  EXPECT_EQ(r.s.joints(), 2);
+  EXPECT_EQ(r.take(), Status::kOk);
+  EXPECT_FALSE(r.s.wrapped());
+  EXPECT_EQ(r.s.joints(), 0);
+  r.at[1] = 0.01;  // by a turn and more than the arm can have moved
+  EXPECT_EQ(r.take(), Status::kJump);
+}
+
+TEST(Sampling, TakesANewPositionAtTheThirdSample) {
+  AtRest r;
+  r.at[1] = 0.1;
   EXPECT_EQ(r.take(), Status::kJump);
   EXPECT_EQ(r.take(), Status::kJump);
   EXPECT_EQ(r.take(), Status::kStarted);

@@ -74,6 +74,11 @@ class TimedRows {
     if (rows_.empty() && !waiting_.empty()) first_ = waiting_.front().second;
     for (Row& r : waiting_) {
       r.first[t_] += shift_;
+      // beside a shift of 1e17 s a step is lost in the last digit
+      if (!rows_.empty() && r.first[t_] <= rows_.back()[t_]) {
+        skip(r.second);
+        continue;
+      }
       rows_.push_back(std::move(r.first));
     }
     waiting_.clear();

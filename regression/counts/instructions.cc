@@ -69,8 +69,9 @@ std::string function_name(const std::string& text, std::map<std::string, std::st
   return name;
 }
 
-// "././estimators/ekf.h", as a mapped prefix makes it
+// "././estimators/ekf.h" and "build/release/./estimators/ekf.h", as a mapped prefix makes them
 std::string from_the_top(std::string_view file) {
+  if (const auto top = file.rfind("/./"); top != file.npos) file.remove_prefix(top + 3);
   while (file.starts_with("./")) file.remove_prefix(2);
   return std::string(file);
 }

@@ -64,6 +64,7 @@ KernelDrift kernel_drift(const std::vector<Record>& history, const std::string& 
   KernelDrift d{.kernel = kernel, .level = s.level, .last = last.kernels.at(kernel)};
   d.accepted = accepted(history, kTimeLayer, kernel);
   d.drifted = d.last.surely > limits.time + d.accepted;
+  d.undecided = !d.drifted && d.last.ratio > 1 + limits.time + d.accepted;
   const std::size_t begin = s.level.size() - std::min(s.level.size(), limits.window);
   d.change = last_change({s.level.begin() + static_cast<std::ptrdiff_t>(begin), s.level.end()},
                          limits.change, static_cast<int>(last.kernels.size()));

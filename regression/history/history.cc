@@ -80,6 +80,7 @@ Record record_of(const ordered_json& j) {
   for (const auto& a : j.at("accepted")) {
     r.accepted.push_back(
         {a.at("layer"), a.at("subject"), a.at("at_most"), a.at("base"), a.at("reason")});
+    check_acceptance(r.accepted.back(), "accepted");
   }
   return r;
 }

@@ -35,6 +35,7 @@ std::vector<std::string> cells_of(const KernelDrift& k) {
           sparkline(k.level, kBars),
           k.drifted || k.slower ? "SLOWER"
           : k.accepted > 0      ? "accepted"
+          : k.undecided         ? "undecided"
                                 : "ok"};
 }
 

@@ -24,6 +24,11 @@ constexpr const char* kEnd = "# end";
 constexpr const char* kLayers[] = {kTimeLayer,         kColdLayer,      kLongLayer,
                                    kInstructionsLayer, kCommittedLayer, kAccuracyLayer};
 
+[[noreturn]] void refuse_at_most(const std::string& what, const std::string& where) {
+  throw std::runtime_error(
+      fmt::format("{}: at most is '{}', and must be a number like 0.03", where, what));
+}
+
 Acceptance acceptance_of(const std::string& line, const std::string& where) {
   std::istringstream in(line);
   std::vector<std::string> fields;
@@ -37,17 +42,21 @@ Acceptance acceptance_of(const std::string& line, const std::string& where) {
   const std::string& at_most = fields[2];
   const char* const end = at_most.data() + at_most.size();
   const auto [stop, error] = std::from_chars(at_most.data(), end, a.at_most);
-  if (error != std::errc() || stop != end || !(a.at_most >= 0 && std::isfinite(a.at_most))) {
-    throw std::runtime_error(
-        fmt::format("{}: at most is '{}', and must be a number like 0.03", where, at_most));
-  }
-  find_known(
-      kLayers, "layer", a.layer, [](const char* name) { return name; }, where);
-  if (a.base.empty()) throw std::runtime_error(where + ": the column base is empty");
+  if (error != std::errc() || stop != end) refuse_at_most(at_most, where);
+  check_acceptance(a, where);
   return a;
 }
 
 }  // namespace
+
+void check_acceptance(const Acceptance& a, const std::string& where) {
+  if (!(a.at_most >= 0 && std::isfinite(a.at_most))) {
+    refuse_at_most(fmt::format("{:g}", a.at_most), where);
+  }
+  find_known(
+      kLayers, "layer", a.layer, [](const char* name) { return name; }, where);
+  if (a.base.empty()) throw std::runtime_error(where + ": base is empty, and must be a commit");
+}
 
 bool Acceptance::covers(const std::string& its_layer, const std::string& its_subject,
                         double by) const {
@@ -70,7 +79,7 @@ std::vector<Acceptance> read_acceptances(const std::string& path) {
     if (number <= 2) {
       const char* const wanted = number == 1 ? kHeader : kColumns;
       if (line != wanted)
-        throw std::runtime_error(fmt::format("{}: it must be '{}'", where, wanted));
+        throw std::runtime_error(fmt::format("{}: it must be '{}'; --accept writes this file", where, wanted));
     } else if (line == kEnd) {
       end = true;
     } else {

@@ -25,6 +25,9 @@ struct Acceptance {
   bool covers(const std::string& its_layer, const std::string& its_subject, double by) const;
 };
 
+/// @throws std::runtime_error naming `where` and what no acceptance has
+void check_acceptance(const Acceptance& a, const std::string& where);
+
 /// Path of the acceptances in a folder of baselines.
 std::string accepted_path(const std::string& folder);
 

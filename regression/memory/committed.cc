@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -63,8 +64,9 @@ void compare_golden(const std::string& before_path, const std::string& path, Mem
     listed.emplace(c.entry, c.metric);
     r.moved.push_back(
         {fmt::format("{} {} {}", file, c.entry, c.metric),
-         fmt::format("{} -> {}", c.change == Change::kNew ? "nothing" : said(c.before),
-                     c.change == Change::kGone ? "gone" : said(c.after)),
+         fmt::format("{} -> {}{}", c.change == Change::kNew ? "nothing" : said(c.before),
+                     c.change == Change::kGone ? "gone" : said(c.after),
+                     c.note.empty() ? "" : " (" + c.note + ")"),
          c.change == Change::kWorse || c.change == Change::kGone});
   }
   for (const auto& [key, line] : head.lines) {
@@ -119,6 +121,13 @@ std::vector<std::string> reasons_of(const std::string& changelog) {
   return reasons;
 }
 
+// of a line of tauext-gate update: "less noise (3 worse, accepted: noise matters)"
+int lines_accepted(const std::string& reason) {
+  std::smatch found;
+  static const std::regex kAccepted(R"(\((\d{1,6}) worse, accepted: )");
+  return std::regex_search(reason, found, kAccepted) ? std::stoi(found[1]) : 0;
+}
+
 }  // namespace
 
 int MemoryReport::worse() const {
@@ -147,7 +156,7 @@ MemoryReport compare_committed(const Committed& base, const Committed& head) {
       before.erase(known);
       continue;
     }
-    r.worse_accepted = r.worse_accepted || reason.find("(worse, accepted: ") != std::string::npos;
+    r.accepted += lines_accepted(reason);
     r.reasons.push_back(std::move(reason));
   }
   return r;

@@ -26,11 +26,11 @@ struct MemoryReport {
   int lines = 0;                     ///< of head
   std::vector<Moved> moved;          ///< worse ones first
   std::vector<std::string> reasons;  ///< lines that head's changelog has and base's has not
-  bool worse_accepted = false;       ///< one of them says so
+  int accepted = 0;                  ///< so many worse lines they give leave to
 
   int worse() const;
   bool without_reason() const { return !moved.empty() && reasons.empty(); }
-  bool worse_without_leave() const { return worse() > 0 && !worse_accepted; }
+  bool worse_without_leave() const { return worse() > accepted; }
 };
 
 /// Compares accuracy.tsv, line by line and to the last bit, and the counts of every key. Worse is

@@ -53,7 +53,7 @@ TEST_F(Update, RefusesAWorseningUnlessItIsAccepted) {
   auto accepting = command("less noise");
   accepting.insert(accepting.end(), {"--accept-worse", "the noise matters more"});
   EXPECT_EQ(run(accepting), kGood) << text_;
-  EXPECT_NE(read_whole(log_).find("less noise (worse, accepted: the noise matters more)"),
+  EXPECT_NE(read_whole(log_).find("less noise (3 worse, accepted: the noise matters more)"),
             std::string::npos);
 }
 

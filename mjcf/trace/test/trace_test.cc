@@ -111,6 +111,9 @@ TEST_F(TraceFile, OneFalseTimeCostsOneRowAndANewClockNone) {
   EXPECT_EQ(read({0, 0.001, 5, 5.001, 5.002, 5.003}, gap).size(), 6u);
   EXPECT_EQ(gap.total(), 0);
   EXPECT_TRUE(gap.notes.empty());
+  SkippedRows no_digits;  // 3e17 + 0.001 is 3e17
+  EXPECT_EQ(read({0, 0.001, 3e17, 3.1e17, 3.2e17, 5, 5.001, 5.002}, no_digits).size(), 5u);
+  EXPECT_EQ(no_digits.first.at(0), "line 7: its time is not the next one");
 }
 
 TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {
