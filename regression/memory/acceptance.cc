@@ -79,7 +79,8 @@ std::vector<Acceptance> read_acceptances(const std::string& path) {
     if (number <= 2) {
       const char* const wanted = number == 1 ? kHeader : kColumns;
       if (line != wanted)
-        throw std::runtime_error(fmt::format("{}: it must be '{}'; --accept writes this file", where, wanted));
+        throw std::runtime_error(
+            fmt::format("{}: it must be '{}'; --accept writes this file", where, wanted));
     } else if (line == kEnd) {
       end = true;
     } else {
