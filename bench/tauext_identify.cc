@@ -44,8 +44,8 @@ std::string as_table(const std::vector<Term>& terms, const Identification& id) {
   }
   if (id.colour > 3) {
     out += fmt::format(
-        "The residuals are no white noise (Ljung-Box, {:.0f} standard deviations): the model lacks "
-        "something, and theta is biased\nby more than any standard error says.\n",
+        "The residuals are no white noise (Ljung-Box, {:.0f} standard deviations): use the robust "
+        "errors; if the model lacks a\nterm, theta is biased by more than they say.\n",
         id.colour);
   }
   for (const Suspect& s : id.missing) {

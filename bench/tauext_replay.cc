@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "bench/logs/lcm_trace.h"
 #include "bench/logs/read_log.h"
+#include "bench/logs/torque_sampling.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/score/detection_metrics.h"
@@ -68,59 +70,48 @@ std::string looks_like(double step) {
   return "";
 }
 
-// statuses that an engineer has to know of; false if most samples could not be used
-bool report_status(const Trace& trace, const Column& c) {
+// statuses that an engineer has to know of; false if most samples could not be used, with those
+// that the reader has skipped
+bool report_status(const Trace& trace, const Column& c, std::int64_t skipped) {
   const StatusCounts& counts = c.output.counts;
-  if (counts.left_out() == 0) return true;
-  say(fmt::format("{}: {} of {} samples left out: {}", c.estimator, counts.left_out(),
-                  counts.samples(), counts.text()));
-  if (2 * counts.left_out() <= counts.samples()) return true;
+  if (!counts.text().empty()) {
+    say(fmt::format("{}: of {} samples {}", c.estimator, counts.samples(), counts.sentence()));
+  }
+  if (2 * (counts.left_out() + skipped) <= counts.samples() + skipped) return true;
+  if (2 * counts.of(Status::kFrozen) > counts.samples()) {
+    say(
+        fmt::format("{}: most readings repeat the one before, so these are no estimates. Is the "
+                    "log faster than its sensors?",
+                    c.estimator));
+    return false;
+  }
   std::vector<double> steps;
   for (int k = 1; k < trace.size(); ++k) steps.push_back(trace.t[k] - trace.t[k - 1]);
   if (steps.empty()) return false;
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
   const double step = steps[steps.size() / 2];
   say(fmt::format(
-      "{}: most samples could not be used, so these are no estimates. Samples are {:g} s apart{}; "
-      "more than 0.05 s is a gap. Is q in rad, qd in rad/s, tau in N m?",
+      "{}: most samples could not be used, so these are no estimates. Samples are {:g} s apart{}. "
+      "Is q in rad, qd in rad/s, tau in N m?",
       c.estimator, step, looks_like(step)));
   return false;
 }
 
-// Whether tau is rather held from t on or read at t. Between the two mo2's estimates differ by a
-// signal delta that is known; in free motion the one for held is weight delta, weight 0 if that is
-// right and 1 if the other is. A joint counts by its weight's standard error, from samples that
-// are independent of each other, so many fewer as mo2's bandwidth is below that of the samples.
-void warn_of_torque(const Robot& r, const Trace& trace, const std::string& said) {
+// where the log shows that tau is not what is assumed
+void warn_of_torque(const Robot& r, const Trace& trace, bool assumed_instant) {
+  constexpr double kBandwidth = 30;  // [rad/s]
   const auto run = [&](const char* torque) {
-    return r.runner(fmt::format("mo2:torque={}", torque), "", trace)->run();
+    return r.runner(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", trace)
+        ->run();
   };
-  const Output held = run("held"), instant = run("instant");
-  const double step = (trace.t.back() - trace.t.front()) / std::max(trace.size() - 1, 1);
-  const double dependent = std::max(1., 2 / (30 * step));
-  double weighted = 0, weights = 0;
-  for (int j = 0; j < trace.dof(); ++j) {
-    double dd = 0, ad = 0, aa = 0;
-    int count = 0;
-    for (int k = 0; k < trace.size(); ++k) {
-      if (held.status[k] != Status::kOk || (!trace.contact.empty() && trace.contact[k])) continue;
-      const double a = held.tau_ext(j, k), delta = a - instant.tau_ext(j, k);
-      dd += delta * delta, ad += a * delta, aa += a * a;
-      ++count;
-    }
-    if (count < 1000 || dd == 0) continue;
-    const double weight = ad / dd, rest = std::max(aa - ad * weight, 1e-12 * aa) / count;
-    const double certain = dd / (rest * dependent);
-    weighted += certain * weight, weights += certain;
-  }
-  if (weights == 0) return;
-  const double instantly = weighted / weights, sure = 3 / std::sqrt(weights);
-  const bool assumed_instant = said == "instant";
-  if (assumed_instant ? instantly + sure >= 0.5 : instantly - sure <= 0.5) return;
-  say(fmt::format(
-      "tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken "
-      "as the other: see --torque",
-      assumed_instant ? "held from each" : "read at each", instantly, sure));
+  const Output held = run("held");
+  const auto w =
+      torque_weight(trace, held.tau_ext, run("instant").tau_ext, held.status, kBandwidth);
+  if (!w || !w->contradicts(assumed_instant)) return;
+  say(
+      fmt::format("tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is "
+                  "taken as the other: see --torque",
+                  assumed_instant ? "held from each" : "read at each", w->weight, w->sure));
 }
 
 // what a detector was worth; nothing where the log does not say what happened
@@ -198,6 +189,9 @@ int replay(Flags& f) {
   for (std::string& e : f.estimators) {
     r.check(e, f.detector);
     if (f.torque.empty()) continue;
+    if (key_of(e, "torque")) {
+      throw std::invalid_argument(fmt::format("--torque {}: {} says it, too", f.torque, e));
+    }
     e = with_key(e, "torque", f.torque, r.estimator_fields(name_of_specification(e)));
   }
   const RecordedLog recorded = read_log_or_csv(f.log, f.channel);
@@ -211,10 +205,19 @@ int replay(Flags& f) {
     columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run()});
   }
   bool good = recorded.usable();
-  for (const Column& c : columns) good = report_status(trace, c) && good;
-  warn_of_torque(r, trace, f.torque);
+  for (const Column& c : columns) good = report_status(trace, c, recorded.skipped) && good;
+  for (const bool instant : {false, true}) {
+    if (std::any_of(columns.begin(), columns.end(), [&](const Column& c) {
+          const auto fields = r.estimator_fields(name_of_specification(c.estimator));
+          const bool has = std::any_of(fields.begin(), fields.end(),
+                                       [](const FieldHelp& h) { return h.key == "torque"; });
+          return has && (key_of(c.estimator, "torque").value_or("held") == "instant") == instant;
+        })) {
+      warn_of_torque(r, trace, instant);
+    }
+  }
   write_estimates(trace, columns, f.out);
-  print_metrics(trace, columns, f.score_from, f.out == "-" ? stderr : stdout);
+  if (good) print_metrics(trace, columns, f.score_from, f.out == "-" ? stderr : stdout);
   return good ? kGood : kAnswerIsNo;
 }
 

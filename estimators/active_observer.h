@@ -8,10 +8,8 @@
 /// theirs weighs it alike is open.
 ///     a = B^-1 (tau - C qd - g - F),   qdd = a - delta,   delta = B^-1 tau_ext                 (i)
 /// Over [t_k-1, t_k) a is the mean of both ends, with tau_k-1 held (or each end's own tau). Every
-/// joint is the same linear
-/// system
-/// x = [q; qd; delta], so one 3 x 3 covariance serves them all, and the gains do not depend on
-/// data.
+/// joint is the same linear system x = [q; qd; delta], so one 3 x 3 covariance serves them all, and
+/// the gains do not depend on data.
 ///     deltadot = white noise of density Q_delta, qdd carries white noise of density Q_qdd
 ///
 /// Exact over a step h (Van Loan), with P in scalars:
@@ -30,6 +28,7 @@
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
+#include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
@@ -137,10 +136,12 @@ class ActiveObserver {
     vq_ = dq_ = dv_ = 0;
   }
 
-  // [N m] tau of the last sample, which was another, and the turns of this one
+  // a_ anew, since the last sample's tau was an outlier and is now this one [N m]; and q turns with
+  // its encoder
   [[gnu::noinline]] void put_right(const Vec<kDof>& tau) noexcept {
     const Dynamics<kDof> last = dynamics(model_, q_, qd_);
-    a_ = Ldlt<kDof>(last.B).solve(Vec<kDof>(tau - last.bias - model_.friction(qd_)));
+    const Ldlt<kDof> B(last.B);
+    if (B.ok()) a_ = B.solve(Vec<kDof>(tau - last.bias - model_.friction(qd_)));
     if (sampling_.wrapped()) q_ += sampling_.turns();
   }
 

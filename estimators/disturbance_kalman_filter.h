@@ -26,6 +26,7 @@
 
 #include "estimators/math/ldlt.h"
 #include "estimators/momentum.h"
+#include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
@@ -58,7 +59,8 @@ class DisturbanceKalmanFilter {
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
-    /// w comes from for_bandwidth; it and the matrices Q_d and P0_d cannot be set by name.
+    /// w comes from for_bandwidth, and then Q_d and P0_d are not read; the three cannot be set by
+    /// name.
     static constexpr auto fields() {
       using P = Parameters;
       return std::tuple(
@@ -82,11 +84,12 @@ class DisturbanceKalmanFilter {
   explicit DisturbanceKalmanFilter(const M& model, const Parameters& p)
       : p_(check_parameters(p, kName)),
         sampling_(p.max_gap, limits_of(model), p.torque),
-        momentum_(model) {
+        momentum_(model),
+        Q_d_(p.Q_d) {
     require(p.w >= 0, "w [rad/s] of dkf must not be negative");
     require(p.w > 0 || Ldlt<kDof>(p.Q_d).ok(), "Q_d of dkf must be positive definite");
     require(p.P0_d.diagonal().minCoeff() >= 0, "P0_d of dkf must not be negative");
-    mirror(p_.Q_d);
+    mirror(Q_d_);
     mirror(p_.P0_d);
   }
 
@@ -105,8 +108,8 @@ class DisturbanceKalmanFilter {
     }
     const Mat<kDof> R = step.B * p_.Q_qd.asDiagonal() * step.B.transpose();  // (ii), times h
     if (p_.w > 0) {
-      p_.Q_d = p_.w * p_.w * p_.w * p_.w * R;
-      mirror(p_.Q_d);
+      Q_d_ = p_.w * p_.w * p_.w * p_.w * R;
+      mirror(Q_d_);
     }
     predict(sampling_.h(), step.n);
     const Mat<kDof> S = P_pp_ + R / sampling_.h();
@@ -139,20 +142,20 @@ class DisturbanceKalmanFilter {
     P_pp_.noalias() = step.B * p_.P0_qd.asDiagonal() * step.B.transpose();
     mirror(P_pp_);
     P_dp_.setZero();
-    if (p_.w > 0) {
-      p_.P0_d = kRoot2 * p_.w * p_.w * p_.w * step.B * p_.Q_qd.asDiagonal() * step.B.transpose();
-      mirror(p_.P0_d);
-    }
     P_dd_ = p_.P0_d;
+    if (p_.w > 0) {
+      P_dd_ = kRoot2 * p_.w * p_.w * p_.w * step.B * p_.Q_qd.asDiagonal() * step.B.transpose();
+      mirror(P_dd_);
+    }
   }
 
   // (ii)
   [[gnu::always_inline]] void predict(double h, const Vec<kDof>& n) noexcept {
     p_hat_ += h * (n - d_);
-    P_pp_ += h * (h * P_dd_ - (P_dp_ + P_dp_.transpose()) + h * h / 3 * p_.Q_d);
+    P_pp_ += h * (h * P_dd_ - (P_dp_ + P_dp_.transpose()) + h * h / 3 * Q_d_);
     P_pp_.diagonal() += h * p_.Q_p;
-    P_dp_ -= h * P_dd_ + 0.5 * h * h * p_.Q_d;
-    P_dd_ += h * p_.Q_d;
+    P_dp_ -= h * P_dd_ + 0.5 * h * h * Q_d_;
+    P_dd_ += h * Q_d_;
   }
 
   // (iii); false if S is not positive definite
@@ -185,6 +188,7 @@ class DisturbanceKalmanFilter {
   Parameters p_;
   Sampling<kDof> sampling_;
   Momentum<M> momentum_;
+  Mat<kDof> Q_d_;                        // of this pose, if w is given
   Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
   Vec<kDof> nu_ = Vec<kDof>::Zero();     // [N m s] innovation of the last correction
   Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate

@@ -31,6 +31,7 @@
 #include "estimators/concepts.h"
 #include "estimators/ekf_parameters.h"
 #include "estimators/math/lanes.h"
+#include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
 
 namespace tauext {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "estimators/concepts.h"
+#include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
 
 namespace tauext {

@@ -4,18 +4,19 @@
 /// A sample is used if its time is the next one (samples/clock.h) and every joint's reading is one
 /// that the arm can have (samples/limits.h): inside its limits, and, from the last used sample on,
 ///     |q_k - q_k-1 - h (qd_k + qd_k-1) / 2| <= 0.005 + 8 h |qd_k-1|                         (i)
-///     |qd_k - qd_k-1| <= 0.02 + h qdd_max                                                   (ii)
-/// Others are left out, and the estimate is held. A jump by (ii) that the next sample bears out was
-/// a blow, which costs that one sample; one by (i) is a new position when kClockSamples in a row
-/// agree on it, unless it is by whole turns: that is the same position of a hinge, and costs
-/// nothing. A torque that is held is not needed before the
-/// next sample, which tells: if tau has jumped by more than dtau_max and back, the one before the
-/// jump takes its place, and the next kOk names the joints. A joint that says it moves (qd is not
-/// 0) while q and qd stay the same to the last bit, for 0.5 mrad of that motion, is frozen; its
-/// samples are left out until it speaks again, so a reading that is repeated is no reading.
+///     |qd_k - qd_k-1| <= 0.02 + h qdd_max + 6 times what is usual of this sensor            (ii)
+/// Others are left out, and the estimate is held. A jump by (ii) that the next sample bears out, at
+/// the same joint by up to twice as much, was a blow, which costs that one sample; one by (i) is a
+/// new position when kClockSamples in a row agree on it, unless it is by whole turns: that is the
+/// same position of a hinge, and costs nothing. A start that the next sample does not bear out is
+/// made anew. A torque that is held is not needed before the next sample, which tells: if tau has
+/// jumped by more than dtau_max and back, the one before the jump takes its place, and the next kOk
+/// names the joints. A joint that says it moves (qd is not 0) while q stays the same to the last
+/// bit is frozen: after 0.5 mrad of that motion, or twice the step of its encoder, which it learns
+/// up to 2.5 mrad. Its samples are left out until it speaks again.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -49,28 +50,6 @@ constexpr auto max_gap_field() {
   return Field{"max_gap", &P::max_gap, "s", 1e-4, 1e3, "a longer gap restarts the estimator"};
 }
 
-/// The gate of a filter, as its Parameters list it.
-template <class P>
-constexpr auto gate_field() {
-  return Field{"gate", &P::gate, "1", 1, 1e12, "larger believes larger jumps"};
-}
-
-/// Which joints' innovation has jumped beyond the gate [1], in standard deviations, bit 0 for the
-/// first: (innovation_i - expected_i)^2 > gate^2 variance_i. Not the innovation alone: a load that
-/// a slow filter has not found yet makes that as large as any outlier, but bit by bit.
-template <int N>
-[[gnu::always_inline]] inline std::uint8_t beyond(double gate, const Vec<N>& innovation,
-                                                  const Vec<N>& expected,
-                                                  const Vec<N>& variance) noexcept {
-  unsigned mask = 0;
-#pragma GCC unroll 8
-  for (int j = 0; j < N; ++j) {
-    const double jump = innovation[j] - expected[j];
-    mask |= static_cast<unsigned>(jump * jump > gate * gate * variance[j]) << j;
-  }
-  return static_cast<std::uint8_t>(mask);
-}
-
 /// The one bandwidth [rad/s] of an estimator, as its Parameters list it.
 template <class P>
 constexpr auto bandwidth_field() {
@@ -90,24 +69,27 @@ class Sampling {
                     TorqueSampling torque = TorqueSampling::kHeld)
       : clock_(max_gap), limits_(limits), torque_(torque) {
     require(max_gap > 0, "max_gap [s] must be positive");
+    reset();
   }
 
   /// The next sample makes a start.
   void reset() noexcept {
     clock_.reset();
     waiting_ = 0;
-    travel_ = 0;
-    joints_ = jumped_ = 0;
-    doubted_ = false;
+    jumped_ = joints_ = still_ = 0;
+    doubted_ = wrapped_ = false;
+    last_.q.setConstant(std::nan(""));  // which no reading repeats
+    usual_.setZero();
+    step_.setZero();
   }
 
   /// Whether y can be used: kOk to step by h(), kStarted to start at y, else what is wrong with it,
   /// and it has to be left out.
   [[gnu::always_inline]] Status accept(const Measurement<N>& y) noexcept {
-    if (clock_.follows(y.t) && jumped_ == 0 && plain(y)) [[likely]] {
+    if (clock_.follows(y.t) && (jumped_ | still_) == 0 && plain(y)) [[likely]] {
       clock_.accept(y.t);
+      learn(y, h());
       remember(y);
-      travel_ = 0;
       return Status::kOk;
     }
     return judge(y);
@@ -130,7 +112,6 @@ class Sampling {
 
   /// [N m] tau of the used sample before this one.
   const Vec<N>& torque_before() const noexcept { return held_; }
-
   double h() const noexcept { return clock_.h(); }  ///< [s] from the last used sample to this one
 
   /// Whether q has wrapped at the sample that was just accepted.
@@ -143,7 +124,10 @@ class Sampling {
 
  private:
   static_assert(N <= 8, "a bit for each joint");
-  static constexpr double kTravel = 5e-4;  // [rad] more than a step of any encoder
+  static constexpr std::uint16_t kFresh = 0x100;  // the last sample was a start
+  static constexpr double kTravel = 5e-4;         // [rad] with q the same
+  static constexpr double kMotion = 1e-4;         // [rad] in a step, if qd differs
+  static constexpr double kCoarse = 2.5e-3;       // [rad] of an encoder's step
 
   // (i)
   [[gnu::always_inline]] static bool continuous(const Measurement<N>& a, const Measurement<N>& b,
@@ -152,9 +136,20 @@ class Sampling {
            0.005 + 8 * h * std::abs(a.qd[j]);
   }
   // (ii)
+  [[gnu::always_inline]] double most(double h, int j) const noexcept {
+    return 0.02 + h * limits_.qdd[j] + 6 * usual_[j];
+  }
+  // the mean of |qd_k - qd_k-1| over some 64 samples, to which an outlier adds little
+  [[gnu::always_inline]] void learn(const Measurement<N>& y, double h) noexcept {
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      const double change = std::abs(y.qd[j] - last_.qd[j]);
+      usual_[j] += 0x1p-6 * (std::min(change, most(h, j) - 4 * usual_[j]) - usual_[j]);
+    }
+  }
   [[gnu::always_inline]] bool calm(const Measurement<N>& a, const Measurement<N>& b, double h,
                                    int j) const noexcept {
-    return std::abs(b.qd[j] - a.qd[j]) <= 0.02 + h * limits_.qdd[j];
+    return std::abs(b.qd[j] - a.qd[j]) <= most(h, j);
   }
   [[gnu::always_inline]] bool smooth(double a, double b, int j) const noexcept {
     return std::abs(b - a) <= limits_.dtau[j];
@@ -163,11 +158,11 @@ class Sampling {
     return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
            (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
   }
-  [[gnu::always_inline]] static bool same(const Measurement<N>& a, const Measurement<N>& b,
-                                          int j) noexcept {
-    return (b.qd[j] != 0) & (b.q[j] == a.q[j]) & (b.qd[j] == a.qd[j]);
+  [[gnu::always_inline]] static bool still(const Measurement<N>& a, const Measurement<N>& b,
+                                           double h, int j) noexcept {
+    return (b.q[j] == a.q[j]) & (b.qd[j] != 0) &
+           ((b.qd[j] == a.qd[j]) | (h * std::abs(b.qd[j]) > kMotion));
   }
-
   // all of it at once: false where judge() has to look
   [[gnu::always_inline]] bool plain(const Measurement<N>& y) const noexcept {
     const double h = y.t - last_.t;
@@ -175,7 +170,7 @@ class Sampling {
 #pragma GCC unroll 8
     for (int j = 0; j < N; ++j) {
       ok &= inside(y, j) & continuous(last_, y, h, j) & calm(last_, y, h, j) &
-            smooth(last_.tau[j], y.tau[j], j) & !same(last_, y, j);
+            smooth(last_.tau[j], y.tau[j], j) & !still(last_, y, h, j);
     }
     return ok;
   }
@@ -202,11 +197,16 @@ class Sampling {
     if (joints_ != 0) return Status::kBadMeasurement;
     joints_ = which([&](int j) { return !inside(y, j); });
     if (joints_ != 0) return Status::kOutOfRange;
-    if (frozen(y)) return Status::kFrozen;
+    joints_ =
+        which([&](int j) { return std::abs(travel(y, j)) > std::max(kTravel, 2 * step_[j]); });
+    if (joints_ != 0) {
+      for (int j = 0; j < N; ++j) travel_[j] *= still_ >> j & 1;
+      still_ |= joints_;  // the step that ends it is learnt
+      return Status::kFrozen;
+    }
     const Clock before = clock_;
     const Status time = clock_.accept(y.t);
-    if (time == Status::kBadTime) return time;
-    if (time == Status::kStarted) return start(y);
+    if (time != Status::kOk) return time == Status::kStarted ? start(y) : time;
     const Status status = judge_step(y);
     if (!used(status)) clock_ = before;
     return status;
@@ -214,32 +214,33 @@ class Sampling {
 
   Status start(const Measurement<N>& y) noexcept {
     remember(y);
-    travel_ = 0;
-    jumped_ = 0;
+    still_ = 0;
+    jumped_ = kFresh;
     return Status::kStarted;
   }
 
-  // whether a joint says that it has moved since the last sample or longer, and its reading has not
-  bool frozen(const Measurement<N>& y) noexcept {
+  // [rad] that a joint says to have moved since its q changed
+  double travel(const Measurement<N>& y, int j) const noexcept {
     const double h = y.t - last_.t;
-    joints_ = which([&](int j) { return h > 0 && same(last_, y, j); });
-    double moved = 0;
-    for (int j = 0; j < N; ++j) moved += (joints_ >> j & 1) * h * std::abs(y.qd[j]);
-    return travel_ + moved > kTravel;
+    if (!(h > 0) || !still(last_, y, h, j) || !calm(last_, y, h, j)) return 0;
+    return (still_ >> j & 1 ? travel_[j] : 0) + h * y.qd[j];
   }
 
   // what came h() after the last one
   Status judge_step(const Measurement<N>& y) noexcept {
     constexpr double kTurn = 6.283185307179586;
     Measurement<N> from = last_;
-    for (int j = 0; j < N; ++j) turns_[j] = kTurn * std::round((y.q[j] - last_.q[j]) / kTurn);
+    for (int j = 0; j < N; ++j)
+      turns_[j] = kTurn * (limits_.turns >> j & 1) * std::round((y.q[j] - last_.q[j]) / kTurn);
     from.q += turns_;
     const auto leaps = which([&](int j) { return !continuous(from, y, h(), j); });
     const auto jumps = which([&](int j) { return !smooth(last_.tau[j], y.tau[j], j); });
     auto jolts = which([&](int j) { return !calm(last_, y, h(), j); });
     if (torque_ == TorqueSampling::kInstant) jolts |= jumps;
+    learn(y, h());
     joints_ = leaps | jolts;
-    if (joints_ == 0 || (leaps == 0 && waiting_ > 0)) return go_on(y, jumps);
+    if (jumped_ == kFresh && (joints_ | jumps) != 0) return start(y);
+    if (joints_ == 0 || (leaps == 0 && borne_out(y))) return go_on(y, jumps);
     const double h = y.t - waits_.t;
     const auto strays = which([&](int j) { return !continuous(waits_, y, h, j); });
     waiting_ = waiting_ > 0 && h > 0 && strays == 0 ? waiting_ + 1 : 1;
@@ -247,11 +248,26 @@ class Sampling {
     return waiting_ < kClockSamples ? Status::kJump : start(y);
   }
 
+  // whether the sample before has jumped as y has
+  bool borne_out(const Measurement<N>& y) const noexcept {
+    const double h = y.t - waits_.t;
+    const auto other = [](double last, double before, double now, double limit) {
+      return std::abs(now - before) > limit + std::abs(before - last);
+    };
+    return waiting_ > 0 && which([&](int j) {
+                             return other(last_.qd[j], waits_.qd[j], y.qd[j], most(h, j)) ||
+                                    (torque_ == TorqueSampling::kInstant &&
+                                     other(last_.tau[j], waits_.tau[j], y.tau[j], limits_.dtau[j]));
+                           }) == 0;
+  }
   // y, whose tau has jumped at these joints
   Status go_on(const Measurement<N>& y, std::uint8_t jumps) noexcept {
-    const auto still = which([&](int j) { return same(last_, y, j); });
-    if (still == 0) travel_ = 0;
-    for (int j = 0; j < N; ++j) travel_ += (still >> j & 1) * h() * std::abs(y.qd[j]);
+    for (int j = 0; j < N; ++j) {
+      const double change = std::abs(y.q[j] - last_.q[j]);
+      if (still_ >> j & 1 && change <= kCoarse) step_[j] = std::max(step_[j], change);
+      travel_[j] = travel(y, j);
+    }
+    still_ = which([&](int j) { return travel_[j] != 0; });
     const auto back =
         which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
     for (int j = 0; j < N; ++j) {
@@ -270,27 +286,15 @@ class Sampling {
   Measurement<N> last_;           // that was used
   Vec<N> held_ = Vec<N>::Zero();  // [N m] tau of the one before
   Vec<N> turns_ = held_;          // [rad] by which q has wrapped, if it has
+  Vec<N> usual_ = held_;          // [rad/s] change of qd from sample to sample
   Measurement<N> waits_;          // that jumped, waiting_ in a row
   int waiting_ = 0;
-  double travel_ = 0;  // [rad] that a joint whose reading has not changed says to have moved
-  std::uint8_t joints_ = 0, jumped_ = 0;  // of the verdict; whose last tau has jumped
-  bool wrapped_ = false;                  // q, at the last sample
-  bool doubted_ = false;                  // a filter the last sample
-};
-
-/// Whether a step [s] needs anew what was made for the last one. Time stamps on a grid differ in
-/// their last bits, so steps alike to 1e-9 count as one.
-class StepChange {
- public:
-  /// Whether h [s] differs from the last one, which it becomes.
-  bool operator()(double h) noexcept {
-    if (std::abs(h - h_) <= 1e-9 * h_) return false;
-    h_ = h;
-    return true;
-  }
-
- private:
-  double h_ = 0;
+  Vec<N> travel_ = held_;                // [rad] of joints that stand still
+  Vec<N> step_ = held_;                  // [rad] by which their q then changed
+  std::uint8_t joints_ = 0, still_ = 0;  // of the verdict; whose q was the same at the last sample
+  std::uint16_t jumped_ = 0;             // whose tau has then; or kFresh
+  bool wrapped_ = false;                 // q, at the last sample
+  bool doubted_ = false;                 // a filter the last sample
 };
 
 }  // namespace tauext

@@ -34,7 +34,8 @@ struct Measurement {
   Vec<N> tau = Vec<N>::Zero();  ///< [N m] link-side actuation, held over [t_k, t_k+1)
 };
 
-/// What became of a sample. With all but kOk the estimate is the previous one (0 at first).
+/// What became of a sample. With all but kOk the estimate is the previous one (0 at first, and with
+/// kDiverged).
 enum class Status : std::uint8_t {
   kOk,       ///< used
   kStarted,  ///< used to start: the first sample, or the first of a new clock, or after too long a
@@ -62,7 +63,7 @@ constexpr const char* name_of(Status s) noexcept {
 
 /// Whether an estimator goes on or starts with a sample of this status.
 constexpr bool used(Status s) noexcept {
-  return s <= Status::kStarted;
+  return s == Status::kOk || s == Status::kStarted;
 }
 
 /// An estimate of tau_ext from the samples 0..k.
@@ -70,7 +71,8 @@ template <int N>
 struct Estimate {
   Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
   Status status = Status::kOk;      ///< whether tau_ext may be used
-  /// That the status is about, bit 0 for the first; with kOk those whose readings were put right:
+  /// The joints that the status is about, bit 0 for the first; with kOk those whose readings were
+  /// put right:
   /// a torque of the sample before that was an outlier, a q that has wrapped by a turn.
   std::uint8_t joints = 0;
 };

@@ -23,20 +23,19 @@ struct Twice {
     const Status status = sampling.accept(y);
     if (status == Status::kOk) {
       const double a = std::exp(-pole * sampling.h());
-      const Vec<kDof> qdd = (y.qd - last.qd) / sampling.h();
+      const Vec<kDof> qdd = (y.qd - qd) / sampling.h();
       const Vec<kDof> rest = model.bias(y.q, y.qd) + model.friction(y.qd);
-      const Vec<kDof> raw = last.tau - model.inertia(y.q) * qdd - rest;  // (4)
+      const Vec<kDof> raw = sampling.torque(y) - model.inertia(y.q) * qdd - rest;  // (4)
       once = raw + a * (once - raw);
       d = once + a * (d - once);
     }
-    if (used(status)) last = y;
-    return {d, status};
+    if (used(status)) qd = y.qd;
+    return {d, status, sampling.joints()};
   }
   M model;
   double pole;  // [rad/s] of both filters
   Sampling<kDof> sampling{0.05, limits_of(model)};
-  Measurement<kDof> last;
-  Vec<kDof> once = Vec<kDof>::Zero(), d = once;
+  Vec<kDof> once = Vec<kDof>::Zero(), d = once, qd = once;
 };
 
 int main(int argc, char** argv) {

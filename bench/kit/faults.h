@@ -18,9 +18,9 @@ template <class Sample>
 struct Fault {
   using Samples = std::vector<Sample>;  ///< of a recording
   const char* name;                     ///< for messages
-  /// What becomes of a recording from sample k on.
+  /// What becomes of a recording from sample k on, which is at least 500 before its end.
   std::function<void(Samples&, std::size_t k)> apply;
-  int samples = 1;  ///< for which it lasts at most; a new clock is one at once
+  int samples = 1;  ///< for which it lasts at most; 1 for a new clock
   /// [1] times the largest error without it that it may cost: an observer that starts anew has the
   /// past of one sample alone, whose noise nothing takes back.
   double cost = 2;
@@ -44,7 +44,7 @@ Fault<Sample> from_then_on(const char* name, double cost, Change change) {
           1, cost};
 }
 
-// sample by sample as the first one, but for its time
+// change(first, y) for n samples y from the first one on
 template <class Sample, class Change>
 Fault<Sample> for_some(const char* name, int n, Change change) {
   return {name,
@@ -116,6 +116,8 @@ std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
                     y.q[j] = first.q[j];
                     y.qd[j] = first.qd[j];
                   }),
+      for_some<Y>("q of one joint frozen for 50 samples", 50,
+                  [j](const Y& first, Y& y) { y.q[j] = first.q[j]; }),
   };
 }
 

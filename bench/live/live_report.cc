@@ -65,8 +65,8 @@ std::string format(const LiveReport& r, const LiveEstimation& e) {
                f.compared > 0 ? number_or_dash(f.largest_error) : "-", step_us(f.step_ns, 0.5),
                step_us(f.step_ns, 0.99), step_us(f.step_ns, 1), fmt::to_string(f.unusable.load()),
                fmt::to_string(f.marks.load())});
-    if (const std::string reasons = f.counts.text(); !reasons.empty()) {
-      table.add_note(fmt::format("  {}: left out {}", e.name(i), reasons));
+    if (const std::string said = f.counts.sentence(); !said.empty()) {
+      table.add_note(fmt::format("  {}: {}", e.name(i), said));
     }
   }
   return out + "\n" + table.format();
@@ -96,9 +96,8 @@ std::vector<summary_t> summaries_of(const LiveReport& r, const LiveEstimation& e
     add("step_p99_ns", f.step_ns.quantile(0.99));
     add("marks", static_cast<double>(f.marks));
     add("unusable", static_cast<double>(f.unusable));
-    f.counts.for_each([&](const std::string& reason, std::int64_t n) {
-      add("left_out_" + reason, static_cast<double>(n));
-    });
+    f.counts.for_each(
+        [&](const std::string& key, std::int64_t n) { add(key, static_cast<double>(n)); });
     if (r.late != nullptr) add("late_p99_ns", r.late->quantile(0.99));
     m.n = static_cast<std::int32_t>(m.key.size());
     all.push_back(std::move(m));

@@ -118,6 +118,7 @@ void add_residuals(const Trace& log, const std::vector<Term>& model,
   for (std::size_t i = 0; i < id.parameters.size(); ++i) {
     id.parameters[i].robust = robust[static_cast<Eigen::Index>(i)];
   }
+  if (id.residual <= 1e-6 * id.torque) return;  // no sensor's noise, but the integration's error
   id.colour = colour(residuals);
   id.missing = suspects(A, inverse, residuals, columns, names);
 }
@@ -194,6 +195,7 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
   const VectorXd residuals = y - A * theta;
+  id.torque = std::sqrt(y.squaredNorm() / static_cast<double>(m));
   id.residual = std::sqrt(residuals.squaredNorm() / static_cast<double>(m - n));
   for (Eigen::Index i = 0; i < n; ++i) {
     id.parameters.push_back({theta[i], id.residual * root[i] / norm[i], 0,

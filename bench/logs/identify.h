@@ -61,8 +61,10 @@ struct Parameter {
 struct Identification {
   std::vector<Parameter> parameters;  ///< in the order of the terms
   double condition = 0;               ///< [1] of the regressor with its columns scaled to norm 1
+  double torque = 0;                  ///< [N m] rms of the right side of (i)
   double residual = 0;                ///< [N m] standard deviation of (i)
-  double colour = 0;                  ///< [1] of the residuals; above 3 they are no noise
+  double colour = 0;                  ///< [1] of the residuals; above 3 they are no noise; 0 where
+                                      ///< they are below a millionth of the torque
   std::vector<Suspect> missing;       ///< what may be missing; the likeliest first
   int windows = 0;                    ///< that were used
   int left_out = 0;                   ///< that were not

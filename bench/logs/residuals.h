@@ -12,7 +12,8 @@ namespace tauext {
 
 /// Ljung and Box, "On a measure of lack of fit in time series models", Biometrika 1978, over the
 /// first 20 lags (a fifth of the residuals, if that is less), as standard deviations beyond white
-/// noise (Wilson and Hilferty's cube root): above 3 the residuals are no noise.
+/// noise (Wilson and Hilferty's cube root): above 3 the residuals are no noise. What was left out
+/// between two residuals is passed over, here and below.
 double colour(const Eigen::VectorXd& residuals);
 
 /// Standard errors of the parameters of y = A theta, which hold for residuals of any colour and
@@ -26,7 +27,7 @@ Eigen::VectorXd robust_errors(const Eigen::MatrixXd& A, const Eigen::MatrixXd& i
 struct Suspect {
   std::string name;   ///< as the term's
   double share = 0;   ///< [1] of the residuals' variance that it would explain
-  double surely = 0;  ///< [1] its parameter over that one's robust standard error
+  double surely = 0;  ///< [1] size of its parameter, in robust standard errors
 };
 
 /// Of the columns beside the model those that explain more than 5 % of the residuals' variance, by

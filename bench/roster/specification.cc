@@ -43,15 +43,20 @@ Specification parse_specification(std::string_view text) try {
       "'{}' is no specification name[:key=value]..., like mo2:bandwidth=50: {}", text, e.what()));
 }
 
+std::optional<std::string> key_of(std::string_view specification, std::string_view key) {
+  for (const auto& [name, value] : parse_specification(specification).keys) {
+    if (name == key) return value;
+  }
+  return std::nullopt;
+}
+
 std::string at_bandwidth(const std::string& estimator, double w) {
   return fmt::format("{}:bandwidth={}", estimator, w);
 }
 
 std::string with_key(const std::string& specification, const std::string& key,
                      const std::string& value, const std::vector<FieldHelp>& known) {
-  const Specification s = parse_specification(specification);
-  const bool set =
-      std::any_of(s.keys.begin(), s.keys.end(), [&](const auto& k) { return k.first == key; });
+  const bool set = key_of(specification, key).has_value();
   const bool can =
       std::any_of(known.begin(), known.end(), [&](const FieldHelp& f) { return f.key == key; });
   return set || !can ? specification : fmt::format("{}:{}={}", specification, key, value);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,6 +39,9 @@ Specification parse_specification(std::string_view text);
 /// What stands before the first colon.
 std::string_view name_of_specification(std::string_view text);
 
+/// What it says for that key; nothing if it does not.
+std::optional<std::string> key_of(std::string_view specification, std::string_view key);
+
 /// The specification of an estimator at bandwidth w [rad/s] of its own formula.
 std::string at_bandwidth(const std::string& estimator, double w);
 
@@ -46,7 +50,7 @@ struct FieldHelp {
   std::string key, unit, range, effect;  ///< as Field has them, in words
 };
 
-/// The specification with one more key, unless it has set that, or nothing in `known` is called so.
+/// The specification with one more key, unless the key is set, or not in `known`.
 std::string with_key(const std::string& specification, const std::string& key,
                      const std::string& value, const std::vector<FieldHelp>& known);
 
@@ -73,7 +77,10 @@ template <class P, class T>
 void add_help(const Field<P, T>& f, const std::string& prefix, std::vector<FieldHelp>& out) {
   if constexpr (std::is_enum_v<T>) {
     std::string names;
-    for (const auto& c : choices(T{})) names += (names.empty() ? "" : "|") + std::string(c.name);
+    for (const auto& c : choices(T{})) {
+      if (!names.empty()) names += '|';
+      names += c.name;
+    }
     out.push_back({prefix + f.key, "", names, f.effect});
   } else {
     out.push_back({prefix + f.key, f.unit, range_of(f.least, f.most), f.effect});

@@ -39,8 +39,8 @@ std::vector<std::pair<std::string, double>> Score::by_key() const {
       all.emplace_back(key_of(row.metric, ++joint), value);
     }
   }
-  counts.for_each([&](const std::string& reason, std::int64_t n) {
-    all.emplace_back("left_out_" + reason, static_cast<double>(n));
+  counts.for_each([&](const std::string& key, std::int64_t n) {
+    all.emplace_back(key, static_cast<double>(n));
   });
   return all;
 }

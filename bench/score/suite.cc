@@ -114,9 +114,7 @@ Score Suite::score(const Entry& e) {
   const Trace& trace = scored(e);
   const Output& out = options_.sensors.ideal() ? ideal : noisy;
   score.counts = out.counts;
-  if (const auto n = out.counts.left_out(); n > 0) {
-    score.set(Metric::kLeftOut, static_cast<double>(n));
-  }
+  score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
   add_error_metrics(trace, out, s.score_from, score);
   add_noise_metric(trace, ideal, noisy, s.score_from, score);
   add_response_metrics(trace, out, s, score);

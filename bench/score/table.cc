@@ -127,9 +127,8 @@ std::string format_table(const std::vector<Row>& rows, TableFormat format) {
     for (const MetricRow* m : metrics) cells.push_back(cell(rows, r, *m));
     if (tells) cells.push_back(r.score.error);
     table.add(std::move(cells));
-    if (format == TableFormat::kText && r.score.counts.left_out() > 0) {
-      table.add_note("  left out: " + r.score.counts.text());
-    }
+    const std::string said = r.score.counts.sentence();
+    if (format == TableFormat::kText && !said.empty()) table.add_note("  " + said);
   }
   return table.format(format);
 }

@@ -4,7 +4,8 @@
 ///     0 < t - last <= min(8 typical steps, max_gap)     the sample is the next one
 /// Every other stamp waits for those behind it. If the next sample goes on from `last`, it was an
 /// outlier and is all that is lost. If kClockSamples in a row go on from one another, that is the
-/// clock now: set back, set forward, started again, or after a gap.
+/// clock now: set back, set forward, started again, or after a gap. Of the first stamp nobody knows
+/// whether it is one; if the second step is 8 times shorter than the first, it was none.
 #pragma once
 
 #include <algorithm>
@@ -64,6 +65,13 @@ class Clock {
     if (typical_ == 0 && h > 0 && h <= max_gap_) {
       typical_ = h;
       go_on(t, h);
+      limit_ = 0;  // the next one, too, is looked at here
+      return Status::kOk;
+    }
+    if (!sure_ && h > 0 && h <= std::min(max_gap_, kLong * typical_)) {
+      if (kLong * h < typical_) return start(t, h);
+      sure_ = true;
+      go_on(t, h);
       return Status::kOk;
     }
     const bool in_line = waiting_ > 0 && from_waiting > 0 && from_waiting <= max_gap_;
@@ -75,6 +83,7 @@ class Clock {
   Status start(double t, double typical) noexcept {
     started_ = true;
     typical_ = typical;
+    sure_ = typical > 0;
     limit_ = std::min(max_gap_, kLong * typical);
     h_ = t - t_;
     t_ = t;
@@ -88,6 +97,22 @@ class Clock {
   double waiting_t_ = 0;                // [s] of the last sample that waits
   int waiting_ = 0;                     // samples that go on from one another, but not from t_
   bool started_ = false;
+  bool sure_ = false;  // of typical_, which more than one step says
+};
+
+/// Whether a step [s] needs anew what was made for the last one. Time stamps on a grid differ in
+/// their last bits, so steps alike to 1e-9 count as one.
+class StepChange {
+ public:
+  /// Whether h [s] differs from the last one, which it becomes.
+  bool operator()(double h) noexcept {
+    if (std::abs(h - h_) <= 1e-9 * h_) return false;
+    h_ = h;
+    return true;
+  }
+
+ private:
+  double h_ = 0;
 };
 
 }  // namespace tauext

@@ -23,6 +23,7 @@ struct ArmLimits {
   Vec<N> tau = Vec<N>::Constant(kMeasurementLimit);       ///< [N m] torque
   Vec<N> qdd = Vec<N>::Constant(kMeasurementLimit);       ///< [rad/s^2] change of speed, in time
   Vec<N> dtau = Vec<N>::Constant(kMeasurementLimit);      ///< [N m] change of torque, at once
+  std::uint8_t turns = 0xff;  ///< joints to whose q a turn makes no difference, bit 0 for the first
 };
 
 /// Of this arm: what it says of itself (`limits()`), or what follows from its model. There the
@@ -30,6 +31,7 @@ struct ArmLimits {
 /// 64 poses,
 ///     scale_i = max |g_i| + 5 max B_ii,   qdd_i = 20 rad/s^2 + 2 max |(B^-1 g)_i|  (free falls)
 ///     tau_i = 50 scale_i + 5 max_j scale_j,   dtau_i = 0.1 scale_i + 0.05 max_j scale_j
+/// A slide that B or g depends on has no turns.
 template <RobotModel M>
 ArmLimits<M::kDof> limits_of(const M& model) {
   constexpr int N = M::kDof;
@@ -53,6 +55,14 @@ ArmLimits<M::kDof> limits_of(const M& model) {
       }
     }
     ArmLimits<N> out;
+    for (int j = 0; j < N; ++j) {
+      Vec<N> turned = q;
+      turned[j] += 6.283185307179586;
+      const bool same =
+          (model.inertia(turned) - model.inertia(q)).norm() <= 1e-6 * inertia.norm() &&
+          (model.gravity(turned) - model.gravity(q)).norm() <= 1e-6 * weight.norm();
+      if (!same) out.turns &= static_cast<std::uint8_t>(~(1 << j));
+    }
     const Vec<N> scale = weight + 5 * inertia;
     if (!(scale.minCoeff() > 0) || !scale.allFinite() || !fall.allFinite()) return out;
     const Vec<N> most = Vec<N>::Constant(scale.maxCoeff());

@@ -3,6 +3,7 @@
 /// What became of all samples of a run.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,14 +36,15 @@ class StatusCounts {
     return samples_ - of(Status::kOk) - first;
   }
 
-  /// Calls visit("bad_time", 12) and the like for each reason, and for each of its joints
-  /// ("frozen_2").
+  /// Calls visit("left_out_bad_time", 12) and the like for each reason, and for each of its joints
+  /// ("left_out_frozen_2"; "put_right_2").
   template <class Visit>
   void for_each(Visit&& visit) const {
     for (std::size_t s = 0; s < kStatuses; ++s) {
       if (s == index(Status::kStarted) || by_status_[s] == 0) continue;
-      std::string key = s == 0 ? "torque" : name_of(static_cast<Status>(s));
-      for (char& c : key) c = c == ' ' || c == '\'' ? '_' : c;
+      std::string key =
+          s == 0 ? "put_right" : std::string("left_out_") + name_of(static_cast<Status>(s));
+      std::replace(key.begin(), key.end(), ' ', '_');
       if (s > 0) visit(key, by_status_[s]);
       for (std::size_t j = 0; j < kJoints; ++j) {
         if (by_joint_[s][j] > 0) visit(key + "_" + std::to_string(j + 1), by_joint_[s][j]);
@@ -50,10 +52,14 @@ class StatusCounts {
     }
   }
 
-  /// Like "12 bad time, 3 frozen (joint 2: 3)"; "" if none was left out.
+  /// Like "left out: 12 bad time, 3 frozen (joint 2: 3)"; "" if there is nothing to say.
+  std::string sentence() const { return (left_out() > 0 ? "left out: " : "") + text(); }
+
+  /// The reasons alone.
   std::string text() const {
     std::string out;
-    for (std::size_t s = 0; s < kStatuses; ++s) {
+    for (std::size_t k = 1; k <= kStatuses; ++k) {
+      const std::size_t s = k % kStatuses;  // what was put right comes last
       const auto status = static_cast<Status>(s);
       const std::int64_t n = of(status) - (status == Status::kStarted ? 1 : 0);
       if (n <= 0) continue;
@@ -67,7 +73,7 @@ class StatusCounts {
       if (status == Status::kOk && joints.empty()) continue;
       if (!out.empty()) out += ", ";
       if (status == Status::kOk) {
-        out += "readings put right" + joints;
+        out += "put right" + joints;
       } else {
         out += std::to_string(n) + " " + (status == Status::kStarted ? "anew" : name_of(status)) +
                joints;

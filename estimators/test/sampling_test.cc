@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "estimators/detectors/pan_tompkins.h"
@@ -20,84 +21,6 @@ namespace tauext::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// what a clock makes of these times
-std::vector<Status> judged(const std::vector<double>& times, double max_gap = 0.05) {
-  Clock clock(max_gap);
-  std::vector<Status> all;
-  for (const double t : times) all.push_back(clock.accept(t));
-  return all;
-}
-
-// 1 kHz from t on
-std::vector<double> ticks(int n, double t = 0) {
-  std::vector<double> all;
-  for (int k = 0; k < n; ++k) all.push_back(t + k * 1e-3);
-  return all;
-}
-
-std::vector<double> operator+(std::vector<double> a, const std::vector<double>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-TEST(Clock, StartsOnceThenSteps) {
-  Clock clock(0.05);
-  EXPECT_EQ(clock.accept(3), Status::kStarted);
-  EXPECT_EQ(clock.accept(3.001), Status::kOk);
-  EXPECT_DOUBLE_EQ(clock.h(), 3.001 - 3);
-  clock.reset();
-  EXPECT_EQ(clock.accept(1), Status::kStarted);
-}
-
-TEST(Clock, LosesOneOutlierAndNothingElse) {
-  for (const double odd : {1e9, 1.01, 0.02, 0.0499, 0.009, -3600., 0.0, kNaN, kInfinity}) {
-    const auto all = judged(ticks(10) + std::vector{odd} + ticks(10, 0.011));
-    EXPECT_EQ(all[10], Status::kBadTime) << odd;
-    EXPECT_EQ(std::count(all.begin(), all.end(), Status::kOk), 19) << odd;
-  }
-}
-
-TEST(Clock, TakesANewOneAtTheThirdSample) {
-  for (const double start : {-3600., 0.003, 1., 1e9, 1.7e9}) {
-    const auto all = judged(ticks(10) + ticks(10, start));
-    EXPECT_EQ(all[10], Status::kBadTime) << start;
-    EXPECT_EQ(all[11], Status::kBadTime) << start;
-    EXPECT_EQ(all[12], Status::kStarted) << start;
-    EXPECT_EQ(all[13], Status::kOk) << start;
-  }
-}
-
-TEST(Clock, DoesNotFollowOneThatIsNone) {
-  std::vector<double> milliseconds, still(20, 0.009);
-  for (int k = 0; k < 20; ++k) milliseconds.push_back(k);
-  const auto of_ms = judged(milliseconds);
-  EXPECT_EQ(std::count(of_ms.begin(), of_ms.end(), Status::kOk), 0);
-  EXPECT_EQ(std::count(of_ms.begin(), of_ms.end(), Status::kStarted), 1);
-  const auto all = judged(ticks(10) + still + ticks(10, 0.010));
-  for (int k = 10; k < 30; ++k) EXPECT_EQ(all[k], Status::kBadTime) << k;
-  EXPECT_EQ(all[30], Status::kOk);
-}
-
-TEST(Clock, KnowsASlowerOrFasterOneAgain) {
-  std::vector<double> slow, fast;
-  for (int k = 1; k <= 20; ++k) slow.push_back(0.009 + k * 0.02);
-  for (int k = 1; k <= 20; ++k) fast.push_back(0.009 + k * 1e-4);
-  const auto slower = judged(ticks(10) + slow), faster = judged(ticks(10) + fast);
-  EXPECT_EQ(slower[12], Status::kStarted);
-  EXPECT_EQ(std::count(slower.begin() + 13, slower.end(), Status::kOk), 17);
-  EXPECT_EQ(std::count(faster.begin() + 10, faster.end(), Status::kOk), 20);
-}
-
-TEST(Clock, BearsJitterAndLostPackets) {
-  std::vector<double> t;
-  for (int k = 0; k < 10000; ++k) {
-    if (k % 97 < 3) continue;
-    t.push_back(k * 1e-3 + 0.45e-3 * std::sin(13. * k));
-  }
-  const auto all = judged(t);
-  EXPECT_EQ(std::count(all.begin(), all.end(), Status::kOk), std::ssize(t) - 1);
-}
 
 // wallmobot3 at rest at q = 0, its first ten samples taken
 struct AtRest {
@@ -181,6 +104,47 @@ TEST(Sampling, BelievesABlowAtTheSecondSample) {
   EXPECT_NEAR(r.s.h(), 2e-3, 1e-12);
 }
 
+TEST(Sampling, DoesNotTakeTwoOutliersForABlow) {
+  for (const auto& [a, b] : {std::pair(off(0, 0, 5, 0), off(1, 0, 5, 0)),
+                             {off(1, 0, 5, 0), off(1, 0, -5, 0)},
+                             {off(1, 0.1, 0, 0), off(1, 0, 5, 0)},
+                             {off(1, 0, 0.3, 0), off(1, 0, 9, 0)}}) {
+    AtRest r;
+    EXPECT_EQ(r.take(a), Status::kJump);
+    EXPECT_EQ(r.take(b), Status::kJump);
+    EXPECT_EQ(r.take(), Status::kOk);
+  }
+}
+
+TEST(Sampling, LearnsHowRoughASensorIs) {
+  AtRest r;
+  std::mt19937 generator(1);
+  const auto noise = [&] { return 0.4 * (generator() % 2001 / 1000. - 1); };  // [rad/s]
+  int used_late = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Status s = r.take(off(1, 1e-6 * (k % 2), noise(), 0));
+    used_late += k >= 1000 && s == Status::kOk;
+  }
+  EXPECT_GT(used_late, 1980);
+  EXPECT_EQ(r.take(off(1, 0, 20, 0)), Status::kJump);
+  AtRest damaged;  // every fifth sample
+  for (int k = 0; k < 1000; ++k) {
+    EXPECT_EQ(damaged.take(off(1, 0, k % 5 == 0 ? 1 + k % 7 : 0, 0)),
+              k % 5 == 0 ? Status::kJump : Status::kOk)
+        << k;
+  }
+}
+
+TEST(Sampling, StartsAnewWhereTheNextSampleSaysOtherwise) {
+  for (const auto& y : {off(1, 0.1, 0, 0), off(1, 0, 0.5, 0), off(1, 0, 0, 1e4)}) {
+    AtRest r;
+    r.s.reset();
+    EXPECT_EQ(r.take(y), Status::kStarted);
+    EXPECT_EQ(r.take(), Status::kStarted);
+    EXPECT_EQ(r.take(), Status::kOk);
+  }
+}
+
 TEST(Sampling, TurnsWithAnEncoderThatWraps) {
   AtRest r;
   const double turn = 6.283185307179586;
@@ -216,6 +180,24 @@ TEST(Sampling, SaysWhenAMovingJointStandsStill) {
   EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kBadTime) << "half a second later";
   EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kBadTime);
   EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kStarted);
+  AtRest alone;  // qd goes on
+  int good = 0;
+  for (int k = 0; k < 500; ++k) {
+    good += alone.take(off(1, 0.004, 0.5 + 1e-3 * (k % 2), 0)) == Status::kOk;
+  }
+  EXPECT_EQ(good, 1) << "0.5 mrad / 0.5 rad/s";
+  AtRest coarse;  // an encoder of 4096 steps, which is known from its first one on
+  for (int k = 0; k < 500; ++k) {
+    const double step = 6.283185307179586 / 4096, qd = 0.5 + 1e-3 * (k % 2);
+    const Status s = coarse.take(off(1, step * std::floor(5e-4 * k / step), qd, 0));
+    if (k > 10) {
+      EXPECT_EQ(s, Status::kOk) << k;
+    }
+  }
+  Sampling<3> first(0.05, limits_of(WallMoBot3()));
+  Measurement<3> y = off(1, 0, 0.1, 0);
+  y.t = 100;
+  EXPECT_EQ(first.accept(y), Status::kStarted) << "nothing came before";
   AtRest at_rest;  // no joint says that it moves
   for (int k = 0; k < 500; ++k) EXPECT_EQ(at_rest.take(), Status::kOk);
 }
@@ -234,13 +216,12 @@ TEST(Limits, AreThoseThatTheArmHasOrFollowFromItsModel) {
   EXPECT_NEAR(l.qdd[0], 20 + 2 * g / p.theta1, 0.05 * g / p.theta1);
 }
 
-TEST(StepChange, TakesTheLastBitsOfTimeStampsForNoChange) {
-  StepChange changed;
-  int changes = 0;
-  for (int k = 1; k < 100000; ++k) changes += changed(k * 1e-3 - (k - 1) * 1e-3);
-  EXPECT_EQ(changes, 1);
-  EXPECT_TRUE(changed(1.00001e-3));
-  EXPECT_FALSE(changed(1.00001e-3));
+TEST(Limits, SlidesHaveNoTurns) {
+  struct Sliding : WallMoBot3 {
+    Mat<3> inertia(const Vec<3>& q) const noexcept { return (2 + q[1]) * Mat<3>::Identity(); }
+  };
+  EXPECT_EQ(limits_of(WallMoBot3()).turns, 0xff);
+  EXPECT_EQ(limits_of(Sliding()).turns, 0xff & ~2);
 }
 
 TEST(Parameters, OutOfRangeAreRefusedWhenAnEstimatorIsBuilt) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -71,7 +72,6 @@ class TimedRows {
     waiting_.clear();
   }
   void use_waiting() {
-    if (rows_.empty() && !waiting_.empty()) first_ = waiting_.front().second;
     for (Row& r : waiting_) {
       r.first[t_] += shift_;
       // beside a shift of 1e17 s a step is lost in the last digit
@@ -80,16 +80,19 @@ class TimedRows {
         continue;
       }
       rows_.push_back(std::move(r.first));
+      lines_.push_back(r.second);
     }
     waiting_.clear();
   }
   // at a clock that the rows waiting have agreed on
   void restart(double now) {
     const double begin = waiting_.empty() ? now : waiting_.front().first[t_];
-    if (rows_.empty() || begin + shift_ > rows_.back()[t_]) return;
-    if (rows_.size() == 1) {  // alone with its time
-      skip(first_);
-      rows_.clear();
+    std::size_t good = rows_.size();  // unless the last two were ahead of their time
+    while (good > 0 && rows_.size() - good < 2 && begin + shift_ <= rows_[good - 1][t_]) --good;
+    if (good == 0 || begin + shift_ > rows_[good - 1][t_]) {
+      for (std::size_t i = good; i < rows_.size(); ++i) skip(lines_[i]);
+      rows_.resize(good);
+      lines_.resize(good);
       return;
     }
     const double shift = rows_.back()[t_] + 1 - begin;
@@ -103,9 +106,9 @@ class TimedRows {
   int t_;
   SkippedRows& skipped_;
   std::vector<std::vector<double>> rows_;
+  std::vector<long> lines_;  // of the file, of each of them
   std::vector<Row> waiting_;
   double shift_ = 0;  // [s]
-  long first_ = 0;    // line of the first row
 };
 
 }  // namespace tauext

@@ -29,7 +29,7 @@ struct KernelDrift {
   KernelRecord last;
   double accepted = 0;     ///< [1] by how much it may be slower than the reference, on purpose
   bool drifted = false;    ///< slower than the reference by more than that and the limit
-  bool undecided = false;  ///< seems so, but not surely
+  bool undecided = false;  ///< measured so, but not surely
   LevelChange change;      ///< the last one of its level in the window; by = 0: none
   std::string changed_at;  ///< commit, "" if the level did not change
   bool slower = false;     ///< that change is one for the worse, since the reference, by more than

@@ -25,7 +25,7 @@ struct Acceptance {
   bool covers(const std::string& its_layer, const std::string& its_subject, double by) const;
 };
 
-/// @throws std::runtime_error naming `where` and what no acceptance has
+/// @throws std::runtime_error naming `where` and the field that is wrong
 void check_acceptance(const Acceptance& a, const std::string& where);
 
 /// Path of the acceptances in a folder of baselines.

@@ -9,36 +9,43 @@
 namespace tauext::gate {
 namespace {
 
-// layer, subject, by how much it is worse, what to write down; and where the reason goes
-struct Failing {
+// layer, subject, by how much it is worse, what to write down; where the reason goes; and whether
+// it fails by itself, or is what another day's run may say of the same
+struct Excess {
   const char* layer;
   std::string subject;
   double by, at_most;
   std::function<void(const std::string&)> accept;
+  bool fails = true;
 };
 
-void add_times(TimeReport& t, std::vector<Failing>& all) {
+void add_times(TimeReport& t, std::vector<Excess>& all) {
   for (KernelTime& k : t.kernels) {
+    const bool slower = k.verdict.verdict == Verdict::kFail;
     const auto add = [&](const char* layer, TimeVerdict& v) {
-      if (v.verdict != Verdict::kFail) return;
+      const bool fails = v.verdict == Verdict::kFail;
+      if (!fails && !(slower && v.ratio > 1)) return;
       // another day's machine may say a tenth more
       const double at_most = v.high - 1 + 0.1 * (v.ratio - 1);
-      all.push_back({layer, k.kernel, v.surely, at_most, [&v](const std::string& reason) {
+      all.push_back({layer, k.kernel, v.surely, at_most,
+                     [&v](const std::string& reason) {
                        v.verdict = Verdict::kAccepted;
                        v.why = reason;
-                     }});
+                     },
+                     fails});
     };
     add(kTimeLayer, k.verdict);
     add(kColdLayer, k.cold);
-    if (k.life.kernel.empty() || complaint(k.life).empty()) continue;
-    if (k.life.head.waits > k.life.base.waits) continue;
+    if (k.life.kernel.empty() || k.life.head.waits > k.life.base.waits) continue;
+    const bool fails = !complaint(k.life).empty();
     const double by = std::max(k.life.worst_ratio, k.life.head.mean_ns / k.life.base.mean_ns) - 1;
+    if (!fails && !(slower && by > 0)) continue;
     all.push_back({kLongLayer, k.kernel, by, 1.5 * by,
-                   [&k](const std::string& reason) { k.life_accepted = reason; }});
+                   [&k](const std::string& reason) { k.life_accepted = reason; }, fails});
   }
 }
 
-void add_counts(const char* layer, std::vector<CountChange>& changes, std::vector<Failing>& all) {
+void add_counts(const char* layer, std::vector<CountChange>& changes, std::vector<Excess>& all) {
   for (CountChange& c : changes) {
     if (!too_many(c)) continue;
     all.push_back({layer, c.kernel, c.change(), c.change() + 1e-4,
@@ -46,7 +53,7 @@ void add_counts(const char* layer, std::vector<CountChange>& changes, std::vecto
   }
 }
 
-void add_metrics(AccuracyReport& r, std::vector<Failing>& all) {
+void add_metrics(AccuracyReport& r, std::vector<Excess>& all) {
   for (MetricChange& c : r.changes) {
     const double by = std::abs(c.after / c.before - 1);
     if (!std::isfinite(by)) continue;
@@ -55,8 +62,8 @@ void add_metrics(AccuracyReport& r, std::vector<Failing>& all) {
   }
 }
 
-std::vector<Failing> failing(GateResult& r) {
-  std::vector<Failing> all;
+std::vector<Excess> excesses(GateResult& r) {
+  std::vector<Excess> all;
   if (r.time) add_times(*r.time, all);
   if (r.instructions) {
     add_counts(kInstructionsLayer, r.instructions->beside_base, all);
@@ -72,7 +79,7 @@ std::vector<Acceptance> acceptable(const GateResult& result, const std::string& 
                                    const std::string& reason) {
   GateResult copy = result;
   std::vector<Acceptance> all;
-  for (const Failing& f : failing(copy)) {
+  for (const Excess& f : excesses(copy)) {
     all.push_back({f.layer, f.subject, f.at_most, base, reason});
   }
   return all;
@@ -86,7 +93,8 @@ void accept(const std::vector<Acceptance>& all, const std::string& base, GateRes
         fmt::format("{} accepted findings are stale, of another base than {}: they accept nothing",
                     stale, base.empty() ? "none" : base.substr(0, 12)));
   }
-  for (const Failing& f : failing(r)) {
+  for (const Excess& f : excesses(r)) {
+    if (!f.fails) continue;
     for (const Acceptance& a : all) {
       if (a.base != base || a.layer != f.layer || a.subject != f.subject) continue;
       if (a.covers(f.layer, f.subject, f.by)) {

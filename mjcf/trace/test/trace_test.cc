@@ -100,6 +100,14 @@ TEST_F(TraceFile, OneFalseTimeCostsOneRowAndANewClockNone) {
   EXPECT_EQ(read({1e9, 0, 0.001, 0.002, 0.003}, first), good);
   EXPECT_EQ(first.time_order, 1);
   EXPECT_EQ(first.first.at(0), "line 2: its time is not the next one");
+  SkippedRows second;
+  EXPECT_EQ(read({0, 0.04, 0.002, 0.003, 0.004, 0.005}, second).size(), 5u);
+  EXPECT_EQ(second.first.at(0), "line 3: its time is not the next one");
+  EXPECT_TRUE(second.notes.empty());
+  SkippedRows ahead;
+  EXPECT_EQ(read({0, 0.001, 0.002, 0.008, 0.004, 0.005, 0.006, 0.007, 0.008}, ahead).size(), 8u);
+  EXPECT_EQ(ahead.first.at(0), "line 5: its time is not the next one");
+  EXPECT_TRUE(ahead.notes.empty());
   const std::vector<double> later = read({8, 8.001, 8.002, 3, 3.001, 3.002}, back);
   ASSERT_EQ(later.size(), 6u);
   EXPECT_NEAR(later[3], 9.002, 1e-9);
