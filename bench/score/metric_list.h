@@ -128,7 +128,7 @@ inline constexpr auto kMetrics = [] {
                 "The CPU time of one step of estimator and detector."},
       MetricRow{kAllocs, "allocs", "allocs", "1/step", 0, kLess, kNone, kUsual,
                 "The number of memory allocations in one step."},
-      MetricRow{kLeftOut, "left_out", "left out", "samples", 0, kLess, kNone, kUsual,
+      MetricRow{kLeftOut, "left_out", "left out", "samples", 0, kLess, kNone, kGate,
                 "The number of samples that the estimator could not use."},
       MetricRow{kFailed, "failed", "failed", "", 0, kLess, kNone, kGate | kOneSeedIsWorse,
                 "1 for an entry that failed, else 0."},
