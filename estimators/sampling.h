@@ -228,7 +228,6 @@ class Sampling {
 
   // what came h() after the last one
   Status judge_step(const Measurement<N>& y) noexcept {
-    constexpr double kTurn = 6.283185307179586;
     Measurement<N> from = last_;
     for (int j = 0; j < N; ++j)
       turns_[j] = kTurn * (limits_.turns >> j & 1) * std::round((y.q[j] - last_.q[j]) / kTurn);

@@ -72,8 +72,7 @@ struct Estimate {
   Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
   Status status = Status::kOk;      ///< whether tau_ext may be used
   /// The joints that the status is about, bit 0 for the first; with kOk those whose readings were
-  /// put right:
-  /// a torque of the sample before that was an outlier, a q that has wrapped by a turn.
+  /// put right: a torque of the sample before that was an outlier, a q that has wrapped by a turn.
   std::uint8_t joints = 0;
 };
 

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "estimators/samples/limits.h"
+
 namespace tauext {
 
 /// One fault of a recording. Sample has t, and q, qd and tau with a value for each joint.
@@ -95,7 +97,6 @@ template <class Sample>
 std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
   using Y = Sample;
   using detail::for_some, detail::from_then_on, detail::once;
-  constexpr double kTurn = 6.283185307179586;
   const auto freeze = [](const Y& first, Y& y) {
     const double t = y.t;
     y = first;

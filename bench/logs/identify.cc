@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -113,7 +113,8 @@ void add_residuals(const Trace& log, const std::vector<Term>& model,
   for (const Term& t : rest) names.push_back(t.name);
   names.insert(names.end(),
                {"a loadcell that is not linear (tau^2)", "a loadcell that is not linear (tau^3)"});
-  const MatrixXd inverse = (A.transpose() * A).inverse();
+  const MatrixXd one = MatrixXd::Identity(A.cols(), A.cols());
+  const MatrixXd inverse = (A.transpose() * A).ldlt().solve(one);
   const VectorXd robust = robust_errors(A, inverse, residuals);
   for (std::size_t i = 0; i < id.parameters.size(); ++i) {
     id.parameters[i].robust = robust[static_cast<Eigen::Index>(i)];

@@ -99,7 +99,7 @@ class ContactClassifier {
   Parameters p_;
   PanTompkins<N> collision_;
   Clamping<N> clamping_;
-  Clock clock_{Marking::kMaxGap};  // theirs
+  Clock clock_{Marking::kMaxGap};  // says what those of both stages say
   bool hit_ = false, clamped_ = false, clamp_marked_ = false;
   double hit_at_ = 0, clamp_marked_at_ = 0;  // [s]
   Detection last_;

@@ -4,8 +4,8 @@
 ///     mark where the score rises through 1, but not within `refractory` of the last mark
 /// and silence during `start_up`, in which an estimator finds a payload that it was not told of. A
 /// score that is above 1 when the silence ends is marked there, unless it has lasted since before a
-/// new clock. Times are judged as an estimator's
-/// (samples/clock.h); where the clock starts anew, so does all of this.
+/// new clock. Times are judged as an estimator's (samples/clock.h); where the clock starts anew, so
+/// does all of this.
 #pragma once
 
 #include <tuple>

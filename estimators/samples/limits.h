@@ -14,6 +14,9 @@ namespace tauext {
 /// A reading [rad, rad/s, N m] beyond which it is no robot's.
 inline constexpr double kMeasurementLimit = 1e6;
 
+/// [rad] after which a hinge is where it was.
+inline constexpr double kTurn = 6.283185307179586;
+
 /// Per joint; by default what no robot of any kind exceeds.
 template <int N>
 struct ArmLimits {
@@ -35,7 +38,7 @@ struct ArmLimits {
 template <RobotModel M>
 ArmLimits<M::kDof> limits_of(const M& model) {
   constexpr int N = M::kDof;
-  if constexpr (requires { ArmLimits<N>(model.limits()); }) {
+  if constexpr (requires { model.limits(); }) {
     return model.limits();
   } else {
     Vec<N> weight = Vec<N>::Zero(), inertia = weight, fall = weight, q = weight;
@@ -51,13 +54,13 @@ ArmLimits<M::kDof> limits_of(const M& model) {
       }
       for (int j = 0; j < N; ++j) {
         random = random * 6364136223846793005u + 1442695040888963407u;
-        q[j] = 6.283185307179586 * (static_cast<double>(random >> 11) * 0x1p-53 - 0.5);
+        q[j] = kTurn * (static_cast<double>(random >> 11) * 0x1p-53 - 0.5);
       }
     }
     ArmLimits<N> out;
     for (int j = 0; j < N; ++j) {
       Vec<N> turned = q;
-      turned[j] += 6.283185307179586;
+      turned[j] += kTurn;
       const bool same =
           (model.inertia(turned) - model.inertia(q)).norm() <= 1e-6 * inertia.norm() &&
           (model.gravity(turned) - model.gravity(q)).norm() <= 1e-6 * weight.norm();

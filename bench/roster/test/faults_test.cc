@@ -5,18 +5,14 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 
 #include "bench/roster/baselines.h"
-#include "bench/roster/file_robot.h"
 #include "bench/roster/robots.h"
-#include "bench/roster/test/hinge_arm.h"
+#include "bench/roster/test/hinge_robot.h"
 #include "mjcf/record.h"
 
 namespace tauext::test {
@@ -130,13 +126,8 @@ TEST(Faults, AreBorneByEveryPairOnTestbed1) {
 class FaultsOfAFile : public testing::TestWithParam<int> {};
 
 TEST_P(FaultsOfAFile, AreBorneByEveryPair) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    fmt::format("tauext_faults_{}_{}.xml", ::getpid(), GetParam());
-  std::ofstream(path) << hinge_arm(GetParam());
-  const auto arm = file_robot(path.string());
-  const Trace trace = moving(load_mjcf(path.string()), 2);
-  std::filesystem::remove(path);
-  bears_every_fault(*arm, trace, 2, 1e3);
+  const HingeRobot arm(GetParam());
+  bears_every_fault(*arm.robot, moving(arm.model, 2), 2, 1e3);
 }
 INSTANTIATE_TEST_SUITE_P(SixAndSevenJoints, FaultsOfAFile, testing::Values(6, 7),
                          [](const auto& i) { return fmt::format("{}_joints", i.param); });

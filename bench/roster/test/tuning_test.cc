@@ -2,17 +2,12 @@
 // That tunings by one bandwidth hold on every arm, in poses where B is far from that of q = 0.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 
-#include "bench/roster/baselines.h"
-#include "bench/roster/file_robot.h"
 #include "bench/roster/robots.h"
-#include "bench/roster/test/hinge_arm.h"
+#include "bench/roster/test/hinge_robot.h"
 #include "bench/score/metrics.h"
 #include "mjcf/record.h"
 
@@ -49,16 +44,11 @@ std::map<std::string, Answer> answers(const Robot& robot, const Trace& trace, do
 class Tuning : public testing::TestWithParam<int> {};
 
 TEST_P(Tuning, OfEveryEstimatorHoldsInEveryPose) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    fmt::format("tauext_tuning_{}_{}.xml", ::getpid(), GetParam());
-  std::ofstream(path) << hinge_arm(GetParam());
-  const auto arm = file_robot(path.string());
-  const Model model = load_mjcf(path.string());
-  std::filesystem::remove(path);
+  const HingeRobot arm(GetParam());
   const auto known = answers(robot("wallmobot3"), held(load_robot("wallmobot3"), 0.1, 50), 50);
   for (const double pose : {-1.3, -0.7, 0., 0.4, 1.1}) {
     constexpr double kStep = 0.5;  // [N m] so little that the arm hardly moves
-    const auto found = answers(*arm, held(model, pose, kStep), kStep);
+    const auto found = answers(*arm.robot, held(arm.model, pose, kStep), kStep);
     for (const auto& [name, a] : found) {
       SCOPED_TRACE(fmt::format("{} at {} rad", name, pose));
       EXPECT_LE(a.rmse, 1.5 * known.at(name).rmse);
