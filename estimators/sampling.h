@@ -21,7 +21,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "estimators/parameters.h"
+#include "estimators/math/lanes.h"
 #include "estimators/samples/clock.h"
 #include "estimators/samples/limits.h"
 #include "estimators/samples/options.h"
@@ -44,19 +44,6 @@ inline void require(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(what);
 }
 
-/// The longest step [s] of an estimator, as its Parameters list it.
-template <class P>
-constexpr auto max_gap_field() {
-  return Field{"max_gap", &P::max_gap, "s", 1e-4, 1e3, "a longer gap restarts the estimator"};
-}
-
-/// The one bandwidth [rad/s] of an estimator, as its Parameters list it.
-template <class P>
-constexpr auto bandwidth_field() {
-  return Field{"bandwidth",     &P::bandwidth,  "rad/s",
-               kLeastBandwidth, kMostBandwidth, "larger is faster and noisier"};
-}
-
 /// The samples that an estimator of N joints has used, and its verdict on the next one.
 template <int N>
 class Sampling {
@@ -67,7 +54,7 @@ class Sampling {
   /// @throws std::invalid_argument if max_gap is not positive
   explicit Sampling(double max_gap, const ArmLimits<N>& limits = {},
                     TorqueSampling torque = TorqueSampling::kHeld)
-      : clock_(max_gap), limits_(limits), torque_(torque) {
+      : clock_(max_gap), limits_(padded(limits)), torque_(torque) {
     require(max_gap > 0, "max_gap [s] must be positive");
     reset();
   }
@@ -85,7 +72,8 @@ class Sampling {
 
   /// Whether y can be used: kOk to step by h(), kStarted to start at y, else what is wrong with it,
   /// and it has to be left out.
-  [[gnu::always_inline]] Status accept(const Measurement<N>& y) noexcept {
+  [[gnu::always_inline]] Status accept(const Measurement<N>& sample) noexcept {
+    const Sample y = padded(sample);
     if (clock_.follows(y.t) && (jumped_ | still_) == 0 && plain(y)) [[likely]] {
       clock_.accept(y.t);
       learn(y, h());
@@ -107,31 +95,48 @@ class Sampling {
 
   /// [N m] that acted over the step to this sample, which was accepted.
   [[gnu::always_inline]] Vec<N> torque(const Measurement<N>& y) const noexcept {
-    return torque_ == TorqueSampling::kHeld ? held_ : Vec<N>(0.5 * (held_ + y.tau));
+    return torque_ == TorqueSampling::kHeld ? torque_before()
+                                            : Vec<N>(0.5 * (torque_before() + y.tau));
   }
 
   /// [N m] tau of the used sample before this one.
-  const Vec<N>& torque_before() const noexcept { return held_; }
+  Vec<N> torque_before() const noexcept { return held_.template head<N>(); }
   double h() const noexcept { return clock_.h(); }  ///< [s] from the last used sample to this one
 
   /// Whether q has wrapped at the sample that was just accepted.
   bool wrapped() const noexcept { return wrapped_; }
   /// [rad] by which it then has; a filter of q has to do the same.
-  const Vec<N>& turns() const noexcept { return turns_; }
+  Vec<N> turns() const noexcept { return turns_.template head<N>(); }
 
   /// Which joints the last verdict is about, bit 0 for the first; 0 where it is about none.
   std::uint8_t joints() const noexcept { return joints_; }
 
  private:
+  static constexpr int P = detail::kPadded<N>;  // lanes; those beyond N repeat the first joint
+  using Sample = Measurement<P>;
   static_assert(N <= 8, "a bit for each joint");
   static constexpr std::uint16_t kFresh = 0x100;  // the last sample was a start
   static constexpr double kTravel = 5e-4;         // [rad] with q the same
   static constexpr double kMotion = 1e-4;         // [rad] in a step, if qd differs
   static constexpr double kCoarse = 2.5e-3;       // [rad] of an encoder's step
 
+  [[gnu::always_inline]] static Vec<P> padded(const Vec<N>& v) noexcept {
+    Vec<P> out;
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) out[j] = v[j < N ? j : 0];
+    return out;
+  }
+  [[gnu::always_inline]] static Sample padded(const Measurement<N>& y) noexcept {
+    return {y.t, padded(y.q), padded(y.qd), padded(y.tau)};
+  }
+  static ArmLimits<P> padded(const ArmLimits<N>& a) noexcept {
+    return {padded(a.q_least), padded(a.q_most), padded(a.qd), padded(a.tau),
+            padded(a.qdd),     padded(a.dtau),   a.turns};
+  }
+
   // (i)
-  [[gnu::always_inline]] static bool continuous(const Measurement<N>& a, const Measurement<N>& b,
-                                                double h, int j) noexcept {
+  [[gnu::always_inline]] static bool continuous(const Sample& a, const Sample& b, double h,
+                                                int j) noexcept {
     return std::abs(b.q[j] - a.q[j] - 0.5 * h * (b.qd[j] + a.qd[j])) <=
            0.005 + 8 * h * std::abs(a.qd[j]);
   }
@@ -140,42 +145,39 @@ class Sampling {
     return 0.02 + h * limits_.qdd[j] + 6 * usual_[j];
   }
   // the mean of |qd_k - qd_k-1| over some 64 samples, to which an outlier adds little
-  [[gnu::always_inline]] void learn(const Measurement<N>& y, double h) noexcept {
-#pragma GCC unroll 8
-    for (int j = 0; j < N; ++j) {
+  [[gnu::always_inline]] void learn(const Sample& y, double h) noexcept {
+    for (int j = 0; j < P; ++j) {
       const double change = std::abs(y.qd[j] - last_.qd[j]);
       usual_[j] += 0x1p-6 * (std::min(change, most(h, j) - 4 * usual_[j]) - usual_[j]);
     }
   }
-  [[gnu::always_inline]] bool calm(const Measurement<N>& a, const Measurement<N>& b, double h,
-                                   int j) const noexcept {
-    return std::abs(b.qd[j] - a.qd[j]) <= most(h, j);
+  [[gnu::always_inline]] bool calm(const Sample& y, double h, int j) const noexcept {
+    return std::abs(y.qd[j] - last_.qd[j]) <= most(h, j);
   }
   [[gnu::always_inline]] bool smooth(double a, double b, int j) const noexcept {
     return std::abs(b - a) <= limits_.dtau[j];
   }
-  [[gnu::always_inline]] bool inside(const Measurement<N>& y, int j) const noexcept {
+  [[gnu::always_inline]] bool inside(const Sample& y, int j) const noexcept {
     return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
            (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
   }
-  [[gnu::always_inline]] static bool still(const Measurement<N>& a, const Measurement<N>& b,
-                                           double h, int j) noexcept {
-    return (b.q[j] == a.q[j]) & (b.qd[j] != 0) &
-           ((b.qd[j] == a.qd[j]) | (h * std::abs(b.qd[j]) > kMotion));
+  [[gnu::always_inline]] bool still(const Sample& y, double h, int j) const noexcept {
+    return (y.q[j] == last_.q[j]) & (y.qd[j] != 0) &
+           ((y.qd[j] == last_.qd[j]) | (h * std::abs(y.qd[j]) > kMotion));
   }
-  // all of it at once: false where judge() has to look
-  [[gnu::always_inline]] bool plain(const Measurement<N>& y) const noexcept {
+  // false where judge() has to look
+  [[gnu::always_inline]] bool plain(const Sample& y) const noexcept {
     const double h = y.t - last_.t;
-    bool ok = true;
-#pragma GCC unroll 8
-    for (int j = 0; j < N; ++j) {
-      ok &= inside(y, j) & continuous(last_, y, h, j) & calm(last_, y, h, j) &
-            smooth(last_.tau[j], y.tau[j], j) & !still(last_, y, h, j);
+    double others = 0;  // not an integer: a compiler takes four joints at once then
+    for (int j = 0; j < P; ++j) {
+      const bool ok = inside(y, j) & continuous(last_, y, h, j) & calm(y, h, j) &
+                      smooth(last_.tau[j], y.tau[j], j) & !still(y, h, j);
+      others += ok ? 0 : 1;
     }
-    return ok;
+    return others == 0;
   }
 
-  [[gnu::always_inline]] void remember(const Measurement<N>& y) noexcept {
+  [[gnu::always_inline]] void remember(const Sample& y) noexcept {
     held_ = last_.tau;
     last_ = y;
     waiting_ = 0;
@@ -190,7 +192,7 @@ class Sampling {
     return static_cast<std::uint8_t>(mask);
   }
 
-  [[gnu::noinline]] Status judge(const Measurement<N>& y) noexcept {
+  [[gnu::noinline]] Status judge(const Sample& y) noexcept {
     const auto readable = [](double x) { return std::abs(x) <= kMeasurementLimit; };
     joints_ = which(
         [&](int j) { return !readable(y.q[j]) || !readable(y.qd[j]) || !readable(y.tau[j]); });
@@ -212,7 +214,7 @@ class Sampling {
     return status;
   }
 
-  Status start(const Measurement<N>& y) noexcept {
+  Status start(const Sample& y) noexcept {
     remember(y);
     still_ = 0;
     jumped_ = kFresh;
@@ -220,21 +222,21 @@ class Sampling {
   }
 
   // [rad] that a joint says to have moved since its q changed
-  double travel(const Measurement<N>& y, int j) const noexcept {
+  double travel(const Sample& y, int j) const noexcept {
     const double h = y.t - last_.t;
-    if (!(h > 0) || !still(last_, y, h, j) || !calm(last_, y, h, j)) return 0;
+    if (!(h > 0) || !still(y, h, j) || !calm(y, h, j)) return 0;
     return (still_ >> j & 1 ? travel_[j] : 0) + h * y.qd[j];
   }
 
   // what came h() after the last one
-  Status judge_step(const Measurement<N>& y) noexcept {
-    Measurement<N> from = last_;
+  Status judge_step(const Sample& y) noexcept {
+    Sample from = last_;
     for (int j = 0; j < N; ++j)
       turns_[j] = kTurn * (limits_.turns >> j & 1) * std::round((y.q[j] - last_.q[j]) / kTurn);
     from.q += turns_;
     const auto leaps = which([&](int j) { return !continuous(from, y, h(), j); });
     const auto jumps = which([&](int j) { return !smooth(last_.tau[j], y.tau[j], j); });
-    auto jolts = which([&](int j) { return !calm(last_, y, h(), j); });
+    auto jolts = which([&](int j) { return !calm(y, h(), j); });
     if (torque_ == TorqueSampling::kInstant) jolts |= jumps;
     learn(y, h());
     joints_ = leaps | jolts;
@@ -248,7 +250,7 @@ class Sampling {
   }
 
   // whether the sample before has jumped as y has
-  bool borne_out(const Measurement<N>& y) const noexcept {
+  bool borne_out(const Sample& y) const noexcept {
     const double h = y.t - waits_.t;
     const auto other = [](double last, double before, double now, double limit) {
       return std::abs(now - before) > limit + std::abs(before - last);
@@ -260,7 +262,7 @@ class Sampling {
                            }) == 0;
   }
   // y, whose tau has jumped at these joints
-  Status go_on(const Measurement<N>& y, std::uint8_t jumps) noexcept {
+  Status go_on(const Sample& y, std::uint8_t jumps) noexcept {
     for (int j = 0; j < N; ++j) {
       const double change = std::abs(y.q[j] - last_.q[j]);
       if (still_ >> j & 1 && change <= kCoarse) step_[j] = std::max(step_[j], change);
@@ -269,9 +271,7 @@ class Sampling {
     still_ = which([&](int j) { return travel_[j] != 0; });
     const auto back =
         which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
-    for (int j = 0; j < N; ++j) {
-      if (back >> j & 1) last_.tau[j] = held_[j];
-    }
+    for (int j = 0; j < N; ++j) last_.tau[j] = back >> j & 1 ? held_[j] : last_.tau[j];
     remember(y);
     joints_ = back | which([&](int j) { return turns_[j] != 0; });
     wrapped_ = joints_ != back;
@@ -280,16 +280,16 @@ class Sampling {
   }
 
   Clock clock_;
-  ArmLimits<N> limits_;
+  ArmLimits<P> limits_;
   TorqueSampling torque_;
-  Measurement<N> last_;           // that was used
-  Vec<N> held_ = Vec<N>::Zero();  // [N m] tau of the one before
-  Vec<N> turns_ = held_;          // [rad] by which q has wrapped, if it has
-  Vec<N> usual_ = held_;          // [rad/s] change of qd from sample to sample
-  Measurement<N> waits_;          // that jumped, waiting_ in a row
+  Sample last_;                   // that was used
+  Vec<P> held_ = Vec<P>::Zero();  // [N m] tau of the one before
+  Vec<P> turns_ = held_;          // [rad] by which q has wrapped, if it has
+  Vec<P> usual_ = held_;          // [rad/s] change of qd from sample to sample
+  Sample waits_;                  // that jumped, waiting_ in a row
   int waiting_ = 0;
-  Vec<N> travel_ = held_;                // [rad] of joints that stand still
-  Vec<N> step_ = held_;                  // [rad] by which their q then changed
+  Vec<P> travel_ = held_;                // [rad] of joints that stand still
+  Vec<P> step_ = held_;                  // [rad] by which their q then changed
   std::uint8_t joints_ = 0, still_ = 0;  // of the verdict; whose q was the same at the last sample
   std::uint16_t jumped_ = 0;             // whose tau has then; or kFresh
   bool wrapped_ = false;                 // q, at the last sample

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
@@ -17,7 +18,7 @@ inline constexpr double kMeasurementLimit = 1e6;
 /// [rad] after which a hinge is where it was.
 inline constexpr double kTurn = 6.283185307179586;
 
-/// Per joint; by default what no robot of any kind exceeds.
+/// Per joint; by default what no robot of any kind exceeds. Of a slide: m, m/s, N, m/s^2.
 template <int N>
 struct ArmLimits {
   Vec<N> q_least = Vec<N>::Constant(-kMeasurementLimit);  ///< [rad] range of the position
@@ -29,17 +30,28 @@ struct ArmLimits {
   std::uint8_t turns = 0xff;  ///< joints to whose q a turn makes no difference, bit 0 for the first
 };
 
+/// Whether each range holds something and no number is missing.
+template <int N>
+bool sensible(const ArmLimits<N>& a) noexcept {
+  return (a.q_least.array() <= a.q_most.array()).all() && (a.qd.array() > 0).all() &&
+         (a.tau.array() > 0).all() && (a.qdd.array() > 0).all() && (a.dtau.array() > 0).all();
+}
+
 /// Of this arm: what it says of itself (`limits()`), or what follows from its model. There the
 /// scale of a joint's torque is what holds the arm and accelerates it by 5 rad/s^2, in the worst of
 /// 64 poses,
 ///     scale_i = max |g_i| + 5 max B_ii,   qdd_i = 20 rad/s^2 + 2 max |(B^-1 g)_i|  (free falls)
 ///     tau_i = 50 scale_i + 5 max_j scale_j,   dtau_i = 0.1 scale_i + 0.05 max_j scale_j
+/// The factors are ours, from no source, and wide on purpose: a gate too narrow costs good samples.
 /// A slide that B or g depends on has no turns.
+/// @throws std::invalid_argument if `limits()` are not sensible
 template <RobotModel M>
 ArmLimits<M::kDof> limits_of(const M& model) {
   constexpr int N = M::kDof;
   if constexpr (requires { model.limits(); }) {
-    return model.limits();
+    const ArmLimits<N> out = model.limits();
+    if (!sensible(out)) throw std::invalid_argument("limits() want q_least <= q_most, others > 0");
+    return out;
   } else {
     Vec<N> weight = Vec<N>::Zero(), inertia = weight, fall = weight, q = weight;
     std::uint64_t random = 1;  // Knuth's generator

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Choices that several estimators have, each listed once.
+/// Parameters that several estimators have, each listed once.
 #pragma once
 
 #include <array>
@@ -10,6 +10,19 @@
 #include "estimators/types.h"
 
 namespace tauext {
+
+/// The longest step [s] of an estimator, as its Parameters list it.
+template <class P>
+constexpr auto max_gap_field() {
+  return Field{"max_gap", &P::max_gap, "s", 1e-4, 1e3, "a longer gap restarts the estimator"};
+}
+
+/// The one bandwidth [rad/s] of an estimator, as its Parameters list it.
+template <class P>
+constexpr auto bandwidth_field() {
+  return Field{"bandwidth",     &P::bandwidth,  "rad/s",
+               kLeastBandwidth, kMostBandwidth, "larger is faster and noisier"};
+}
 
 /// When the torque of a sample acted.
 enum class TorqueSampling : std::uint8_t {

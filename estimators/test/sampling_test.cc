@@ -216,6 +216,23 @@ TEST(Limits, AreThoseThatTheArmHasOrFollowFromItsModel) {
   EXPECT_NEAR(l.qdd[0], 20 + 2 * g / p.theta1, 0.05 * g / p.theta1);
 }
 
+TEST(Limits, ThatLetNothingPassOrSayNothingAreRefused) {
+  struct Limited : WallMoBot3 {
+    ArmLimits<3> limits() const { return of; }
+    ArmLimits<3> of;
+  };
+  Limited arm;
+  EXPECT_NO_THROW(limits_of(arm));
+  arm.of.q_least[2] = 2 * kMeasurementLimit;
+  EXPECT_THROW(limits_of(arm), std::invalid_argument);
+  for (auto member : {&ArmLimits<3>::q_most, &ArmLimits<3>::qd, &ArmLimits<3>::tau,
+                      &ArmLimits<3>::qdd, &ArmLimits<3>::dtau}) {
+    arm.of = {};
+    (arm.of.*member)[1] = std::nan("");
+    EXPECT_THROW(limits_of(arm), std::invalid_argument);
+  }
+}
+
 TEST(Limits, SlidesHaveNoTurns) {
   struct Sliding : WallMoBot3 {
     Mat<3> inertia(const Vec<3>& q) const noexcept { return (2 + q[1]) * Mat<3>::Identity(); }

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+static_assert(alignof(tauext::Vec<4>) == 32);  // whatever the flags: libraries share these types
+
 int main() {
   const tauext::WallMoBot3 arm;
   tauext::Ndob<tauext::WallMoBot3> ndob(arm, tauext::Ndob<tauext::WallMoBot3>::Parameters::paper());
