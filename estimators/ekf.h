@@ -79,7 +79,8 @@ class Ekf {
     nu_q_ += sampling_.h() * nu_qd_;
     status = sampling_.confirm(unlikely(y, 1 / steps));
     if (status == Status::kOk) correct(y, 1 / steps);
-    if (!(x_[0].allFinite() && x_[1].allFinite() && within(x_[2], kEstimateLimit))) {
+    const Column squares = x_[0].cwiseAbs2() + x_[1].cwiseAbs2() + x_[2].cwiseAbs2();
+    if (!(squares.sum() <= kEstimateLimit * kEstimateLimit)) {
       x_[2].setZero();
       start(y);
       return estimate(Status::kDiverged);
