@@ -166,7 +166,7 @@ void add_flags(CLI::App& app, Flags& f) {
       ->allow_extra_args(false);
   app.add_option("--detector", f.detector, "NAME[:KEY=VALUE].. behind each estimator");
   app.add_option("--torque", f.torque,
-                 "when the log's tau acted: held from t on, or at the instant t")
+                 "when tau acted: held from t on, or at t; else as the log says")
       ->type_name("held|instant")
       ->check(CLI::IsMember({"held", "instant"}));
   app.add_option("--out", f.out, "file to write; - is standard output");
@@ -204,6 +204,7 @@ int replay(Flags& f) {
   for (const std::string& e : f.estimators) {
     columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run()});
   }
+  const std::string by_log = trace.torque_at_instants ? "instant" : "held";
   bool good = recorded.usable();
   for (const Column& c : columns) good = report_status(trace, c, recorded.skipped) && good;
   for (const bool instant : {false, true}) {
@@ -211,7 +212,7 @@ int replay(Flags& f) {
           const auto fields = r.estimator_fields(name_of_specification(c.estimator));
           const bool has = std::any_of(fields.begin(), fields.end(),
                                        [](const FieldHelp& h) { return h.key == "torque"; });
-          return has && (key_of(c.estimator, "torque").value_or("held") == "instant") == instant;
+          return has && (key_of(c.estimator, "torque").value_or(by_log) == "instant") == instant;
         })) {
       warn_of_torque(r, trace, instant);
     }

@@ -53,7 +53,10 @@ VectorXd row(const Trace& log, int a, int b, const std::vector<Term>& terms) {
       r[i] += h / T * 0.5 * (f(log.q(0, k), log.qd(0, k)) + f(log.q(0, k + 1), log.qd(0, k + 1)));
     }
   }
-  for (int k = a; k < b; ++k) r[n] += (log.t[k + 1] - log.t[k]) / T * log.tau(0, k);
+  for (int k = a; k < b; ++k) {
+    const double end = log.torque_at_instants ? log.tau(0, k + 1) : log.tau(0, k);
+    r[n] += (log.t[k + 1] - log.t[k]) / T * 0.5 * (log.tau(0, k) + end);
+  }
   return r;
 }
 

@@ -6,7 +6,7 @@
 /// Over a window [t_a, t_b) of length T, (3) integrates to
 ///     theta_1 (qd_b - qd_a) / T + sum_i theta_i mean(f_i(q, qd)) = mean(tau)               (i)
 /// so the acceleration is the difference quotient of the velocity over the window, and every other
-/// term goes through the same mean (tau is held over each sample; the f_i by the trapezium rule).
+/// term goes through the same mean (tau as it is sampled; the f_i by the trapezium rule).
 /// The terms stay in phase, and nothing is lost to a filter. Windows do not overlap; that
 /// neighbours share a velocity at their common end hardly correlates their errors. A window is left
 /// out where the joint is slower than `min_speed`, where nobody knows dry friction, or across a gap

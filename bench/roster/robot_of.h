@@ -237,14 +237,14 @@ class RobotOf final : public Robot {
   }
 
   DetectorPtr detector_of(std::string_view text, const DetectorSettings& s) const {
-    if (text.empty()) return nullptr;
-    return made(find(detectors_, "detector", text), text, s);
+    return text.empty() ? nullptr : made(find(detectors_, "detector", text), text, s);
   }
 
   EstimatorPtr estimator_of(std::string_view text, const Trace& trace) const {
     const EstimatorEntry& e = find(estimators_, "estimator", text);
     if (needs_truth(text) && !trace.has_truth()) fail_truth(e.name);
-    return made(e, text, trace);
+    if (!trace.torque_at_instants) return made(e, text, trace);
+    return made(e, with_key(std::string(text), "torque", "instant", e.fields), trace);
   }
 
   template <class Entry, class Behind>

@@ -70,6 +70,20 @@ TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
   EXPECT_TRUE(twice.says("'ndob' is named twice")) << twice.text;
 }
 
+TEST_F(Programs, ReplayTakesTheTorqueAsTheLogsColumnsSay) {
+  run("tauext-record --robot testbed1 --scenario identify --out log.csv");
+  const std::string log = content("log.csv");
+  const std::string replay = "tauext-replay log.csv --robot testbed1 --out - --estimator mo2";
+  const auto rows = [](const Outcome& o) {  // without the names of estimators
+    return o.text.substr(0, o.text.find("\nestimator")).substr(o.text.find('\n'));
+  };
+  const Outcome held = run(replay), told = run(replay + " --torque instant");
+  write("log.csv", "t,q1,qd1,tau_instant1,tau_ext1,contact" + log.substr(log.find('\n')));
+  EXPECT_TRUE(rows(run(replay)) == rows(told));
+  EXPECT_TRUE(rows(run(replay + " --torque held")) == rows(held));
+  EXPECT_TRUE(rows(told) != rows(held));
+}
+
 TEST_F(Programs, NoneReplacesAFileThatItReads) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
   run("tauext-record --robot testbed1 --scenario model_check --out one.csv");

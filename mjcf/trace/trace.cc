@@ -22,6 +22,7 @@ namespace tauext {
 namespace {
 
 constexpr const char* kVectors[] = {"q", "qd", "tau", "tau_ext"};
+constexpr const char* kAtInstants = "tau_instant";  // instead of tau
 
 std::vector<std::string_view> split(std::string_view line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -40,6 +41,7 @@ std::vector<std::string_view> split(std::string_view line) {
 // where each quantity stands in a row
 struct Columns {
   int count = 0, dof = 0, t = -1, contact = -1;
+  bool torque_at_instants = false;
   std::map<std::string, std::vector<int>> of;  // by kVectors
 };
 
@@ -60,14 +62,18 @@ Columns parse_header(std::string_view line, const std::string& path) {
   c.t = find("t");
   c.contact = find("contact");
   while (find(fmt::format("q{}", c.dof + 1)) >= 0) ++c.dof;
-  for (const std::string name : kVectors) {
-    for (int j = 1; j <= c.dof; ++j) c.of[name].push_back(find(fmt::format("{}{}", name, j)));
+  c.torque_at_instants = find(fmt::format("{}1", kAtInstants)) >= 0;
+  if (c.torque_at_instants && find("tau1") >= 0) {
+    throw std::runtime_error(
+        fmt::format("{}: has tau1, which holds, and {}1: rename one of them", path, kAtInstants));
   }
-  for (const std::string name : {"q", "qd", "tau"}) {
-    for (int j = 0; j < c.dof; ++j) {
-      if (c.of[name][j] >= 0) continue;
-      throw std::runtime_error(
-          fmt::format("{}: has q{} but no column '{}{}'", path, j + 1, name, j + 1));
+  for (const std::string name : kVectors) {
+    const bool instants = name == "tau" && c.torque_at_instants;
+    for (int j = 1; j <= c.dof; ++j) {
+      const std::string column = fmt::format("{}{}", instants ? kAtInstants : name, j);
+      c.of[name].push_back(find(column));
+      if (c.of[name].back() >= 0 || name == "tau_ext") continue;
+      throw std::runtime_error(fmt::format("{}: has q{} but no column '{}'", path, j, column));
     }
   }
   const std::vector<int>& truth = c.of["tau_ext"];
@@ -181,7 +187,10 @@ void write_csv(const Trace& trace, const std::string& path) {
   fmt::format_to(to, "t");
   for (int m = 0; m < 4; ++m) {
     if (matrices[m]->cols() == 0) continue;
-    for (int j = 1; j <= trace.dof(); ++j) fmt::format_to(to, ",{}{}", kVectors[m], j);
+    const bool instants = matrices[m] == &trace.tau && trace.torque_at_instants;
+    for (int j = 1; j <= trace.dof(); ++j) {
+      fmt::format_to(to, ",{}{}", instants ? kAtInstants : kVectors[m], j);
+    }
   }
   fmt::format_to(to, "{}\n", trace.contact.empty() ? "" : ",contact");
   for (int k = 0; k < trace.size(); ++k) {
@@ -245,6 +254,7 @@ Trace read_csv(const std::string& path, SkippedRows* skipped) {
   trace.qd = gather(rows, c.of.at("qd"));
   trace.tau = gather(rows, c.of.at("tau"));
   trace.tau_ext = gather(rows, c.of.at("tau_ext"));
+  trace.torque_at_instants = c.torque_at_instants;
   return trace;
 }
 

@@ -30,6 +30,7 @@ struct Trace {
   Eigen::MatrixXd tau;                ///< [N m] measured
   Eigen::MatrixXd tau_ext;            ///< [N m] true; no columns if unknown
   std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
+  bool torque_at_instants = false;    ///< tau was read at t and does not hold (samples/options.h)
   /// [N m] what the robot's own controller estimated, as a driver's log has it; no columns if
   /// unknown. Never written to a CSV.
   Eigen::MatrixXd tau_ext_of_driver;
@@ -59,7 +60,8 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples);
 struct SkippedRows;
 
 /// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to
-/// standard output if the path is "-". The file appears whole or not at all.
+/// standard output if the path is "-". A tau read at instants is called tau_instant1... The file
+/// appears whole or not at all.
 /// @throws std::runtime_error naming the path
 void write_csv(const Trace& trace, const std::string& path);
 

@@ -23,10 +23,12 @@ Trace motion() {
   return record(load_for("testbed1", s), s);
 }
 
-// a log of 20 s at 1 kHz along q = 0.3 sin 2t + 0.2 sin 5t, whose torque is torque(q, qd, qdd)
+// a log of 20 s at 1 kHz along q = 0.3 sin 2t + 0.2 sin 5t, whose torque is torque(q, qd, qdd):
+// held over the sample, the value in its middle, or read at instants
 template <class Torque>
-Trace synthetic(Torque&& torque) {
+Trace synthetic(Torque&& torque, bool at_instants = false) {
   Trace log;
+  log.torque_at_instants = at_instants;
   constexpr int n = 20000;
   log.q.resize(1, n), log.qd.resize(1, n), log.tau.resize(1, n);
   for (int k = 0; k < n; ++k) {
@@ -34,8 +36,8 @@ Trace synthetic(Torque&& torque) {
     log.t.push_back(t);
     log.q(0, k) = 0.3 * s2 + 0.2 * s5;
     log.qd(0, k) = 0.6 * std::cos(2 * t) + std::cos(5 * t);
-    // held over the sample: the value in its middle
-    const double m = t + 0.5e-3, qm = 0.3 * std::sin(2 * m) + 0.2 * std::sin(5 * m);
+    const double m = at_instants ? t : t + 0.5e-3,
+                 qm = 0.3 * std::sin(2 * m) + 0.2 * std::sin(5 * m);
     log.tau(0, k) = torque(qm, 0.6 * std::cos(2 * m) + std::cos(5 * m),
                            -1.2 * std::sin(2 * m) - 5 * std::sin(5 * m));
   }
@@ -58,6 +60,16 @@ TEST(Identify, OtherFrictionModelsFitByNamingTheirTerms) {
   const Identification id = identify(log, model);
   const double expected[] = {0.5, 1.5, 2.5, 0.7, 0.2};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(id.parameters[i].theta, expected[i], 1e-5) << i;
+}
+
+TEST(Identify, TorqueReadAtInstantsIsTakenAsItIs) {
+  Trace log = synthetic(
+      [](double q, double qd, double qdd) { return 0.5 * qdd + 0.7 * qd + 9 * std::cos(q); }, true);
+  const auto model = find_terms({"inertia", "viscous", "gravity_cos"});
+  const double viscous = identify(log, model).parameters[1].theta;
+  EXPECT_NEAR(viscous, 0.7, 1e-5);
+  log.torque_at_instants = false;
+  EXPECT_GT(std::abs(identify(log, model).parameters[1].theta - 0.7), 1e-3) << "half a sample late";
 }
 
 // what an arm with this torque beside (36) makes of the model of (36)

@@ -59,6 +59,26 @@ TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
   EXPECT_EQ(line, "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3,tau_ext1,tau_ext2,tau_ext3,contact");
 }
 
+TEST_F(TraceFile, TorqueReadAtInstantsSaysSoInItsName) {
+  Trace t = some_trace(2, 10);
+  t.torque_at_instants = true;
+  write_csv(t, path());
+  std::ifstream in(path());
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "t,q1,q2,qd1,qd2,tau_instant1,tau_instant2,tau_ext1,tau_ext2,contact");
+  SkippedRows skipped;
+  const Trace r = read_csv(path(), &skipped);
+  EXPECT_TRUE(r.torque_at_instants);
+  expect_same(r, t);
+  EXPECT_FALSE(
+      read_csv(written(std::string(kHead) + "0,0,0,0,0,0,0\n"), &skipped).torque_at_instants);
+  EXPECT_EQ(error_of_reading("t,q1,qd1,tau1,tau_instant1\n0,0,0,0,0\n"),
+            path() + ": has tau1, which holds, and tau_instant1: rename one of them");
+  EXPECT_EQ(error_of_reading("t,q1,q2,qd1,qd2,tau_instant1,tau2\n0,0,0,0,0,0,0\n"),
+            path() + ": has q2 but no column 'tau_instant2'");
+}
+
 TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
   SkippedRows skipped;
   const Trace t = read_csv(
