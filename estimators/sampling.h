@@ -11,9 +11,8 @@
 /// same position of a hinge, and costs nothing. A start that the next sample does not bear out is
 /// made anew. A torque that is held is not needed before the next sample, which tells: if tau has
 /// jumped by more than dtau_max and back, the one before the jump takes its place, and the next kOk
-/// names the joints. A joint that says it moves (qd is not 0) while q stays the same to the last
-/// bit is frozen: after 0.5 mrad of that motion, or twice the step of its encoder, which it learns
-/// up to 2.5 mrad. Its samples are left out until it speaks again.
+/// names the joints. A joint that says it moves and whose q stays the same is frozen
+/// (samples/stillness.h), and its samples are left out until it speaks again.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +24,7 @@
 #include "estimators/samples/clock.h"
 #include "estimators/samples/limits.h"
 #include "estimators/samples/options.h"
+#include "estimators/samples/stillness.h"
 #include "estimators/types.h"
 
 namespace tauext {
@@ -63,18 +63,18 @@ class Sampling {
   void reset() noexcept {
     clock_.reset();
     waiting_ = 0;
-    jumped_ = joints_ = still_ = 0;
+    jumped_ = joints_ = 0;
+    stillness_.reset();
     doubted_ = wrapped_ = false;
     last_.q.setConstant(std::nan(""));  // which no reading repeats
     usual_.setZero();
-    step_.setZero();
   }
 
   /// Whether y can be used: kOk to step by h(), kStarted to start at y, else what is wrong with it,
   /// and it has to be left out.
   [[gnu::always_inline]] Status accept(const Measurement<N>& sample) noexcept {
     const Sample y = padded(sample);
-    if (clock_.follows(y.t) && (jumped_ | still_) == 0 && plain(y)) [[likely]] {
+    if (clock_.follows(y.t) && jumped_ == 0 && !stillness_.any() && plain(y)) [[likely]] {
       clock_.accept(y.t);
       learn(y, h());
       remember(y);
@@ -116,9 +116,6 @@ class Sampling {
   using Sample = Measurement<P>;
   static_assert(N <= 8, "a bit for each joint");
   static constexpr std::uint16_t kFresh = 0x100;  // the last sample was a start
-  static constexpr double kTravel = 5e-4;         // [rad] with q the same
-  static constexpr double kMotion = 1e-4;         // [rad] in a step, if qd differs
-  static constexpr double kCoarse = 2.5e-3;       // [rad] of an encoder's step
 
   [[gnu::always_inline]] static Vec<P> padded(const Vec<N>& v) noexcept {
     Vec<P> out;
@@ -161,17 +158,13 @@ class Sampling {
     return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
            (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
   }
-  [[gnu::always_inline]] bool still(const Sample& y, double h, int j) const noexcept {
-    return (y.q[j] == last_.q[j]) & (y.qd[j] != 0) &
-           ((y.qd[j] == last_.qd[j]) | (h * std::abs(y.qd[j]) > kMotion));
-  }
   // false where judge() has to look
   [[gnu::always_inline]] bool plain(const Sample& y) const noexcept {
     const double h = y.t - last_.t;
     double others = 0;  // not an integer: a compiler takes four joints at once then
     for (int j = 0; j < P; ++j) {
       const bool ok = inside(y, j) & continuous(last_, y, h, j) & calm(y, h, j) &
-                      smooth(last_.tau[j], y.tau[j], j) & !still(y, h, j);
+                      smooth(last_.tau[j], y.tau[j], j) & !Stillness<N, P>::still(last_, y, h, j);
       others += ok ? 0 : 1;
     }
     return others == 0;
@@ -199,13 +192,8 @@ class Sampling {
     if (joints_ != 0) return Status::kBadMeasurement;
     joints_ = which([&](int j) { return !inside(y, j); });
     if (joints_ != 0) return Status::kOutOfRange;
-    joints_ =
-        which([&](int j) { return std::abs(travel(y, j)) > std::max(kTravel, 2 * step_[j]); });
-    if (joints_ != 0) {
-      for (int j = 0; j < N; ++j) travel_[j] *= still_ >> j & 1;
-      still_ |= joints_;  // the step that ends it is learnt
-      return Status::kFrozen;
-    }
+    joints_ = stillness_.frozen(last_, y, [&](int j) { return calm(y, y.t - last_.t, j); });
+    if (joints_ != 0) return Status::kFrozen;
     const Clock before = clock_;
     const Status time = clock_.accept(y.t);
     if (time != Status::kOk) return time == Status::kStarted ? start(y) : time;
@@ -215,17 +203,10 @@ class Sampling {
   }
 
   Status start(const Sample& y) noexcept {
+    stillness_.go_on(last_, y, [](int) { return false; });
     remember(y);
-    still_ = 0;
     jumped_ = kFresh;
     return Status::kStarted;
-  }
-
-  // [rad] that a joint says to have moved since its q changed
-  double travel(const Sample& y, int j) const noexcept {
-    const double h = y.t - last_.t;
-    if (!(h > 0) || !still(y, h, j) || !calm(y, h, j)) return 0;
-    return (still_ >> j & 1 ? travel_[j] : 0) + h * y.qd[j];
   }
 
   // what came h() after the last one
@@ -263,12 +244,7 @@ class Sampling {
   }
   // y, whose tau has jumped at these joints
   Status go_on(const Sample& y, std::uint8_t jumps) noexcept {
-    for (int j = 0; j < N; ++j) {
-      const double change = std::abs(y.q[j] - last_.q[j]);
-      if (still_ >> j & 1 && change <= kCoarse) step_[j] = std::max(step_[j], change);
-      travel_[j] = travel(y, j);
-    }
-    still_ = which([&](int j) { return travel_[j] != 0; });
+    stillness_.go_on(last_, y, [&](int j) { return calm(y, h(), j); });
     const auto back =
         which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
     for (int j = 0; j < N; ++j) last_.tau[j] = back >> j & 1 ? held_[j] : last_.tau[j];
@@ -288,12 +264,11 @@ class Sampling {
   Vec<P> usual_ = held_;          // [rad/s] change of qd from sample to sample
   Sample waits_;                  // that jumped, waiting_ in a row
   int waiting_ = 0;
-  Vec<P> travel_ = held_;                // [rad] of joints that stand still
-  Vec<P> step_ = held_;                  // [rad] by which their q then changed
-  std::uint8_t joints_ = 0, still_ = 0;  // of the verdict; whose q was the same at the last sample
-  std::uint16_t jumped_ = 0;             // whose tau has then; or kFresh
-  bool wrapped_ = false;                 // q, at the last sample
-  bool doubted_ = false;                 // a filter the last sample
+  Stillness<N, P> stillness_;
+  std::uint8_t joints_ = 0;   // of the verdict
+  std::uint16_t jumped_ = 0;  // whose tau has then; or kFresh
+  bool wrapped_ = false;      // q, at the last sample
+  bool doubted_ = false;      // a filter the last sample
 };
 
 }  // namespace tauext

@@ -24,7 +24,7 @@ struct Sample {
 };
 using Samples = std::vector<Sample>;
 
-constexpr int kFault = 1500;  // sample
+constexpr int kFault = 1500, kSlow = 770;  // samples, where the arm moves fastest and hardly at all
 
 Trace moving(const Model& model, double load) {
   Scenario s = quiet();
@@ -76,6 +76,29 @@ bool printed_form(const std::string& e) {
   return e == "ekf_raw_sign" || e == "ndob_raw_sign" || e == "ekf_zero_start";
 }
 
+// at sample `at` of a recording of which the estimator makes `clean`
+void bears(const Robot& robot, const std::string& estimator, const Fault<Sample>& fault, int at,
+           const Samples& good, const Run& clean, double load) {
+  Samples bad = good;
+  fault.apply(bad, at);
+  const Run r = run(robot, estimator, bad);
+  EXPECT_NE(r.joints + std::count_if(r.status.begin() + at, r.status.begin() + at + fault.samples,
+                                     [](Status s) { return s != Status::kOk; }),
+            0)
+      << "nothing said";
+  for (std::size_t k = at + fault.samples + 25; k < bad.size(); ++k) {
+    ASSERT_EQ(r.status[k], Status::kOk) << "sample " << k;
+  }
+  const double error = largest_error(clean, load);
+  if (fault.samples == 1) {
+    EXPECT_LE(largest_error(r, load), fault.cost * error + 0.01) << "N m, without it " << error;
+  }
+  for (const auto& [d, marks] : clean.marks) {
+    if (marks > 0) continue;
+    EXPECT_EQ(r.marks.at(d), 0) << d;
+  }
+}
+
 void bears_every_fault(const Robot& robot, const Trace& trace, double load, double torque) {
   Samples good;
   for (int k = 0; k < trace.size(); ++k) {
@@ -85,28 +108,13 @@ void bears_every_fault(const Robot& robot, const Trace& trace, double load, doub
   for (const std::string& e : robot.estimators()) {
     if (is_baseline(e) || printed_form(e)) continue;
     const Run clean = run(robot, e, good);
-    const double error = largest_error(clean, load);
     for (const auto& [d, marks] : clean.marks) pairs += marks == 0;
     for (const Fault<Sample>& fault : faults<Sample>(robot.dof() / 2, torque)) {
-      SCOPED_TRACE(fmt::format("{} {}: {}", robot.name(), e, fault.name));
-      Samples bad = good;
-      fault.apply(bad, kFault);
-      const Run r = run(robot, e, bad);
-      EXPECT_NE(r.joints + std::count_if(r.status.begin() + kFault,
-                                         r.status.begin() + kFault + fault.samples,
-                                         [](Status s) { return s != Status::kOk; }),
-                0)
-          << "nothing said";
-      for (std::size_t k = kFault + fault.samples + 25; k < bad.size(); ++k) {
-        ASSERT_EQ(r.status[k], Status::kOk) << "sample " << k;
-      }
-      if (fault.samples == 1) {
-        EXPECT_LE(largest_error(r, load), fault.cost * error + 0.01)
-            << "N m, without the fault " << error;
-      }
-      for (const auto& [d, marks] : clean.marks) {
-        if (marks > 0) continue;
-        EXPECT_EQ(r.marks.at(d), 0) << d;
+      for (const int at : {kFault, kSlow}) {
+        // there, but frozen sensors; q alone cannot be told from an encoder's step
+        if (at == kSlow && (fault.samples < 50 || fault.name[0] == 'q')) continue;
+        SCOPED_TRACE(fmt::format("{} {}: {} at {}", robot.name(), e, fault.name, at));
+        bears(robot, e, fault, at, good, clean, load);
       }
     }
   }
