@@ -40,7 +40,7 @@ class Stillness {
     int mask = 0;
     for (int j = 0; j < N; ++j) {
       const bool repeated = b.qd[j] == a.qd[j] && step_[j] == 0;
-      const double most = repeated ? 0 : std::max(kTravel, 2 * step_[j]);
+      const double most = repeated ? kRepeated : std::max(kTravel, 2 * step_[j]);
       mask |= (calm(j) && std::abs(travel(a, b, j)) > most) << j;
     }
     for (int j = 0; mask != 0 && j < N; ++j) travel_[j] *= still_ >> j & 1;
@@ -66,6 +66,7 @@ class Stillness {
 
  private:
   static constexpr double kTravel = 5e-4;    // [rad] with q the same
+  static constexpr double kRepeated = 1e-6;  // [rad] and qd; an arm at rest says so to 1e-17
   static constexpr double kMotion = 1e-4;    // [rad] in a step, if qd differs
   static constexpr double kCoarse = 2.5e-3;  // [rad] of an encoder's step
 
