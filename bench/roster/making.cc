@@ -44,7 +44,7 @@ std::optional<double> take_bandwidth(Specification& s) {
 
 FieldHelp bandwidth_help() {
   return {"bandwidth", "rad/s", range_of(kLeastBandwidth, kMostBandwidth),
-          "larger is faster, noisier; sets the others"};
+          "larger is faster, noisier; sets the others", ""};
 }
 
 }  // namespace tauext::detail

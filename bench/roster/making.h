@@ -104,11 +104,26 @@ const M& model_of(const Make& make, const M& model) {
 }
 
 template <class P>
-std::vector<FieldHelp> fields_of(bool tunable) {
-  std::vector<FieldHelp> all = field_help<P>();
-  std::erase_if(all, [&](const FieldHelp& f) { return tunable && f.key == "bandwidth"; });
-  if (tunable) all.insert(all.begin(), bandwidth_help());
+std::vector<FieldHelp> fields_of(const P& p, bool tunable) {
+  std::vector<FieldHelp> all = field_help(&p);
+  if (!tunable) return all;
+  FieldHelp bandwidth = bandwidth_help();
+  std::erase_if(all, [&](const FieldHelp& f) {
+    if (f.key == bandwidth.key) bandwidth.value = f.value;
+    return f.key == bandwidth.key;
+  });
+  all.insert(all.begin(), std::move(bandwidth));
   return all;
+}
+
+template <class D>
+std::vector<FieldHelp> fields_of_detector() {
+  if constexpr (requires { typename D::Parameters; }) {
+    const typename D::Parameters p;
+    return field_help(&p);
+  } else {
+    return {};
+  }
 }
 
 }  // namespace tauext::detail

@@ -72,7 +72,8 @@ class RobotOf final : public Robot {
         E::kFixedTuning;
       };
       entry.tunable = kTunable;
-      entry.fields = fields_of<P>(kTunable);
+      Specification no_keys;
+      entry.fields = fields_of(start_of<E, kTunable>(make, model, no_keys), kTunable);
       entry.make = [make, model](const Trace& trace, const Specification& s) -> EstimatorPtr {
         if (s.keys.empty()) return std::make_unique<Stage>(make(trace));
         Specification rest = s;
@@ -92,10 +93,7 @@ class RobotOf final : public Robot {
                         [](const DetectorSettings& s, const Specification& spec) -> DetectorPtr {
                           return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec));
                         },
-                        {},
-                        trained_parts_of<D>()};
-    if constexpr (requires { typename D::Parameters; })
-      entry.fields = field_help<typename D::Parameters>();
+                        fields_of_detector<D>(), trained_parts_of<D>()};
     if constexpr (CalibratableDetector<D>) {
       const typename D::Parameters p;
       constexpr bool kMetric = requires(D d) {

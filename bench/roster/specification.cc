@@ -88,6 +88,10 @@ double number_of(const std::string& key, std::string_view text, double least, do
       fmt::format("{}={}: it must be {}", key, text, range_of(least, most)));
 }
 
+std::string text_of(const double* values, int n) {
+  return fmt::format("{}", fmt::join(values, values + n, "/"));
+}
+
 std::vector<double> numbers_of(const std::string& key, std::string_view text, int n, double least,
                                double most) {
   std::vector<double> all;

@@ -48,6 +48,7 @@ std::string at_bandwidth(const std::string& estimator, double w);
 /// What people are told of a field.
 struct FieldHelp {
   std::string key, unit, range, effect;  ///< as Field has them, in words
+  std::string value;  ///< unless it is set, as a specification writes it; "" where it is not known
 };
 
 /// The specification with one more key, unless the key is set, or not in `known`.
@@ -73,23 +74,38 @@ std::vector<double> numbers_of(const std::string& key, std::string_view text, in
 [[noreturn]] void fail_keys(std::string_view owner, const char* what,
                             const std::vector<FieldHelp>& known);
 
+// as numbers_of reads them
+std::string text_of(const double* values, int n);
+
 template <class P, class T>
-void add_help(const Field<P, T>& f, const std::string& prefix, std::vector<FieldHelp>& out) {
+void add_help(const Field<P, T>& f, const P* p, const std::string& prefix,
+              std::vector<FieldHelp>& out) {
   if constexpr (std::is_enum_v<T>) {
-    std::string names;
+    FieldHelp help{prefix + f.key, "", "", f.effect, ""};
     for (const auto& c : choices(T{})) {
-      if (!names.empty()) names += '|';
-      names += c.name;
+      if (!help.range.empty()) help.range += '|';
+      help.range += c.name;
+      if (p != nullptr && p->*f.at == c.value) help.value = c.name;
     }
-    out.push_back({prefix + f.key, "", names, f.effect});
+    out.push_back(std::move(help));
   } else {
-    out.push_back({prefix + f.key, f.unit, range_of(f.least, f.most), f.effect});
+    std::string value;
+    if constexpr (std::is_arithmetic_v<T>) {
+      const double x = p == nullptr ? 0 : static_cast<double>(p->*f.at);
+      if (p != nullptr) value = text_of(&x, 1);
+    } else if (p != nullptr) {
+      value = text_of((p->*f.at).data(), static_cast<int>((p->*f.at).size()));
+    }
+    out.push_back({prefix + f.key, f.unit, range_of(f.least, f.most), f.effect, value});
   }
 }
 
 template <class P, class Inner>
-void add_help(const Nested<P, Inner>& n, const std::string& prefix, std::vector<FieldHelp>& out) {
-  for_each_field<Inner>([&](const auto& f) { add_help(f, prefix + n.key + ".", out); });
+void add_help(const Nested<P, Inner>& n, const P* p, const std::string& prefix,
+              std::vector<FieldHelp>& out) {
+  for_each_field<Inner>([&](const auto& f) {
+    add_help(f, p == nullptr ? nullptr : &(p->*n.at), prefix + n.key + ".", out);
+  });
 }
 
 // whether `key` was this field's; then it is set
@@ -129,11 +145,12 @@ bool set_if(const Nested<P, Inner>& n, const std::string& prefix, const std::str
 }  // namespace detail
 
 /// What can be set in P; nothing if it lists no fields.
+/// @param p what it begins with, if that is known
 template <class P>
-std::vector<FieldHelp> field_help() {
+std::vector<FieldHelp> field_help(const P* p = nullptr) {
   std::vector<FieldHelp> out;
   if constexpr (ListsFields<P>) {
-    for_each_field<P>([&](const auto& f) { detail::add_help(f, "", out); });
+    for_each_field<P>([&](const auto& f) { detail::add_help(f, p, "", out); });
   }
   return out;
 }

@@ -100,6 +100,20 @@ void add_detection_metrics(const Trace& trace, const Output& out, Score& score) 
   score.set(Metric::kFalseAlarmsPerHour, d.false_alarms_per_hour);
 }
 
+void add_score_metrics(const std::vector<Detection>& detections, Score& score) {
+  if (detections.empty()) return;
+  double peak = 0, sum = 0, touched = 0;
+  for (const Detection& d : detections) {
+    peak = std::max(peak, d.score);
+    sum += d.score;
+    touched += d.contact != Contact::kNone;
+  }
+  const auto n = static_cast<double>(detections.size());
+  score.set(Metric::kPeakScore, peak);
+  score.set(Metric::kMeanScore, sum / n);
+  score.set(Metric::kContactShare, touched / n);
+}
+
 void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score) {
   score.set(Metric::kOvertravel, metrics::overtravel(stopped));
   score.set(Metric::kPeak, metrics::peak(stopped.contact_force));

@@ -52,6 +52,9 @@ double poisson_upper(int count);
 /// contacts.
 void add_detection_metrics(const Trace& trace, const Output& output, Score& score);
 
+/// What the detector said of the samples, whether it marked or not; nothing without a sample.
+void add_score_metrics(const std::vector<Detection>& detections, Score& score);
+
 /// What stopping at the mark was worth: overtravel, and the contact's peak force with and without.
 void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score);
 

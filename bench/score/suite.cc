@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "bench/kit/allocations.h"
@@ -120,11 +119,7 @@ Score Suite::score(const Entry& e) {
   add_response_metrics(trace, out, s, score);
   add_detection_metrics(trace, out, score);
   if (!e.detector().empty()) {
-    double peak = 0;
-    for (const Detection& d : e.robot().detect(e.detector(), trace, out, settings(e))) {
-      peak = std::max(peak, d.score);
-    }
-    score.set(Metric::kPeakScore, peak);
+    add_score_metrics(e.robot().detect(e.detector(), trace, out, settings(e)), score);
   }
   if (e.closed_loop()) {
     add_reaction_metrics(recorded.ideal, traces(e.with_detector("")).ideal, score);
