@@ -78,6 +78,13 @@ bool report_status(const Trace& trace, const Column& c, std::int64_t skipped) {
     say(fmt::format("{}: of {} samples {}", c.estimator, counts.samples(), counts.sentence()));
   }
   if (2 * (counts.left_out() + skipped) <= counts.samples() + skipped) return true;
+  if (2 * counts.left_out() <= counts.samples()) {
+    say(
+        fmt::format("{}: most rows could not be used: {} were skipped (see above), {} of the other "
+                    "{} left out",
+                    c.estimator, skipped, counts.left_out(), counts.samples()));
+    return false;
+  }
   if (2 * counts.of(Status::kFrozen) > counts.samples()) {
     say(
         fmt::format("{}: most readings repeat the one before, so these are no estimates. Is the "

@@ -48,6 +48,12 @@ struct Columns {
 Columns parse_header(std::string_view line, const std::string& path) {
   std::map<std::string, int, std::less<>> at;
   const auto names = split(line);
+  double number = 0;
+  const char* const end = names[0].data() + names[0].size();
+  if (std::from_chars(names[0].data(), end, number).ptr == end && !names[0].empty()) {
+    throw std::runtime_error(fmt::format(
+        "{}: begins with numbers: the first line must name the columns, like t,q1,qd1,tau1", path));
+  }
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
     if (!at.emplace(names[i], i).second) {
       throw std::runtime_error(fmt::format("{}: column '{}' appears twice", path, names[i]));

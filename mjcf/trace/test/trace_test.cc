@@ -171,8 +171,11 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(error_of_reading(kHead), path() + ": no usable row (0 skipped)");
   EXPECT_EQ(error_of_reading(""), path() + ": is empty");
   EXPECT_EQ(error_of_reading("t,q1,qd1\n0,1,2\n"), path() + ": has q1 but no column 'tau1'");
+  EXPECT_EQ(
+      error_of_reading("0,1,2,3\n0.1,1,2,3\n"),
+      path() + ": begins with numbers: the first line must name the columns, like t,q1,qd1,tau1");
   EXPECT_EQ(error_of_reading("t,q1,q1,qd1,tau1\n"), path() + ": column 'q1' appears twice");
-  EXPECT_NE(error_of_reading("0,1,2,3\n").find("the first line must name the columns"),
+  EXPECT_NE(error_of_reading("a,b,c\n").find("the first line must name the columns"),
             std::string::npos);
   SkippedRows skipped;
   EXPECT_EQ(error_of([&] { read_csv("/nowhere/x.csv", &skipped); }),
