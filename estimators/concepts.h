@@ -30,7 +30,7 @@ concept RobotModel = requires(const M& m, const Vec<M::kDof>& q, const Vec<M::kD
 template <int N, class Scalar = double>
 struct Dynamics {
   Mat<N, Scalar> B = Mat<N, Scalar>::Zero();     ///< [kg m^2] inertia
-  Vec<N, Scalar> bias = Vec<N, Scalar>::Zero();  ///< [N m] C qd + g
+  Vec<N, Scalar> bias = Vec<N, Scalar>::Zero();  ///< [N m] C qd + g; C^T qd - g for momenta
 };
 
 /// B and C qd + g of one state; a model that shares work between the two offers `dynamics` itself.

@@ -132,6 +132,13 @@ class Ekf {
     dv_.setZero();
     nu_q_.setZero();
     nu_qd_.setZero();
+    if (p_.Q_load > 0) add_load(10);
+  }
+
+  // Q_load B B^T, so many times
+  [[gnu::noinline]] void add_load(double times) noexcept {
+    const Mat<kDof> B = model_.inertia(x_[0].template head<kDof>());
+    dd_ += (times * p_.Q_load) * detail::pad_matrix<kDof>(Mat<kDof>(B * B.transpose()));
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
@@ -165,6 +172,8 @@ class Ekf {
     vv_ += (V_t + transposed(V_t)) + Q_scale * Q_[1];
     dv_ += Ud;
     dd_ += Q_scale * Q_[2];
+    if (p_.Q_load > 0) [[unlikely]]
+      add_load(Q_scale);
     return true;
   }
 

@@ -31,6 +31,9 @@ struct EkfParameters {
   Vec<3 * N> P0 = Vec<3 * N>::Zero();  ///< of the state at the start, at least 0
   Vec<3 * N> Q = Vec<3 * N>::Zero();   ///< of the process, per step, at least 0
   Vec<2 * N> R = Vec<2 * N>::Zero();   ///< of the measured q and qd, positive
+  /// [(rad/s^2)^2] per step: adds Q_load B B^T to Q_d in each pose, and ten times that to P0. So
+  /// every joint of any arm is as fast, and no P0 and Q have to be found for it.
+  double Q_load = 0;
   /// [s] 0: Q is added once per step and R belongs to every sample, whatever the step, as printed.
   /// Otherwise both are meant for steps of Ts, and a step of h takes Q h / Ts and R Ts / h, white
   /// noise of constant density, so that the answer does not depend on the sampling time.
@@ -50,6 +53,7 @@ struct EkfParameters {
         Field{"P0", &P::P0, "SI^2", 0, 1e20, "3N variances of q, qd, tau_ext at the start"},
         Field{"Q", &P::Q, "SI^2", 0, 1e20, "3N likewise, per step; larger is faster"},
         Field{"R", &P::R, "SI^2", 1e-30, 1e12, "2N of measured q and qd; larger is slower"},
+        Field{"Q_load", &P::Q_load, "(rad/s^2)^2", 0, 1e20, "Q of B^-1 tau_ext; larger is faster"},
         Field{"Ts", &P::Ts, "s", 0, 1, "the step that Q and R are meant for; 0: any"},
         integration_field<P>(),
         Field{"alignment", &P::alignment, "", 0, 0, "paper errs by a sample of tau"},
@@ -76,18 +80,19 @@ struct EkfParameters {
   /// per 1 ms; with (32) R is negligible, and what is left is an NDOB. Q_d is for wallmobot3.
   static EkfParameters honest() requires(N == 3) { return honest(Vec<N>::Constant(0.02)); }
 
-  /// honest() with bandwidth w [rad/s] of every joint that moves alone at q = 0: there the load's
-  /// share of the velocity's spectrum, Q_d / (B w)^2, is as large as the rest, so for each kind of
-  /// noise alone the filter is Butterworth's with -3 dB at w: w^4 = Q_d / (B^2 R_v) for R_v.
+  /// honest() with bandwidth w [rad/s] of every joint in every pose, however B couples them: the
+  /// load's share of the velocity's spectrum, Q_load / w^2, is as large as the rest, so for each
+  /// kind of noise alone the filter is Butterworth's with -3 dB at w: w^4 = Q_load / R_v for R_v.
   template <DifferentiableModel M>
-  static EkfParameters for_bandwidth(const M& model, double w) {
+  static EkfParameters for_bandwidth(const M&, double w) {
     const EkfParameters p = honest(Vec<N>::Zero());
     const double r_q = p.R[0] * p.Ts, r_v = p.R[N] * p.Ts;  // [rad^2 s], [(rad/s)^2 s]
     const double q_q = p.Q[0] / p.Ts, q_v = p.Q[N] / p.Ts;  // [rad^2/s], [(rad/s)^2/s]
     const double measured = 1 / (1 / r_v + 1 / (w * w * r_q + q_q));
     const double q_d = w * w * (w * w * measured + q_v);  // [(rad/s^2)^2/s]
-    const Mat<N> B = model.inertia(Vec<N>::Zero());
-    return honest(q_d * p.Ts * B.diagonal().cwiseAbs2());
+    EkfParameters out = p;
+    out.Q_load = q_d * p.Ts;
+    return out;
   }
 
  private:

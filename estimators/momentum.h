@@ -32,9 +32,17 @@ class Momentum {
   [[gnu::always_inline]] MomentumStep<kDof> advance(const Measurement<kDof>& y,
                                                     const Vec<kDof>& tau) noexcept {
     MomentumStep<kDof> s;
-    s.B = model_.inertia(y.q);
-    s.p = s.B * y.qd;
-    const Vec<kDof> rest = model_.momentum_bias(y.q, y.qd) - model_.friction(y.qd);
+    Vec<kDof> rest;
+    if constexpr (requires { model_.momentum_dynamics(y.q, y.qd); }) {
+      const Dynamics<kDof> now = model_.momentum_dynamics(y.q, y.qd);
+      s.B = now.B;
+      s.p = s.B * y.qd;
+      rest = now.bias - model_.friction(y.qd);
+    } else {
+      s.B = model_.inertia(y.q);
+      s.p = s.B * y.qd;
+      rest = model_.momentum_bias(y.q, y.qd) - model_.friction(y.qd);
+    }
     s.dp = s.p - p_;
     s.n = tau + 0.5 * (rest + rest_);
     p_ = s.p;

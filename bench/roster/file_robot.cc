@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "mjcf/plant/arm_dynamics.h"
+#include "mjcf/plant/tree.h"
 
 namespace tauext {
 namespace {
@@ -24,7 +24,7 @@ std::unique_ptr<const Robot> robot_from(int joints, const std::string& path, con
 std::unique_ptr<const Robot> file_robot(const std::string& path) {
   const Model model = load_mjcf(path);
   try {
-    return robot_from<1>(ArmDynamics(model).dof(), path, model);
+    return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), path, model);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
   }

@@ -113,7 +113,7 @@ std::string list_known() {
     out += table.format();
   }
   return out +
-         "\nrobot FILE.xml: any MJCF arm of 1 to 7 joints, hinges and slides; tauext-replay and "
+         "\nrobot FILE.xml: any MJCF arm of 1 to 8 joints, hinges and slides; tauext-replay and "
          "tauext-live take it\n\n" +
          list_fields();
 }

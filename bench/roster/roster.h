@@ -112,10 +112,14 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   at_bandwidth(std::type_identity<ActiveObserver<M>>());
 }
 
-/// Calls visit(make) for every estimator of a robot that is not named below.
+/// Calls visit(make) for every estimator of a robot that is not named below. The NDOB is there as
+/// ndob_wb: no diagonal X fits an arm of many joints, whose B couples them by its pose.
 template <RobotModel M, class Visit>
 void for_each_estimator(const M& model, Visit&& visit) {
   for_each_common_estimator(model, visit);
+  if constexpr (DifferentiableModel<M>) {
+    visit(with<Ekf<M>>(model, Ekf<M>::Parameters::for_bandwidth(model, kRosterBandwidth)));
+  }
 }
 
 /// Calls visit(make) for every estimator of wallmobot3.

@@ -263,8 +263,8 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   refuses("--robot wallmobot3 --scenario step --estimator ekf --rate 5", "--rate goes with --lcm");
   refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm 'udpm://239.1.1.1?ttl=x'",
           "'ttl=x' is no option");
-  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --from x.csv --estimator ekf",
-          "unknown estimator 'ekf'; known: zero, truth");
+  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --from x.csv --estimator ndob",
+          "unknown estimator 'ndob'; known: zero, truth");
   write("one.csv", "t,q1,qd1,tau1\n0,0,0,0\n");
   refuses("--robot wallmobot3 --from one.csv --estimator mo1",
           "wallmobot3 has 3 joints, the samples have 1");

@@ -92,7 +92,7 @@ TEST(Parameters, OfEveryEstimatorAreRefusedBeyondTheirLimitsByName) {
   EXPECT_EQ(of_estimator<DisturbanceKalmanFilter<M>>(), 5);
   EXPECT_EQ(of_estimator<SlidingModeObserver<M>>(), 5);
   EXPECT_EQ(of_estimator<ActiveObserver<M>>(), 6);
-  EXPECT_EQ(of_estimator<Ekf<M>>(), 6);
+  EXPECT_EQ(of_estimator<Ekf<M>>(), 7);
 }
 
 TEST(Parameters, OfEveryDetectorAreRefusedBeyondTheirLimitsByName) {

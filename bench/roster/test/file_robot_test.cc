@@ -13,7 +13,7 @@
 #include "bench/roster/baselines.h"
 #include "bench/roster/test/hinge_arm.h"
 #include "bench/score/metrics.h"
-#include "mjcf/plant/arm_dynamics.h"
+#include "mjcf/plant/tree.h"
 
 namespace tauext {
 namespace {
@@ -69,7 +69,7 @@ TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
     EXPECT_LT(*before.get(Metric::kMax), 0.05) << e;
   }
 }
-INSTANTIATE_TEST_SUITE_P(OneToSevenJoints, FileRobot, testing::Range(1, 8),
+INSTANTIATE_TEST_SUITE_P(OneToEightJoints, FileRobot, testing::Range(1, 9),
                          [](const auto& i) { return fmt::format("{}_joints", i.param); });
 
 TEST_P(FileRobot, NoStepAllocates) {
@@ -97,7 +97,8 @@ TEST_F(FileRobot, AGearIsTheMotorsAndNotTheJoints) {
   for (std::size_t at = 0; (at = geared.find("<motor ", at)) != std::string::npos; ++at) {
     geared.insert(at + 7, "gear='100' ");
   }
-  const MjcfArm<2> with(load_mjcf(put(geared))), without(load_mjcf(put(hinge_arm(2))));
+  const TreeModel<2> with = tree_model<2>(load_mjcf(put(geared))),
+                     without = tree_model<2>(load_mjcf(put(hinge_arm(2))));
   const Vec<2> q(0.1, -0.4);
   EXPECT_EQ(with.inertia(q), without.inertia(q));
   EXPECT_EQ(with.gravity(q), without.gravity(q));
@@ -105,7 +106,8 @@ TEST_F(FileRobot, AGearIsTheMotorsAndNotTheJoints) {
 
 TEST_F(FileRobot, PositionServosAreFineForAnArmThatIsWatched) {
   const std::string servos = put(hinge_arm(3, false));
-  const MjcfArm<3> watched(load_mjcf(servos)), driven(load_mjcf(put(hinge_arm(3))));
+  const TreeModel<3> watched = tree_model<3>(load_mjcf(servos)),
+                     driven = tree_model<3>(load_mjcf(put(hinge_arm(3))));
   const Vec<3> q(0.1, -0.4, 0.7), qd(1, 0.5, -2);
   EXPECT_EQ(watched.bias(q, qd), driven.bias(q, qd));
   EXPECT_EQ(watched.inertia(q), driven.inertia(q));
@@ -117,7 +119,7 @@ TEST_F(FileRobot, WhatIsNoArmIsRefusedWithItsName) {
     EXPECT_NE(what.find(path_.string()), std::string::npos) << what;
     EXPECT_NE(what.find(why), std::string::npos) << what;
   };
-  refuses(hinge_arm(8), "8 joints: 1 to 7 are supported");
+  refuses(hinge_arm(9), "9 joints: 1 to 8 are supported");
   refuses("<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>",
           "hinges and slides");
   refuses("<mujoco><worldbody/></mujoco>", "hinges and slides");

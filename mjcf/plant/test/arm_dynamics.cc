@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/plant/arm_dynamics.h"
+#include "mjcf/plant/test/arm_dynamics.h"
 
-#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include <Eigen/LU>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "mjcf/plant/layout.h"
+#include "mjcf/plant/tree.h"
 
 namespace tauext {
 namespace {
@@ -21,72 +18,16 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr double kSlip = 0.01;  // [rad/s] of CoulombFriction's tanh
 
-void check(const mjModel& m) {
-  const auto refuse = [](bool present, const char* what) {
-    if (present)
-      throw std::invalid_argument(std::string("the model has ") + what + ": not supported");
-  };
-  if (m.nq != m.nv || m.nv == 0) {
-    throw std::invalid_argument(
-        "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
-  }
-  refuse(m.neq > 0, "joints tied together by <equality>");
-  refuse(!Eigen::VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
-  for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
-    refuse(!Eigen::VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
-  }
-  refuse(m.opt.density != 0 || m.opt.viscosity != 0, "air or water around it");
-}
-
-// whether some actuator's coordinate is a fixed tendon: then the actuators say what a joint is
-bool has_tendon_coordinates(const mjModel& m) {
-  for (int i = 0; i < m.nu; ++i) {
-    if (m.actuator_trntype[i] == mjTRN_TENDON &&
-        m.wrap_type[m.tendon_adr[m.actuator_trnid[2 * i]]] == mjWRAP_JOINT) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// the actuators' coordinates, or MuJoCo's
-Layout coordinates(const mjModel& m, const mjData& d) {
-  if (!has_tendon_coordinates(m)) {
-    Layout l;
-    l.dof = m.nv;
-    l.S = MatrixXd::Identity(m.nv, m.nv);
-    return l;
-  }
-  Layout l = layout_of(m, d);
-  for (int i = 0; i < l.dof; ++i) {
-    if (m.actuator_gear[6 * i] == 1) continue;
-    throw std::invalid_argument(
-        fmt::format("motor {} has a gear of {}: where motors on tendons say what the joint "
-                    "coordinates are, their gears must be 1",
-                    i, m.actuator_gear[6 * i]));
-  }
-  if (l.dof != m.nv) throw std::invalid_argument("the motors do not move every joint of the model");
-  return l;
-}
-
 }  // namespace
-
-void detail::require_equal_joints(int have, int want) {
-  if (have == want) return;
-  throw std::invalid_argument(fmt::format("the model has {} joints, not {}", have, want));
-}
 
 // rho are MuJoCo's coordinates, q = S rho + q0; forces of q are S^-T those of rho
 struct ArmDynamics::Workspace {
   explicit Workspace(Model m) : model(std::move(m)), data(initial_state(*model)) {
-    check(*model);
+    const ArmTree tree = tree_of(model);  // of which it takes the coordinates alone
     const int n = model->nv;
-    S = coordinates(*model, *data).S;
+    S = tree.coordinates;
     S_inv = S.inverse();  // once: steps below multiply, which allocates nothing
-    q0 = VectorXd::Zero(n);
-    if (!S.isIdentity(0)) {
-      q0 = VectorXd::Map(data->actuator_length, n) - S * VectorXd::Map(data->qpos, n);
-    }
+    q0 = tree.offset;
     damping = VectorXd::Map(model->dof_damping, n);
     dry = VectorXd::Map(model->dof_frictionloss, n);
     for (VectorXd* v : {&rho, &force, &at, &moved}) *v = VectorXd::Zero(n);

@@ -41,21 +41,14 @@ class ArmDynamics {
   std::unique_ptr<Workspace> work_;
 };
 
-namespace detail {
-/// @throws std::invalid_argument unless they are equal
-void require_equal_joints(int have, int want);
-}  // namespace detail
-
 /// An ArmDynamics of N joints as a RobotModel.
 template <int N>
 class MjcfArm {
  public:
   static constexpr int kDof = N;
 
-  /// @throws std::invalid_argument as ArmDynamics does, and for another number of joints
-  explicit MjcfArm(const Model& model) : arm_(model) {
-    detail::require_equal_joints(arm_.dof(), N);
-  }
+  /// @throws std::invalid_argument as ArmDynamics does
+  explicit MjcfArm(const Model& model) : arm_(model) {}
 
   /// B [kg m^2].
   Mat<N> inertia(const Vec<N>& q) const noexcept {

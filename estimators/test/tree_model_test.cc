@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// The terms themselves are checked against MuJoCo in mjcf/plant/test/tree_test.cc; here is what
+// must hold between them, by complex steps, which are exact to the last digits.
+#include "estimators/tree/tree_model.h"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+namespace tauext::test {
+namespace {
+
+using Complex = std::complex<double>;
+
+template <int N>
+struct RandomTree {
+  explicit RandomTree(unsigned seed) : random(seed) {
+    for (int i = 0; i < N; ++i) {
+      TreeJoint& j = joints[static_cast<std::size_t>(i)];
+      j.parent = static_cast<int>(std::uniform_int_distribution(-1, i - 1)(random));
+      if (i % 3 == 1) j.kind = TreeJoint::Kind::kSlide;
+      j.axis = vector<3>(1);
+      j.rotation =
+          Eigen::AngleAxis<double>(number(3), vector<3>(1).normalized()).toRotationMatrix();
+      j.position = vector<3>(0.5);
+      j.zero = number(1);
+      j.mass = 2 + number(1);
+      j.center = vector<3>(0.2);
+      const Mat<3> half = Mat<3>::NullaryExpr([&] { return number(0.3); });
+      j.inertia = half * half.transpose() + 0.1 * Mat<3>::Identity();
+      j.armature = 0.2;
+      j.viscous = 0.3;
+      j.dry = 0.4;
+      j.v_s = 0.5;
+    }
+    coordinates = Mat<N>::Identity() + 0.2 * Mat<N>::NullaryExpr([&] { return number(1); });
+  }
+  double number(double most) { return std::uniform_real_distribution(-most, most)(random); }
+  template <int K>
+  Vec<K> vector(double most) {
+    return Vec<K>::NullaryExpr([&] { return number(most); });
+  }
+  template <class Scalar>
+  TreeModel<N, Scalar> model() const {
+    return TreeModel<N, Scalar>({joints, {1, 2, -9}, coordinates, Vec<N>::Constant(0.1)});
+  }
+
+  std::mt19937_64 random;
+  std::array<TreeJoint, N> joints;
+  Mat<N> coordinates;
+};
+
+constexpr double kStep = 1e-100;  // of a complex step
+
+template <int N>
+Vec<N, Complex> complex(const Vec<N>& re, const Vec<N>& im) {
+  return re.template cast<Complex>() + Complex(0, kStep) * im;
+}
+
+template <int N>
+void expect_consistent(unsigned seed) {
+  SCOPED_TRACE(std::to_string(N) + " joints, tree " + std::to_string(seed));
+  RandomTree<N> r(seed);
+  const TreeModel<N> tree = r.template model<double>();
+  const auto exact = r.template model<Complex>();
+  const Vec<N> q = r.template vector<N>(2), qd = r.template vector<N>(2),
+               u = r.template vector<N>(9);
+  const Vec<N> zero = Vec<N>::Zero();
+  const Mat<N> B = tree.inertia(q);
+  const Mat<N> Bdot = exact.inertia(complex(q, qd)).imag() / kStep;
+  const Vec<N> Cqd = tree.bias(q, qd) - tree.gravity(q);
+  const double scale = tree.bias(q, qd).norm() + B.norm() + u.norm();
+
+  EXPECT_LT((B - B.transpose()).norm(), 1e-14 * B.norm());
+  EXPECT_NEAR(qd.dot(Cqd), 0.5 * qd.dot(Bdot * qd), 1e-12 * scale) << "power";
+  EXPECT_LT((tree.momentum_bias(q, qd) - (Bdot * qd - tree.bias(q, qd))).norm(), 1e-12 * scale);
+  EXPECT_EQ(dynamics(tree, q, qd).B, B);
+  EXPECT_LT((dynamics(tree, q, qd).bias - tree.bias(q, qd)).norm(), 1e-13 * scale);
+  const Dynamics<N> m = tree.momentum_dynamics(q, qd);
+  EXPECT_LT((m.bias - tree.momentum_bias(q, qd)).norm() + (m.B - B).norm(), 1e-13 * scale);
+
+  const ForwardDynamics<N> f = tree.forward_dynamics(q, qd, u);
+  ASSERT_TRUE(f.ok);
+  EXPECT_LT((B * f.qdd + tree.bias(q, qd) + tree.friction(qd) - u).norm(), 1e-12 * scale);
+  EXPECT_LT((B * f.dqdd_dtau_ext + Mat<N>::Identity()).norm(), 1e-12 * N);
+  Mat<N> by_q, by_qd;  // of the torques at this qdd
+  for (int j = 0; j < N; ++j) {
+    const Vec<N, Complex> at = complex(q, Vec<N>(Vec<N>::Unit(j))),
+                          v = complex(qd, Vec<N>(Vec<N>::Unit(j)));
+    const Vec<N, Complex> still = complex(q, zero), rate = complex(qd, zero);
+    by_q.col(j) = (exact.inertia(at) * f.qdd + exact.bias(at, rate)).imag() / kStep;
+    by_qd.col(j) = (exact.bias(still, v) + exact.friction(v)).imag() / kStep;
+  }
+  EXPECT_LT((B * f.dqdd_dq + by_q).norm(), 1e-12 * (by_q.norm() + scale));
+  EXPECT_LT((B * f.dqdd_dqd + by_qd).norm(), 1e-12 * (by_qd.norm() + scale));
+}
+
+TEST(TreeModel, TermsAndDerivativesAreThoseOfOneArm) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    expect_consistent<1>(seed);
+    expect_consistent<3>(seed);
+    expect_consistent<7>(seed);
+  }
+}
+
+TEST(TreeModel, RefusesJointsThatAreNone) {
+  const auto error = [](auto&& spoil) -> std::string {
+    RandomTree<2> r(1);
+    spoil(r);
+    try {
+      r.model<double>();
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(error([](auto&) {}), "no error");
+  const auto refuses = [&](auto&& spoil, const std::string& why) {
+    EXPECT_NE(error(spoil).find(why), std::string::npos) << error(spoil);
+  };
+  refuses([](auto& r) { r.joints[0].parent = 0; }, "joint 1 of a tree: its parent");
+  refuses([](auto& r) { r.joints[1].axis.setZero(); }, "joint 2 of a tree: its axis");
+  refuses([](auto& r) { r.joints[1].rotation *= 2; }, "its rotation");
+  refuses([](auto& r) { r.joints[1].mass = -1; }, "its mass");
+  refuses([](auto& r) { r.joints[1].inertia(0, 1) += 1; }, "its inertia");
+  refuses([](auto& r) { r.joints[1].armature = -1; }, "armature");
+  refuses([](auto& r) { r.coordinates.setZero(); }, "invertible");
+}
+
+TEST(TreeModel, SaysWhereItIsSingular) {
+  RandomTree<2> r(1);
+  for (TreeJoint& j : r.joints) j.mass = j.armature = 0, j.inertia.setZero();
+  const Vec<2> x = Vec<2>::Ones();
+  EXPECT_FALSE(r.model<double>().forward_dynamics(x, x, x).ok);
+}
+
+}  // namespace
+}  // namespace tauext::test

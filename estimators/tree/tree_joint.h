@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What an arm of hinges and slides is made of: a joint and the rigid body behind it.
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "estimators/types.h"
+
+namespace tauext {
+
+/// One joint with its body. The body's frame has its origin on the joint's axis. Where q is `zero`,
+/// it stands in the parent's frame at `position`, turned by `rotation`.
+struct TreeJoint {
+  /// How the body moves.
+  enum class Kind { kHinge, kSlide };
+
+  int parent = -1;                       ///< number of an earlier joint; -1: the base
+  Kind kind = Kind::kHinge;              ///< q in rad or m
+  Vec<3> axis = Vec<3>::UnitZ();         ///< [1] in the body's frame; of any length but 0
+  Mat<3> rotation = Mat<3>::Identity();  ///< from the body's axes to the parent's
+  Vec<3> position = Vec<3>::Zero();      ///< [m] in the parent's frame
+  double zero = 0;                       ///< [rad] q of that pose; [m] of a slide
+  double mass = 0;                       ///< [kg] of the body; 0 for one without
+  Vec<3> center = Vec<3>::Zero();        ///< [m] of mass, in the body's frame
+  Mat<3> inertia = Mat<3>::Zero();       ///< [kg m^2] about the center of mass
+  double armature = 0;                   ///< [kg m^2] of the rotor, as the joint feels it
+  double viscous = 0;                    ///< [N m s/rad] friction by speed
+  double dry = 0;                        ///< [N m] Coulomb friction
+  double v_s = 0.01;                     ///< [rad/s] of CoulombFriction
+};
+
+namespace detail {
+
+/// @throws std::invalid_argument with the number of the joint, from 1, and what is wrong
+inline void check_joint(const TreeJoint& j, int i) {
+  const auto require = [&](bool good, const char* what) {
+    if (!good)
+      throw std::invalid_argument("joint " + std::to_string(i + 1) + " of a tree: " + what);
+  };
+  require(j.parent >= -1 && j.parent < i, "its parent must be an earlier joint, or -1");
+  require(j.axis.norm() > 0 && std::isfinite(j.axis.norm()), "its axis must have a direction");
+  require((j.rotation * j.rotation.transpose() - Mat<3>::Identity()).norm() < 1e-6 &&
+              j.rotation.determinant() > 0,
+          "its rotation must be one");
+  require(j.position.allFinite() && std::isfinite(j.zero) && j.center.allFinite(),
+          "its place must be finite");
+  require(j.mass >= 0 && std::isfinite(j.mass), "its mass must be 0 or more");
+  require(j.inertia.allFinite() &&
+              (j.inertia - j.inertia.transpose()).norm() <= 1e-9 * j.inertia.norm(),
+          "its inertia must be finite and symmetric");
+  require(j.armature >= 0 && j.viscous >= 0 && j.dry >= 0 && j.v_s >= 0,
+          "armature and friction must be 0 or more");
+}
+
+}  // namespace detail
+}  // namespace tauext

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The dynamics of any arm of hinges and slides, a chain or a tree, from plain numbers.
+///
+/// Everything is in the world's axes and about the origin of the base, so that sums over bodies
+/// need no transformations. With i's subtree: i and all bodies behind it,
+///     V_i = V_parent + S_i qd_i,   S'_i = V_i x S_i,   A_i = A_parent + S_i qdd_i + S'_i qd_i,
+///     F_i = sum over the subtree of (I A + V x* I V),  C qd + g = S_i . F_i at qdd = 0,      (i)
+/// with A of the base = -gravity. With I^c, H the inertia and momentum I V of the subtree,
+///     B_ij = S_i . I^c_j S_j   (j behind i, or i),    B qd = S_i . H_i,
+///     C^T qd = d/dq (qd^T B qd / 2) = S'_i . H_i.                                             (ii)
+/// The last holds as the kinetic energy of a subtree that is moved as a whole does not change.
+///
+/// Derivatives are those of Singh, Russell and Wensing, Efficient Analytical Derivatives of
+/// Rigid-Body Dynamics using Spatial Vector Algebra (RA-L 2022). In these axes their Coriolis
+/// matrix of a subtree has 12 numbers instead of 36: x's relative acceleration at the point r is
+/// 2 x_w x v(r), so
+///     2 B^c x = 2 (tr(Y) x_w - Y x_w ; x_w x l),  Y = integral of v r^T dm,  l = that of v dm.  (iii)
+/// With S''_j = A_parent x S_j + V_parent x S'_j, for j behind i, or i:
+///     d tau_j/d q_i = 2 B^c_j S'_i . S_j + I^c_j S''_i . S_j
+///     d tau_i/d q_j = S_i . (2 B^c_j S'_j + I^c_j S''_j + S_j x* F_j)
+///     d tau_j/d qd_i = 2 (B^c_j S_i + I^c_j S'_i) . S_j
+///     d tau_i/d qd_j = 2 S_i . (B^c_j S_j + I^c_j S'_j)                                       (iv)
+#pragma once
+
+#include <Eigen/LU>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+
+#include "estimators/concepts.h"
+#include "estimators/friction.h"
+#include "estimators/math/ldlt.h"
+#include "estimators/tree/tree_joint.h"
+#include "estimators/tree/tree_passes.h"
+
+namespace tauext {
+
+/// An arm of N joints. Scalar is double in use; the tests put in complex and long numbers.
+///
+/// The coordinates q are those of the joints, rho, or, where the arm is driven otherwise (a
+/// parallelogram), q = coordinates rho + offset.
+template <int N, class Scalar = double>
+class TreeModel {
+ public:
+  static constexpr int kDof = N;
+  using VecN = Vec<N, Scalar>;  ///< a number of each joint
+  using MatN = Mat<N, Scalar>;  ///< over the joints
+
+  /// What it is made of.
+  struct Parameters {
+    std::array<TreeJoint, N> joints;          ///< parents before children
+    Vec<3> gravity = {0, 0, -kGravity};       ///< [m/s^2]
+    Mat<N> coordinates = Mat<N>::Identity();  ///< dq/drho, invertible
+    Vec<N> offset = Vec<N>::Zero();           ///< [rad] q at rho = 0
+  };
+
+  /// @throws std::invalid_argument for a joint that is none, naming its number and what is wrong
+  explicit TreeModel(const Parameters& p)
+      : p_(p),
+        direct_(p.coordinates == Mat<N>::Identity() && p.offset.isZero(0)),
+        passes_(p.joints, p.gravity) {
+    const Mat<N> inverse = p.coordinates.inverse();
+    if (!inverse.allFinite() || !p.gravity.allFinite() || !p.offset.allFinite())
+      throw std::invalid_argument("a tree's coordinates must be invertible, its numbers finite");
+    drho_ = inverse.template cast<Scalar>();
+  }
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+
+  // none of them is inlined: each is hundreds of instructions, and stands in every estimator
+
+  /// B(q) [kg m^2].
+  [[gnu::noinline]] MatN inertia(const VecN& q) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    return matrix(passes_.inertia(s, passes_.composite(s.I)));
+  }
+
+  /// g(q) [N m].
+  [[gnu::noinline]] VecN gravity(const VecN& q) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    return forces(VecN(-passes_.weights(s, passes_.composite(s.I))));
+  }
+
+  /// C qd + g [N m].
+  [[gnu::noinline]] VecN bias(const VecN& q, const VecN& qd) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    return forces(bias(s, passes_.flow(s, to_rate(qd))));
+  }
+
+  /// C^T qd - g [N m].
+  [[gnu::noinline]] VecN momentum_bias(const VecN& q, const VecN& qd) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    return forces(momentum_bias(s, passes_.composite(s.I), to_rate(qd)));
+  }
+
+  /// inertia and bias, sharing the pose.
+  [[gnu::noinline]] Dynamics<N, Scalar> dynamics(const VecN& q, const VecN& qd) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    return {matrix(passes_.inertia(s, passes_.composite(s.I))),
+            forces(bias(s, passes_.flow(s, to_rate(qd))))};
+  }
+
+  /// inertia and momentum_bias, sharing the pose.
+  [[gnu::noinline]] Dynamics<N, Scalar> momentum_dynamics(const VecN& q,
+                                                          const VecN& qd) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    const auto c = passes_.composite(s.I);
+    return {matrix(passes_.inertia(s, c)), forces(momentum_bias(s, c, to_rate(qd)))};
+  }
+
+  /// F(qd) [N m].
+  VecN friction(const VecN& qd) const noexcept {
+    VecN slope;
+    return forces(friction(to_rate(qd), slope));
+  }
+
+  /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians, by (iv).
+  [[gnu::noinline]] ForwardDynamics<N, Scalar> forward_dynamics(const VecN& q, const VecN& qd,
+                                                                const VecN& u) const noexcept {
+    const VecN rate = to_rate(qd);
+    const auto s = passes_.pose(to_rho(q));
+    auto flow = passes_.flow(s, rate);
+    const auto c = passes_.composite(s.I);
+    VecN slope;
+    const VecN rest = bias(s, flow) + friction(rate, slope);
+    const Ldlt<N, Scalar> B(matrix(passes_.inertia(s, c)));
+    ForwardDynamics<N, Scalar> f;
+    f.ok = B.ok();
+    f.qdd = B.solve(VecN(u - forces(rest)));
+    f.dqdd_dtau_ext = B.solve(MatN(-MatN::Identity()));
+    passes_.accelerate(s, to_rate(f.qdd), flow);
+    MatN by_q, by_qd;
+    passes_.derivatives(s, flow, c, by_q, by_qd);
+    by_qd.diagonal() += slope;
+    f.dqdd_dq.noalias() = f.dqdd_dtau_ext * matrix(by_q);
+    f.dqdd_dqd.noalias() = f.dqdd_dtau_ext * matrix(by_qd);
+    return f;
+  }
+
+  /// Geometric Jacobian (m; rad) by q of a point [m] in the frame of a joint's body: its velocity
+  /// in the first three rows, the angular velocity in the others, in the axes of the base. tau_ext
+  /// = -J^T (f; n) for a force f [N] and a moment n [N m] that act on the arm there.
+  /// @param joint from 0
+  Eigen::Matrix<Scalar, 6, N> jacobian(const VecN& q, int joint,
+                                       const Vec<3>& point) const noexcept {
+    const auto s = passes_.pose(to_rho(q));
+    const Vec<3, Scalar> at = passes_.at_base(s, joint, point);
+    Eigen::Matrix<Scalar, 6, N> J;
+    for (int i = 0; i < N; ++i) {
+      const Vec<3, Scalar> w(s.S.w.x[i], s.S.w.y[i], s.S.w.z[i]);
+      const Vec<3, Scalar> v(s.S.v.x[i], s.S.v.y[i], s.S.v.z[i]);
+      J.col(i) << v + w.cross(at), w;
+      J.col(i) *= passes_.ahead(joint)[i];
+    }
+    return direct_ ? J : J * drho_;
+  }
+
+ private:
+  using Passes = detail::TreePasses<N, Scalar>;
+
+  using Pose = typename Passes::Pose;
+
+  VecN bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
+    return Passes::along(s.S, passes_.subtree(f.F));
+  }
+
+  VecN momentum_bias(const Pose& s, const typename Passes::Inertia& c,
+                     const VecN& rate) const noexcept {
+    const auto f = passes_.flow(s, rate);
+    return Passes::along(f.Sd, passes_.subtree(f.H)) + passes_.weights(s, c);
+  }
+
+  // of the joints' rates, and how it grows with them
+  VecN friction(const VecN& rate, VecN& slope) const noexcept {
+    VecN F;
+    for (int i = 0; i < N; ++i) {
+      const TreeJoint& j = p_.joints[static_cast<std::size_t>(i)];
+      using std::tanh;
+      F[i] = Scalar(j.viscous) * rate[i], slope[i] = Scalar(j.viscous);
+      if (!(j.dry > 0)) continue;
+      const Scalar share = tanh(rate[i] / Scalar(j.v_s));
+      F[i] += Scalar(j.dry) * share;
+      slope[i] += Scalar(j.dry / j.v_s) * (Scalar(1) - share * share);
+    }
+    return F;
+  }
+
+  VecN to_rho(const VecN& q) const noexcept {
+    if (direct_) return q;
+    return drho_ * (q - p_.offset.template cast<Scalar>());
+  }
+  VecN to_rate(const VecN& qd) const noexcept {
+    if (direct_) return qd;
+    return drho_ * qd;
+  }
+  VecN forces(const VecN& of_rho) const noexcept {
+    if (direct_) return of_rho;
+    return drho_.transpose() * of_rho;
+  }
+  MatN matrix(const MatN& of_rho) const noexcept {
+    if (direct_) return of_rho;
+    return drho_.transpose() * of_rho * drho_;
+  }
+
+  Parameters p_;
+  bool direct_;  // q is rho
+  Passes passes_;
+  MatN drho_;  // drho/dq
+};
+
+}  // namespace tauext

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// MuJoCo is the oracle, asked by arm_dynamics.h, and closed forms that were made from the paper.
+#include "mjcf/plant/tree.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+
+#include "estimators/wallmobot3.h"
+#include "mjcf/plant/test/arm_dynamics.h"
+
+namespace tauext::test {
+namespace {
+
+// Random numbers of a fixed seed.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double operator()(double most) { return std::uniform_real_distribution(-most, most)(engine_); }
+  int below(int n) { return std::uniform_int_distribution(0, n - 1)(engine_); }
+  template <int N>
+  Vec<N> vector(double most) {
+    return Vec<N>::NullaryExpr([&] { return (*this)(most); });
+  }
+  std::string numbers(int n, double most) {
+    std::string all;
+    for (int i = 0; i < n; ++i) all += fmt::format("{} ", (*this)(most));
+    return all;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+// Loads MJCF text.
+Model model_of(const std::string& xml) {
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("tauext_tree_{}.xml", ::getpid());
+  std::ofstream(path) << xml;
+  const Model m = load_mjcf(path.string());
+  std::filesystem::remove(path);
+  return m;
+}
+
+// A body with some of the joints that are left, what hangs on it, and sometimes a body that is
+// fixed to it or two joints at once.
+std::string body(Random& random, int& left) {
+  std::string xml =
+      fmt::format("<body pos='{}' euler='{}'>", random.numbers(3, 0.4), random.numbers(3, 90));
+  for (int joints = 1 + (random.below(4) == 0); joints > 0 && left > 0; --joints, --left) {
+    xml += fmt::format(
+        "<joint type='{}' axis='{}' pos='{}' ref='{}' armature='{}' damping='0.3' "
+        "frictionloss='0.2'/>",
+        random.below(4) == 0 ? "slide" : "hinge", random.numbers(3, 1), random.numbers(3, 0.1),
+        random(0.5), 0.1 + random(0.1));
+  }
+  xml += fmt::format("<geom type='box' size='0.05 0.1 0.2' pos='{}' euler='{}' mass='{}'/>",
+                     random.numbers(3, 0.2), random.numbers(3, 90), 2 + random(1));
+  if (random.below(3) == 0)
+    xml += fmt::format(
+        "<body pos='{}' euler='{}'><geom type='capsule' size='0.05 0.1' mass='0.7'/></body>",
+        random.numbers(3, 0.3), random.numbers(3, 90));
+  while (left > 0 && random.below(3) != 0) xml += body(random, left);
+  return xml + "</body>";
+}
+
+// A tree of n hinges and slides.
+Model random_tree(unsigned seed, int n) {
+  Random random(seed);
+  std::string bodies;
+  for (int left = n; left > 0;) bodies += body(random, left);
+  return model_of(fmt::format(
+      "<mujoco><compiler angle='degree'/><option gravity='{}'/><worldbody>"
+      "<body pos='3 -2 1' euler='20 30 40'><geom size='0.1'/>{}</body></worldbody></mujoco>",
+      random.numbers(3, 9), bodies));
+}
+
+// The largest differences from MuJoCo over random states, as shares of the largest value.
+template <int N>
+void expect_mujocos_terms(const Model& model, int states, unsigned seed) {
+  const MjcfArm<N> oracle(model);
+  const TreeModel<N> tree = tree_model<N>(model);
+  Random random(seed);
+  for (int k = 0; k < states; ++k) {
+    const Vec<N> q = random.vector<N>(3), qd = random.vector<N>(2);
+    const Mat<N> B = oracle.inertia(q);
+    const Vec<N> bias = oracle.bias(q, qd), g = oracle.gravity(q);
+    const double scale = bias.norm() + g.norm() + B.norm();  // [N m]; of 1 rad/s^2
+    ASSERT_LT((tree.inertia(q) - B).norm(), 1e-10 * B.norm());
+    ASSERT_LT((tree.bias(q, qd) - bias).norm(), 1e-10 * scale);
+    ASSERT_LT((tree.gravity(q) - g).norm(), 1e-10 * scale);
+    ASSERT_LT((tree.friction(qd) - oracle.friction(qd)).norm(), 1e-10 * (1 + qd.norm()));
+    // by differences of fourth order, 0.01 rad wide
+    ASSERT_LT((tree.momentum_bias(q, qd) - oracle.momentum_bias(q, qd)).norm(), 1e-6 * scale);
+  }
+}
+
+TEST(Tree, HasMuJoCosTermsOfEveryRobotOfOurs) {
+  expect_mujocos_terms<3>(load_robot("wallmobot3"), 1000, 1);
+  expect_mujocos_terms<1>(load_robot("testbed1"), 1000, 2);
+}
+
+TEST(Tree, HasMuJoCosTermsOfRandomTrees) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    expect_mujocos_terms<1>(random_tree(seed, 1), 100, seed);
+    expect_mujocos_terms<2>(random_tree(seed, 2), 100, seed);
+    expect_mujocos_terms<5>(random_tree(seed, 5), 100, seed);
+    expect_mujocos_terms<6>(random_tree(seed, 6), 100, seed);
+    expect_mujocos_terms<7>(random_tree(seed, 7), 100, seed);
+    expect_mujocos_terms<8>(random_tree(seed, 8), 100, seed);
+  }
+}
+
+TEST(Tree, IsTheClosedFormOfWallMoBot3) {
+  const TreeModel<3> tree = tree_model<3>(load_robot("wallmobot3"));
+  const WallMoBot3 closed;
+  Random random(3);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec<3> q = random.vector<3>(3), qd = random.vector<3>(2), u = random.vector<3>(500);
+    const ForwardDynamics<3> a = tree.forward_dynamics(q, qd, u),
+                             b = closed.forward_dynamics(q, qd, u);
+    ASSERT_LT((tree.momentum_bias(q, qd) - closed.momentum_bias(q, qd)).norm(), 1e-9 * 1e3);
+    ASSERT_LT((a.qdd - b.qdd).norm(), 1e-9 * (1 + b.qdd.norm()));
+    ASSERT_LT((a.dqdd_dq - b.dqdd_dq).norm(), 1e-9 * (1 + b.dqdd_dq.norm()));
+    ASSERT_LT((a.dqdd_dqd - b.dqdd_dqd).norm(), 1e-9 * (1 + b.dqdd_dqd.norm()));
+    ASSERT_LT((a.dqdd_dtau_ext - b.dqdd_dtau_ext).norm(), 1e-9 * b.dqdd_dtau_ext.norm());
+  }
+}
+
+TEST(Tree, AnotherNumberOfJointsIsRefused) {
+  EXPECT_THROW(tree_model<2>(load_robot("wallmobot3")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tauext::test

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/plant/tree.h"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <string>
+
+#include "mjcf/plant/layout.h"
+
+namespace tauext {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void check(const mjModel& m) {
+  const auto refuse = [](bool present, const char* what) {
+    if (present)
+      throw std::invalid_argument(std::string("the model has ") + what + ": not supported");
+  };
+  if (m.nq != m.nv || m.nv == 0) {
+    throw std::invalid_argument(
+        "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
+  }
+  refuse(m.neq > 0, "joints tied together by <equality>");
+  refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
+  for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
+    refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
+  }
+  refuse(m.opt.density != 0 || m.opt.viscosity != 0, "air or water around it");
+}
+
+// whether some actuator's coordinate is a fixed tendon: then the actuators say what a joint is
+bool has_tendon_coordinates(const mjModel& m) {
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_trntype[i] == mjTRN_TENDON &&
+        m.wrap_type[m.tendon_adr[m.actuator_trnid[2 * i]]] == mjWRAP_JOINT) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// the actuators' coordinates, or MuJoCo's
+void set_coordinates(const mjModel& m, ArmTree& tree) {
+  tree.coordinates = MatrixXd::Identity(m.nv, m.nv);
+  tree.offset = VectorXd::Zero(m.nv);
+  if (!has_tendon_coordinates(m)) return;
+  const State d = initial_state(m);
+  const Layout l = layout_of(m, *d);
+  for (int i = 0; i < l.dof; ++i) {
+    if (m.actuator_gear[6 * i] == 1) continue;
+    throw std::invalid_argument(
+        fmt::format("motor {} has a gear of {}: where motors on tendons say what the joint "
+                    "coordinates are, their gears must be 1",
+                    i, m.actuator_gear[6 * i]));
+  }
+  if (l.dof != m.nv) throw std::invalid_argument("the motors do not move every joint of the model");
+  tree.coordinates = l.S;
+  tree.offset = VectorXd::Map(d->actuator_length, m.nv) - l.S * VectorXd::Map(d->qpos, m.nv);
+}
+
+Vec<3> vector(const mjtNum* v) {
+  return Vec<3>::Map(v);
+}
+
+Mat<3> rotation(const mjtNum* q) {
+  return Eigen::Quaternion<double>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+}
+
+// where a MuJoCo body is: in the frame of the joint that carries it, -1 being the base
+struct Place {
+  int joint = -1;
+  Mat<3> R = Mat<3>::Identity();
+  Vec<3> p = Vec<3>::Zero();  // [m]
+};
+
+// mass and first and second moment about a joint's origin
+struct Mass {
+  double m = 0;                     // [kg]
+  Vec<3> h = Vec<3>::Zero();        // [kg m]
+  Mat<3> inertia = Mat<3>::Zero();  // [kg m^2]
+};
+
+// of a unit mass at r
+Mat<3> inertia_at(const Vec<3>& r) {
+  return r.squaredNorm() * Mat<3>::Identity() - r * r.transpose();
+}
+
+// the joints of a body, one behind the other; moves its place behind the last of them
+void add_joints(const mjModel& m, int body, Place& at, ArmTree& tree) {
+  for (int k = 0; k < m.body_jntnum[body]; ++k) {
+    const int i = m.body_jntadr[body] + k, dof = m.jnt_dofadr[i];
+    const Vec<3> anchor = vector(m.jnt_pos + 3 * i);
+    TreeJoint j;
+    j.parent = at.joint;
+    j.kind = m.jnt_type[i] == mjJNT_SLIDE ? TreeJoint::Kind::kSlide : TreeJoint::Kind::kHinge;
+    j.axis = vector(m.jnt_axis + 3 * i);
+    j.rotation = at.R;
+    j.position = at.p + at.R * anchor;
+    j.zero = m.qpos0[m.jnt_qposadr[i]];
+    j.armature = m.dof_armature[dof];
+    j.viscous = m.dof_damping[dof];
+    j.dry = m.dof_frictionloss[dof];
+    tree.joints.push_back(j);
+    at = {i, Mat<3>::Identity(), -anchor};
+  }
+}
+
+}  // namespace
+
+void detail::require_equal_joints(std::size_t have, int want) {
+  if (have == static_cast<std::size_t>(want)) return;
+  throw std::invalid_argument(fmt::format("the model has {} joints, not {}", have, want));
+}
+
+ArmTree tree_of(const Model& model) {
+  const mjModel& m = *model;
+  check(m);
+  ArmTree tree;
+  tree.gravity = vector(m.opt.gravity);
+  set_coordinates(m, tree);
+  std::vector<Place> places(static_cast<std::size_t>(m.nbody));
+  std::vector<Mass> masses(static_cast<std::size_t>(m.nv));
+  for (int body = 1; body < m.nbody; ++body) {
+    const Place& parent = places[static_cast<std::size_t>(m.body_parentid[body])];
+    Place at{parent.joint, parent.R * rotation(m.body_quat + 4 * body),
+             parent.p + parent.R * vector(m.body_pos + 3 * body)};
+    add_joints(m, body, at, tree);
+    places[static_cast<std::size_t>(body)] = at;
+    if (at.joint < 0) continue;  // it never moves
+    const double mass = m.body_mass[body];
+    const Vec<3> center = at.p + at.R * vector(m.body_ipos + 3 * body);
+    const Mat<3> axes = at.R * rotation(m.body_iquat + 4 * body);
+    Mass& all = masses[static_cast<std::size_t>(at.joint)];
+    all.m += mass;
+    all.h += mass * center;
+    all.inertia += axes * vector(m.body_inertia + 3 * body).asDiagonal() * axes.transpose() +
+                   mass * inertia_at(center);
+  }
+  const Vec<3> base = tree.joints.front().position;  // sums about a point nearby lose no digits
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    TreeJoint& j = tree.joints[i];
+    if (j.parent < 0) j.position -= base;
+    j.mass = masses[i].m;
+    if (j.mass > 0) j.center = masses[i].h / j.mass;
+    const Mat<3> inertia = masses[i].inertia - j.mass * inertia_at(j.center);
+    j.inertia = 0.5 * (inertia + inertia.transpose());
+  }
+  return tree;
+}
+
+}  // namespace tauext

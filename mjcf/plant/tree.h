@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// From an arm in MJCF to the plain numbers of the estimators' own model of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "estimators/tree/tree_model.h"
+#include "mjcf/plant/model.h"
+
+namespace tauext {
+
+/// The joints of an arm and the bodies behind them.
+///
+/// Coordinates: MuJoCo's own, one for each hinge or slide in the file's order, whatever gears its
+/// actuators have; but where motors on fixed tendons say what the joint coordinates are
+/// (mjcf/plant/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of
+/// joints, the latter smooth over 0.01 rad/s (estimators/friction.h says why). Bodies without a
+/// joint belong to the body that carries them.
+struct ArmTree {
+  std::vector<TreeJoint> joints;    ///< in the file's order
+  Vec<3> gravity = Vec<3>::Zero();  ///< [m/s^2]
+  Eigen::MatrixXd coordinates;      ///< dq/drho, rho being MuJoCo's
+  Eigen::VectorXd offset;           ///< [rad] q at rho = 0
+};
+
+/// @throws std::invalid_argument for what it would have to ignore: free or ball joints, springs,
+/// equality constraints, forces of tendons, a fluid; and for motors on tendons with gears
+ArmTree tree_of(const Model& model);
+
+namespace detail {
+/// @throws std::invalid_argument unless they are equal
+void require_equal_joints(std::size_t have, int want);
+}  // namespace detail
+
+/// The model of an arm of N joints, without MuJoCo in it.
+/// @throws std::invalid_argument as tree_of does, and for another number of joints
+template <int N>
+TreeModel<N> tree_model(const Model& model) {
+  const ArmTree tree = tree_of(model);
+  detail::require_equal_joints(tree.joints.size(), N);
+  typename TreeModel<N>::Parameters p;
+  for (std::size_t i = 0; i < N; ++i) p.joints[i] = tree.joints[i];
+  p.gravity = tree.gravity;
+  p.coordinates = tree.coordinates;
+  p.offset = tree.offset;
+  return TreeModel<N>(p);
+}
+
+}  // namespace tauext
