@@ -127,6 +127,7 @@ TEST(TreeModel, RefusesJointsThatAreNone) {
   refuses([](auto& r) { r.joints[1].mass = -1; }, "its mass");
   refuses([](auto& r) { r.joints[1].inertia(0, 1) += 1; }, "its inertia");
   refuses([](auto& r) { r.joints[1].armature = -1; }, "armature");
+  refuses([](auto& r) { r.joints[0].v_s = 0; }, "v_s above 0");
   refuses([](auto& r) { r.coordinates.setZero(); }, "invertible");
 }
 

@@ -51,8 +51,8 @@ inline void check_joint(const TreeJoint& j, int i) {
   require(j.inertia.allFinite() &&
               (j.inertia - j.inertia.transpose()).norm() <= 1e-9 * j.inertia.norm(),
           "its inertia must be finite and symmetric");
-  require(j.armature >= 0 && j.viscous >= 0 && j.dry >= 0 && j.v_s >= 0,
-          "armature and friction must be 0 or more");
+  require(j.armature >= 0 && j.viscous >= 0 && j.dry >= 0 && j.v_s > 0,
+          "armature and friction must be 0 or more, v_s above 0");
 }
 
 }  // namespace detail

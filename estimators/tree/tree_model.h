@@ -29,7 +29,6 @@
 #include <stdexcept>
 
 #include "estimators/concepts.h"
-#include "estimators/friction.h"
 #include "estimators/math/ldlt.h"
 #include "estimators/tree/tree_joint.h"
 #include "estimators/tree/tree_passes.h"
