@@ -23,7 +23,9 @@
 /// of q lie in these; for those of v the block vq is turned into qv = vq^T.
 ///
 /// (i) and (ii) are symmetric to the last bit (c_i c_j is formed first), which is what keeps a long
-/// run alive. The N rows of a block are padded with zeros to whole SIMD registers.
+/// run alive. The N rows of a block are padded with zeros to whole SIMD registers. Where they do
+/// not fit into one, all of q, and then of qd, are learnt from first and taken from P at once: with
+/// w = c / sqrt(s), of which the columns so far change the next c, P -= sum of w w^T.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +33,7 @@
 #include "estimators/concepts.h"
 #include "estimators/ekf_parameters.h"
 #include "estimators/math/lanes.h"
+#include "estimators/math/learn_block.h"
 #include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
 
@@ -112,6 +115,7 @@ class Ekf {
 
  private:
   static constexpr int kRows = detail::kPadded<kDof>;
+  static constexpr bool kBlocked = kRows > 4;  // more than a register
   using Block = detail::Block<kDof>;
   using Column = Vec<kRows>;
 
@@ -132,20 +136,32 @@ class Ekf {
     dv_.setZero();
     nu_q_.setZero();
     nu_qd_.setZero();
-    if (p_.Q_load > 0) add_load(10);
+    if (p_.Q_load > 0) add_load(10, model_.inertia(x_[0].template head<kDof>()));
   }
 
   // Q_load B B^T, so many times
-  [[gnu::noinline]] void add_load(double times) noexcept {
-    const Mat<kDof> B = model_.inertia(x_[0].template head<kDof>());
+  [[gnu::noinline]] void add_load(double times, const Mat<kDof>& B) noexcept {
     dd_ += (times * p_.Q_load) * detail::pad_matrix<kDof>(Mat<kDof>(B * B.transpose()));
+  }
+
+  // where x leads; B is set if a load needs it
+  [[gnu::always_inline]] ForwardDynamics<kDof> forward_dynamics(const Vec<kDof>& tau,
+                                                                Mat<kDof>& B) const noexcept {
+    const Vec<kDof> q = x_[0].template head<kDof>(), qd = x_[1].template head<kDof>(),
+                    u = tau - x_[2].template head<kDof>();
+    if constexpr (requires { model_.forward_dynamics(q, qd, u, &B); }) {
+      return model_.forward_dynamics(q, qd, u, &B);
+    } else {
+      if (p_.Q_load > 0) [[unlikely]]
+        B = model_.inertia(q);
+      return model_.forward_dynamics(q, qd, u);
+    }
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
   [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau, double Q_scale) noexcept {
-    const ForwardDynamics<kDof> f =
-        model_.forward_dynamics(x_[0].template head<kDof>(), x_[1].template head<kDof>(),
-                                tau - x_[2].template head<kDof>());
+    Mat<kDof> B;
+    const ForwardDynamics<kDof> f = forward_dynamics(tau, B);
     if (!f.ok) return false;
     const Column qdd = detail::pad_vector<kDof>(f.qdd);
     const Column qd = x_[1];
@@ -160,11 +176,12 @@ class Ekf {
     // U and V of (i); G stands without its factor h, transposes are named by their letters
     const Mat<kDof>* const G[] = {&f.dqdd_dq, &f.dqdd_dqd, &f.dqdd_dtau_ext};
     const Block qv = transposed(vq_), q_d = transposed(dq_), vd = transposed(dv_);
-    const Block Uq = h * times_transposed(qq_, qv, q_d, G);
-    const Block Uv = h * times_transposed(vq_, vv_, vd, G);
-    const Block Ud = h * times_transposed(dq_, dv_, dd_, G);
+    const Block Uq = h * detail::times_transposed<kDof>(qq_, qv, q_d, G);
+    const Block Uv = h * detail::times_transposed<kDof>(vq_, vv_, vd, G);
+    const Block Ud = h * detail::times_transposed<kDof>(dq_, dv_, dd_, G);
     const Block Uv_t = transposed(Uv);
-    const Block V_t = Uv_t + 0.5 * h * times_transposed(transposed(Uq), Uv_t, transposed(Ud), G);
+    const Block V_t =
+        Uv_t + 0.5 * h * detail::times_transposed<kDof>(transposed(Uq), Uv_t, transposed(Ud), G);
 
     qq_ += h * (qv + vq_) + h * h * vv_ + Q_scale * Q_[0];  // (i)
     dq_ += h * dv_;
@@ -173,7 +190,7 @@ class Ekf {
     dv_ += Ud;
     dd_ += Q_scale * Q_[2];
     if (p_.Q_load > 0) [[unlikely]]
-      add_load(Q_scale);
+      add_load(Q_scale, B);
     return true;
   }
 
@@ -186,6 +203,29 @@ class Ekf {
   }
 
   [[gnu::noinline]] void correct(const Measurement<kDof>& y, double R_scale) noexcept {
+    if constexpr (kBlocked) {
+      learn(0, {&qq_, &vq_, &dq_}, y.q, R_scale * p_.R.template head<kDof>());
+      const Block qv = transposed(vq_);
+      learn(1, {&qv, &vv_, &dv_}, y.qd, R_scale * p_.R.template tail<kDof>());
+    } else {
+      one_by_one(y, R_scale);
+    }
+    nu_q_ = y.q - x_[0].template head<kDof>();
+    nu_qd_ = y.qd - x_[1].template head<kDof>();
+  }
+
+  // (ii) for all of block m of x, whose columns in P these are
+  [[gnu::noinline]] void learn(int m, const Block* const (&columns)[3], const Vec<kDof>& y,
+                               const Vec<kDof>& R) noexcept {
+    Block w[3];
+    detail::learn_block<kDof>(m, columns, y, R, x_, w);
+    Block* const P[] = {&qq_, &vq_, &vv_, &dq_, &dv_, &dd_};
+    for (int a = 0, block = 0; a < 3; ++a) {
+      for (int b = 0; b <= a; ++b) detail::add_products<kDof, true>({&w[a]}, {&w[b]}, *P[block++]);
+    }
+  }
+
+  [[gnu::always_inline]] void one_by_one(const Measurement<kDof>& y, double R_scale) noexcept {
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
       const Column c[] = {qq_.col(i), vq_.col(i), dq_.col(i)};
@@ -202,8 +242,6 @@ class Ekf {
       subtract(c[0], c[1], s_inverse, qv);
     }
     vq_ = transposed(qv);
-    nu_q_ = y.q - x_[0].template head<kDof>();
-    nu_qd_ = y.qd - x_[1].template head<kDof>();
   }
 
   // (ii), all but the block between q and qd
@@ -224,33 +262,15 @@ class Ekf {
     for (int j = 0; j < kDof; ++j) block.col(j) -= (a * b[j]) * s_inverse;
   }
 
-  // [A0 A1 A2] G^T over the columns that are no padding
-  [[gnu::always_inline]] static Block times_transposed(const Block& A0, const Block& A1,
-                                                       const Block& A2,
-                                                       const Mat<kDof>* const (&G)[3]) noexcept {
-    const Block* const A[] = {&A0, &A1, &A2};
-    Block product = Block::Zero();
-#pragma GCC unroll 8
-    for (int i = 0; i < kDof; ++i) {
-      Column sum[3] = {Column::Zero(), Column::Zero(),
-                       Column::Zero()};  // short chains of additions
-#pragma GCC unroll 3
-      for (int b = 0; b < 3; ++b) {
-#pragma GCC unroll 8
-        for (int j = 0; j < kDof; ++j) sum[b] += A[b]->col(j) * (*G[b])(i, j);
-      }
-      product.col(i) = (sum[0] + sum[1]) + sum[2];
-    }
-    return product;
-  }
-
   static Block transposed(const Block& b) noexcept {
     return detail::transposed<kRows>(b);
   }
 
   // block b of a diagonal
   static Block diagonal(const Vec3& d, int b) noexcept {
-    return detail::pad_matrix<kDof>(d.template segment<kDof>(b * kDof).asDiagonal());
+    Block padded = Block::Zero();
+    padded.diagonal().template head<kDof>() = d.template segment<kDof>(b * kDof);
+    return padded;
   }
 
   M model_;

@@ -11,8 +11,8 @@
 /// same position of a hinge, and costs nothing. A start that the next sample does not bear out is
 /// made anew. A torque that is held is not needed before the next sample, which tells: if tau has
 /// jumped by more than dtau_max and back, the one before the jump takes its place, and the next kOk
-/// names the joints. A joint that says it moves and whose q stays the same is frozen
-/// (samples/stillness.h), and its samples are left out until it speaks again.
+/// names the joints. A joint that says it moves and whose q stays the same is frozen, and one that
+/// moves and whose qd does (samples/stillness.h); its samples are left out until it speaks again.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +64,9 @@ class Sampling {
     clock_.reset();
     waiting_ = 0;
     jumped_ = joints_ = 0;
+    watch_ = false;
     stillness_.reset();
+    speed_.reset();
     doubted_ = wrapped_ = false;
     last_.q.setConstant(std::nan(""));  // which no reading repeats
     usual_.setZero();
@@ -74,7 +76,7 @@ class Sampling {
   /// and it has to be left out.
   [[gnu::always_inline]] Status accept(const Measurement<N>& sample) noexcept {
     const Sample y = padded(sample);
-    if (clock_.follows(y.t) && jumped_ == 0 && !stillness_.any() && plain(y)) [[likely]] {
+    if (clock_.follows(y.t) && !watch_ && plain(y)) [[likely]] {
       clock_.accept(y.t);
       learn(y, h());
       remember(y);
@@ -147,6 +149,7 @@ class Sampling {
       const double change = std::abs(y.qd[j] - last_.qd[j]);
       usual_[j] += 0x1p-6 * (std::min(change, most(h, j) - 4 * usual_[j]) - usual_[j]);
     }
+    speed_.learn(last_, y);
   }
   [[gnu::always_inline]] bool calm(const Sample& y, double h, int j) const noexcept {
     return std::abs(y.qd[j] - last_.qd[j]) <= most(h, j);
@@ -158,13 +161,20 @@ class Sampling {
     return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
            (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
   }
+  // whether a joint may stand still, by either rule
+  [[gnu::always_inline]] static bool stands(const Sample& a, const Sample& b, double h,
+                                            int j) noexcept {
+    const bool same = b.q[j] == a.q[j];
+    return ((b.qd[j] == a.qd[j]) & (!same | (b.qd[j] != 0))) |
+           (same & (h * std::abs(b.qd[j]) > Stillness<N, P>::kMotion));
+  }
   // false where judge() has to look
   [[gnu::always_inline]] bool plain(const Sample& y) const noexcept {
     const double h = y.t - last_.t;
     double others = 0;  // not an integer: a compiler takes four joints at once then
     for (int j = 0; j < P; ++j) {
       const bool ok = inside(y, j) & continuous(last_, y, h, j) & calm(y, h, j) &
-                      smooth(last_.tau[j], y.tau[j], j) & !Stillness<N, P>::still(last_, y, h, j);
+                      smooth(last_.tau[j], y.tau[j], j) & !stands(last_, y, h, j);
       others += ok ? 0 : 1;
     }
     return others == 0;
@@ -186,6 +196,12 @@ class Sampling {
   }
 
   [[gnu::noinline]] Status judge(const Sample& y) noexcept {
+    const Status status = judged(y);
+    watch_ = jumped_ != 0 || stillness_.any() || speed_.any();
+    return status;
+  }
+
+  [[gnu::always_inline]] Status judged(const Sample& y) noexcept {
     const auto readable = [](double x) { return std::abs(x) <= kMeasurementLimit; };
     joints_ = which(
         [&](int j) { return !readable(y.q[j]) || !readable(y.qd[j]) || !readable(y.tau[j]); });
@@ -193,6 +209,7 @@ class Sampling {
     joints_ = which([&](int j) { return !inside(y, j); });
     if (joints_ != 0) return Status::kOutOfRange;
     joints_ = stillness_.frozen(last_, y, [&](int j) { return calm(y, y.t - last_.t, j); });
+    joints_ |= speed_.frozen(last_, y);
     if (joints_ != 0) return Status::kFrozen;
     const Clock before = clock_;
     const Status time = clock_.accept(y.t);
@@ -204,6 +221,7 @@ class Sampling {
 
   Status start(const Sample& y) noexcept {
     stillness_.go_on(last_, y, [](int) { return false; });
+    speed_.go_on(last_, y, true);
     remember(y);
     jumped_ = kFresh;
     return Status::kStarted;
@@ -245,6 +263,7 @@ class Sampling {
   // y, whose tau has jumped at these joints
   Status go_on(const Sample& y, std::uint8_t jumps) noexcept {
     stillness_.go_on(last_, y, [&](int j) { return calm(y, h(), j); });
+    speed_.go_on(last_, y, !turns_.isZero(0));
     const auto back =
         which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
     for (int j = 0; j < N; ++j) last_.tau[j] = back >> j & 1 ? held_[j] : last_.tau[j];
@@ -265,10 +284,12 @@ class Sampling {
   Sample waits_;                  // that jumped, waiting_ in a row
   int waiting_ = 0;
   Stillness<N, P> stillness_;
+  StillSpeed<N, P> speed_;
   std::uint8_t joints_ = 0;   // of the verdict
   std::uint16_t jumped_ = 0;  // whose tau has then; or kFresh
   bool wrapped_ = false;      // q, at the last sample
   bool doubted_ = false;      // a filter the last sample
+  bool watch_ = false;        // the next sample has to be judged, too
 };
 
 }  // namespace tauext

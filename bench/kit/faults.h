@@ -119,6 +119,10 @@ std::vector<Fault<Sample>> sensor_faults(int j, double torque) {
                   }),
       for_some<Y>("q of one joint frozen for 50 samples", 50,
                   [j](const Y& first, Y& y) { y.q[j] = first.q[j]; }),
+      for_some<Y>("qd of one joint frozen for 50 samples", 50,
+                  [j](const Y& first, Y& y) { y.qd[j] = first.qd[j]; }),
+      for_some<Y>("qd of one joint frozen for 500 samples", 500,
+                  [j](const Y& first, Y& y) { y.qd[j] = first.qd[j]; }),
   };
 }
 

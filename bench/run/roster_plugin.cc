@@ -1,22 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every estimator, detector and model of the roster, for tauext-gate.
+// For tauext-gate: every estimator, detector and model of the roster, and what an arm from a file
+// has.
 #include <concepts>
 
 #include "bench/kit/kernels.h"
 #include "bench/roster/roster.h"
+#include "estimators/tree/tree_model.h"
+
+namespace {
+
+// a cooperative arm of 7 hinges, across and along in turn, about 1 m long and 19 kg
+tauext::TreeModel<7> tree7() {
+  tauext::TreeModel<7>::Parameters p;
+  for (int i = 0; i < 7; ++i) {
+    tauext::TreeJoint& j = p.joints[static_cast<std::size_t>(i)];
+    const double size = 1 - 0.11 * i, side = i % 2 == 0 ? 1 : -1;
+    j.parent = i - 1;
+    j.axis = i % 2 == 0 ? tauext::Vec<3>::UnitZ() : tauext::Vec<3>::UnitY();
+    j.position = {0, 0, i == 0 ? 0.15 : 0.2 * size};
+    j.mass = 4 * size;
+    j.center = {0.01 * size, 0.03 * side * size, 0.1 * size};
+    j.inertia = tauext::Vec<3>(0.02, 0.018, 0.006).asDiagonal() * (size * size);
+    j.armature = 0.1 * size;
+    j.viscous = 0.5 * size;
+    j.dry = 0.4 * size;
+  }
+  return tauext::TreeModel<7>(p);
+}
+
+template <class M>
+void add_model_and_estimators(tauext::Kernels& kernels, const std::string& robot, const M& arm) {
+  kernels.add_model(robot, arm);
+  tauext::for_each_estimator(arm, [&](auto make) {
+    using E = decltype(make(tauext::Trace()));
+    // the baselines stand outside the competition, and some of them need a truth
+    if constexpr (!std::derived_from<E, tauext::DelayedTruth<M::kDof>> &&
+                  !std::same_as<E, tauext::Zero<M::kDof>>) {
+      kernels.add_estimator(robot, arm, make(tauext::Trace()));
+    }
+  });
+}
+
+}  // namespace
 
 TAUEXT_PLUGIN(kernels) {
   using namespace tauext;
   for_each_robot([&]<class M>(const std::string& robot, const M& arm) {
-    constexpr int N = M::kDof;
-    kernels.add_model(robot, arm);
-    for_each_estimator(arm, [&](auto make) {
-      using E = decltype(make(Trace()));
-      // the baselines stand outside the competition, and some of them need a truth
-      if constexpr (!std::derived_from<E, DelayedTruth<N>> && !std::same_as<E, Zero<N>>) {
-        kernels.add_estimator(robot, arm, make(Trace()));
-      }
-    });
-    for_each_detector<N>([&](auto make) { kernels.add_detector(robot, arm, make()); });
+    add_model_and_estimators(kernels, robot, arm);
+    for_each_detector<M::kDof>([&](auto make) { kernels.add_detector(robot, arm, make()); });
   });
+  add_model_and_estimators(kernels, "tree7", tree7());
 }

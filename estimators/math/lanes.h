@@ -5,6 +5,7 @@
 /// smaller pieces stalls the pipeline, which costs more than the arithmetic of a step.
 #pragma once
 
+#include <cstddef>
 #include <cstring>
 
 #include "estimators/types.h"
@@ -41,19 +42,17 @@ template <int N>
 template <int N>
 [[gnu::always_inline]] inline void gather_zeros(const Vec<N>& v, int first, Lanes& x) noexcept {
   gather<N>(v, first, x);
-  const Lanes zero = {};
-  switch (N - first) {
-    case 1:
-      x = __builtin_shufflevector(x, zero, 0, 4, 4, 4);
-      break;
-    case 2:
-      x = __builtin_shufflevector(x, zero, 0, 1, 4, 4);
-      break;
-    case 3:
-      x = __builtin_shufflevector(x, zero, 0, 1, 2, 4);
-      break;
-    default:
-      break;
+  if (N - first >= 4) return;
+  if constexpr (N > 4) {
+    // by bits: of a shuffle with zeros GCC 12 makes a move that valgrind 3.19 does not know
+    typedef long long Bits __attribute__((vector_size(sizeof(Lanes))));
+    const auto bit = [first](int i) { return first + i < N ? -1LL : 0LL; };
+    x = (Lanes)((Bits)x & Bits{bit(0), bit(1), bit(2), bit(3)});
+  } else {
+    const Lanes zero = {};
+    if constexpr (N == 1) x = __builtin_shufflevector(x, zero, 0, 4, 4, 4);
+    if constexpr (N == 2) x = __builtin_shufflevector(x, zero, 0, 1, 4, 4);
+    if constexpr (N == 3) x = __builtin_shufflevector(x, zero, 0, 1, 2, 4);
   }
 }
 
@@ -105,6 +104,89 @@ template <int Rows>
     }
   }
   return t;
+}
+
+/// The columns of c from `first` on, so many, plus those of the sum of a_t b_t^T, or less these;
+/// over the first K columns of each.
+template <int K, bool kMinus, int Columns, int Rows, class B, std::size_t Terms>
+[[gnu::always_inline]] inline void add_columns(const Mat<Rows>* const (&a)[Terms],
+                                               const B* const (&b)[Terms], int first,
+                                               Mat<Rows>& c) noexcept {
+  constexpr int kLanes = Rows / 4;
+  Lanes sum[Columns][kLanes];
+#pragma GCC unroll 4
+  for (int j = 0; j < Columns; ++j) {
+#pragma GCC unroll 2
+    for (int i = 0; i < kLanes; ++i) load(&c(4 * i, first + j), sum[j][i]);
+  }
+#pragma GCC unroll 1
+  for (std::size_t t = 0; t < Terms; ++t) {
+#pragma GCC unroll 8
+    for (int k = 0; k < K; ++k) {
+      Lanes column[kLanes];
+#pragma GCC unroll 2
+      for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
+#pragma GCC unroll 4
+      for (int j = 0; j < Columns; ++j) {
+        const double x = (*b[t])(first + j, k);
+        const Lanes times{x, x, x, x};
+#pragma GCC unroll 2
+        for (int i = 0; i < kLanes; ++i) {
+          if constexpr (kMinus) {
+            sum[j][i] -= column[i] * times;
+          } else {
+            sum[j][i] += column[i] * times;
+          }
+        }
+      }
+    }
+  }
+#pragma GCC unroll 4
+  for (int j = 0; j < Columns; ++j) {
+#pragma GCC unroll 2
+    for (int i = 0; i < kLanes; ++i) store(&c(4 * i, first + j), sum[j][i]);
+  }
+}
+
+/// c plus the sum of a_t b_t^T, or less that, over the first K columns of each; rows of b beyond K
+/// are left out. Four columns of c at a time stay in registers.
+template <int K, bool kMinus = false, int Rows, class B, std::size_t Terms>
+[[gnu::always_inline]] inline void add_products(const Mat<Rows>* const (&a)[Terms],
+                                                const B* const (&b)[Terms], Mat<Rows>& c) noexcept {
+  static_assert(K > 4 && K <= 8);
+  add_columns<K, kMinus, 4>(a, b, 0, c);
+  add_columns<K, kMinus, K - 4>(a, b, 4, c);
+}
+
+// one function in each program: less code is faster
+template <int N>
+[[gnu::noinline]] inline void add_three_products(const Block<N>* const (&A)[3],
+                                                 const Mat<N>* const (&G)[3],
+                                                 Block<N>& product) noexcept {
+  add_products<N>(A, G, product);
+}
+
+/// [A0 A1 A2] G^T over the columns that are no padding.
+template <int N>
+[[gnu::always_inline]] inline Block<N> times_transposed(const Block<N>& A0, const Block<N>& A1,
+                                                        const Block<N>& A2,
+                                                        const Mat<N>* const (&G)[3]) noexcept {
+  using Column = Vec<kPadded<N>>;
+  const Block<N>* const A[] = {&A0, &A1, &A2};
+  Block<N> product = Block<N>::Zero();
+  if constexpr (N > 4) return add_three_products<N>(A, G, product), product;
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) {
+    const Column zero = Column::Zero();
+    Column sum[3] = {zero, zero, zero};  // short chains of additions
+#pragma GCC unroll 3
+    for (int b = 0; b < 3; ++b) {
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) sum[b] += A[b]->col(j) * (*G[b])(i, j);
+    }
+    product.col(i) = (sum[0] + sum[1]) + sum[2];
+  }
+  return product;
 }
 
 }  // namespace tauext::detail

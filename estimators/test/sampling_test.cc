@@ -14,6 +14,7 @@
 #include "estimators/inverse_dynamics.h"
 #include "estimators/ndob.h"
 #include "estimators/test/arm.h"
+#include "estimators/test/at_rest.h"
 #include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
 
@@ -21,28 +22,6 @@ namespace tauext::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// wallmobot3 at rest at q = 0, its first ten samples taken
-struct AtRest {
-  AtRest() {
-    for (int i = 0; i < 10; ++i) take();
-  }
-  Status take(const Measurement<3>& change = {}) {
-    Measurement<3> y = change;
-    y.t += k++ * 1e-3;
-    y.q += at;
-    return s.accept(y);
-  }
-  Sampling<3> s{0.05, limits_of(WallMoBot3())};
-  Vec<3> at = Vec<3>::Zero();
-  int k = 0;
-};
-
-Measurement<3> off(int joint, double q, double qd, double tau) {
-  Measurement<3> y;
-  y.q[joint] = q, y.qd[joint] = qd, y.tau[joint] = tau;
-  return y;
-}
 
 TEST(Sampling, RefusesWhatNoSensorSaysAndNamesTheJoint) {
   for (const double bad : {kNaN, kInfinity, -kInfinity, 2.7e154, 1.1e6}) {
@@ -167,64 +146,6 @@ TEST(Sampling, TakesANewPositionAtTheThirdSample) {
   EXPECT_EQ(r.take(), Status::kJump);
   EXPECT_EQ(r.take(), Status::kStarted);
   EXPECT_EQ(r.take(), Status::kOk);
-}
-
-TEST(Sampling, SaysWhenAMovingJointStandsStill) {
-  AtRest r;
-  const Measurement<3> moving = off(1, 0.004, 0.06, 0);
-  std::vector<Status> all;
-  for (int k = 0; k < 500; ++k) all.push_back(r.take(moving));
-  EXPECT_EQ(std::count(all.begin(), all.end(), Status::kFrozen), 500 - 1);
-  EXPECT_EQ(r.s.joints(), 2);
-  EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kBadTime) << "half a second later";
-  EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kBadTime);
-  EXPECT_EQ(r.take(off(1, 0.1, 0.2, 0)), Status::kStarted);
-  AtRest alone;  // qd goes on
-  int good = 0;
-  for (int k = 0; k < 500; ++k) {
-    good += alone.take(off(1, 0.004, 0.5 + 1e-3 * (k % 2), 0)) == Status::kOk;
-  }
-  EXPECT_EQ(good, 1) << "0.5 mrad / 0.5 rad/s";
-  AtRest coarse;  // an encoder of 4096 steps, which is known from its first one on
-  for (int k = 0; k < 500; ++k) {
-    const double step = 6.283185307179586 / 4096, qd = 0.5 + 1e-3 * (k % 2);
-    const Status s = coarse.take(off(1, step * std::floor(5e-4 * k / step), qd, 0));
-    if (k > 10) {
-      EXPECT_EQ(s, Status::kOk) << k;
-    }
-  }
-  Sampling<3> first(0.05, limits_of(WallMoBot3()));
-  Measurement<3> y = off(1, 0, 0.1, 0);
-  y.t = 100;
-  EXPECT_EQ(first.accept(y), Status::kStarted) << "nothing came before";
-  AtRest at_rest;  // no joint says that it moves, or not to speak of
-  for (int k = 0; k < 500; ++k)
-    EXPECT_EQ(at_rest.take(off(1, 0, 1e-9 * (k / 250), 0)), Status::kOk);
-}
-
-TEST(Sampling, ARepeatedSampleIsFrozenAtOnceUnlessTheSensorAlwaysRepeats) {
-  AtRest r;
-  double q = 0;
-  const auto move = [&](double qd, int samples) { return off(1, q += 1e-3 * samples * qd, qd, 0); };
-  const auto next = [&](int k) { return move(0.09 + 1e-5 * k, 1); };
-  for (int k = 0; k < 1000; ++k) {
-    const Measurement<3> y = next(k);
-    const Status s = r.take(y);
-    if (k > 10) {
-      EXPECT_EQ(s, Status::kOk) << k;
-    }
-    if (k != 300 && k != 600) continue;  // 5 ms each, at 0.09 rad/s
-    for (int i = 0; i < 5; ++i) EXPECT_EQ(r.take(y), Status::kFrozen);
-    r.take(move(0.09 + 1e-5 * k, 6));
-  }
-  AtRest half;  // a sensor of 500 Hz
-  q = 0;
-  int frozen = 0;
-  for (int k = 0; k < 500; ++k) {
-    const Measurement<3> y = move(0.09 + 1e-5 * k, 2);
-    for (int i = 0; i < 2; ++i) frozen += half.take(y) == Status::kFrozen;
-  }
-  EXPECT_EQ(frozen, 2);
 }
 
 TEST(Limits, AreThoseThatTheArmHasOrFollowFromItsModel) {

@@ -82,7 +82,9 @@ void expect_consistent(unsigned seed) {
   const Dynamics<N> m = tree.momentum_dynamics(q, qd);
   EXPECT_LT((m.bias - tree.momentum_bias(q, qd)).norm() + (m.B - B).norm(), 1e-13 * scale);
 
-  const ForwardDynamics<N> f = tree.forward_dynamics(q, qd, u);
+  Mat<N> same_B;
+  const ForwardDynamics<N> f = tree.forward_dynamics(q, qd, u, &same_B);
+  EXPECT_LT((same_B - B).norm(), 1e-14 * B.norm());
   ASSERT_TRUE(f.ok);
   EXPECT_LT((B * f.qdd + tree.bias(q, qd) + tree.friction(qd) - u).norm(), 1e-12 * scale);
   EXPECT_LT((B * f.dqdd_dtau_ext + Mat<N>::Identity()).norm(), 1e-12 * N);

@@ -67,12 +67,7 @@ requires(P % 4 == 0) struct Each<P, double> {
     Each e;
 #pragma GCC unroll 2
     for (int k = 0; k < kCount; ++k) {
-      gather<N>(v, 4 * k, e.x[k]);
-      if (4 * k + 4 <= N) continue;
-      // by bits: a shuffle with zeros GCC 12 makes a move that valgrind 3.19 does not know
-      typedef long long Bits __attribute__((vector_size(sizeof(Lanes))));
-      const auto bit = [k](int i) { return 4 * k + i < N ? -1LL : 0LL; };
-      e.x[k] = (Lanes)((Bits)e.x[k] & Bits{bit(0), bit(1), bit(2), bit(3)});
+      gather_zeros<N>(v, 4 * k, e.x[k]);
     }
     return e;
   }

@@ -25,6 +25,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 
@@ -115,19 +116,23 @@ class TreeModel {
   }
 
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians, by (iv).
+  /// @param B if not null, gets inertia(q), which is at hand here
   [[gnu::noinline]] ForwardDynamics<N, Scalar> forward_dynamics(const VecN& q, const VecN& qd,
-                                                                const VecN& u) const noexcept {
+                                                                const VecN& u,
+                                                                MatN* B = nullptr) const noexcept {
     const VecN rate = to_rate(qd);
     const auto s = passes_.pose(to_rho(q));
     auto flow = passes_.flow(s, rate);
     const auto c = passes_.composite(s.I);
     VecN slope;
     const VecN rest = bias(s, flow) + friction(rate, slope);
-    const Ldlt<N, Scalar> B(matrix(passes_.inertia(s, c)));
+    const MatN inertia = matrix(passes_.inertia(s, c));
+    if (B != nullptr) *B = inertia;
+    const Ldlt<N, Scalar> factor(inertia);
     ForwardDynamics<N, Scalar> f;
-    f.ok = B.ok();
-    f.qdd = B.solve(VecN(u - forces(rest)));
-    f.dqdd_dtau_ext = B.solve(MatN(-MatN::Identity()));
+    f.ok = factor.ok();
+    f.qdd = factor.solve(VecN(u - forces(rest)));
+    f.dqdd_dtau_ext = factor.solve(MatN(-MatN::Identity()));
     passes_.accelerate(s, to_rate(f.qdd), flow);
     MatN by_q, by_qd;
     passes_.derivatives(s, flow, c, by_q, by_qd);

@@ -111,7 +111,7 @@ void bears_every_fault(const Robot& robot, const Trace& trace, double load, doub
     for (const auto& [d, marks] : clean.marks) pairs += marks == 0;
     for (const Fault<Sample>& fault : faults<Sample>(robot.dof() / 2, torque)) {
       for (const int at : {kFault, kSlow}) {
-        // there, but frozen sensors; q alone cannot be told from an encoder's step
+        // there, but frozen sensors; q or qd alone hardly differs from what it would be
         if (at == kSlow && (fault.samples < 50 || fault.name[0] == 'q')) continue;
         SCOPED_TRACE(fmt::format("{} {}: {} at {}", robot.name(), e, fault.name, at));
         bears(robot, e, fault, at, good, clean, load);

@@ -9,6 +9,7 @@
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
+#include "bench/roster/test/hinge_robot.h"
 #include "regression/host/plugin_host.h"
 
 namespace tauext::gate::test {
@@ -30,7 +31,12 @@ TEST(RosterPlugin, HoldsEveryEstimatorDetectorAndModelAndNoBaseline) {
     }
     expected += static_cast<int>(r.detectors().size()) + 6;
   }
-  EXPECT_EQ(plugin.count(), expected);
+  const tauext::test::HingeRobot from_file(7);
+  for (const std::string& e : from_file.robot->estimators()) {
+    EXPECT_EQ(plugin.find("tree7/" + e) >= 0, !is_baseline(e)) << e;
+    expected += !is_baseline(e);
+  }
+  EXPECT_EQ(plugin.count(), expected + 6) << "and the terms of its model";
 }
 
 TEST(RosterPlugin, GivesEachKernelALifeOfItsRobot) {
