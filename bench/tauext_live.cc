@@ -23,6 +23,8 @@ using namespace tauext;
 void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
   app.add_option("--robot", o.robot, "robot (see --list), or its MJCF file")
       ->type_name("NAME|FILE.xml");
+  app.add_option("--lock", o.lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX");
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
   app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
   app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
@@ -61,9 +63,9 @@ void add_run_flags(CLI::App& app, live::Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Runs a scenario, a log (--from) or a robot on LCM (--subscribe) through estimators in real\n"
-      "time, or shows a stream (--listen). Opens no socket without --lcm, --subscribe or "
-      "--listen.\n\n"
+      "Estimates in real time from a scenario, a log or a robot on LCM, or shows a stream. Opens "
+      "no\n"
+      "socket without --lcm, --subscribe or --listen.\n"
       "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
       "tauext-live");
   live::Options o;

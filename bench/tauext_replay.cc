@@ -157,7 +157,7 @@ void print_metrics(const Trace& trace, const std::vector<Column>& columns, doubl
 }
 
 struct Flags {
-  std::string log, channel, robot, detector, torque, out;
+  std::string log, channel, robot, lock, detector, torque, out;
   std::vector<std::string> estimators;
   double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
@@ -168,6 +168,8 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--channel", f.channel, "of an LCM log with several that hold measurements");
   app.add_option("--robot", f.robot, "robot (see --list), or its MJCF file")
       ->type_name("NAME|FILE.xml");
+  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX");
   app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -192,7 +194,7 @@ int replay(Flags& f) {
     throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", f.out));
   }
   refuse_twice("estimator", f.estimators);
-  const Robot& r = robot(f.robot);
+  const Robot& r = robot(f.robot, f.lock);
   for (std::string& e : f.estimators) {
     r.check(e, f.detector);
     if (f.torque.empty()) continue;

@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 // a robot on which all that was asked for can run
 const Robot& checked_robot(const Options& o) {
-  const Robot& r = robot(o.robot);
+  const Robot& r = robot(o.robot, o.lock);
   for (const std::string& e : o.estimators) r.check(e, o.detector);
   return r;
 }

@@ -15,7 +15,7 @@ namespace tauext::live {
 
 /// What the command line says.
 struct Options {
-  std::string robot, scenario, from, channel, subscribe, type = "tauext";
+  std::string robot, lock, scenario, from, channel, subscribe, type = "tauext";
   std::vector<std::string> estimators;
   std::string detector, thresholds;
   bool stream = false;  ///< publish

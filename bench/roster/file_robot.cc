@@ -21,8 +21,8 @@ std::unique_ptr<const Robot> robot_from(int joints, const std::string& path, con
 
 }  // namespace
 
-std::unique_ptr<const Robot> file_robot(const std::string& path) {
-  const Model model = load_mjcf(path);
+std::unique_ptr<const Robot> file_robot(const std::string& path, const ImportOptions& options) {
+  const Model model = load_mjcf(path, options);
   try {
     return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), path, model);
   } catch (const std::invalid_argument& e) {

@@ -18,7 +18,7 @@ inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
 /// The estimators and detectors that every arm has, at 30 rad/s, on the dynamics of an MJCF file of
 /// 1 to kMaxFileJoints hinges and slides (mjcf/plant/tree.h).
 /// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong
-std::unique_ptr<const Robot> file_robot(const std::string& path);
+std::unique_ptr<const Robot> file_robot(const std::string& path, const ImportOptions& options = {});
 
 namespace detail {
 // one number of joints of it; each is compiled for itself, from file_robot_of.cc.in

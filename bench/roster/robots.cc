@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
@@ -29,12 +30,12 @@ std::vector<detail::MakeRobot>& registered_robots() {
 bool in_use = false;  // whether the list of robots has been made
 
 // the robot of an MJCF file, read the first time that it is asked for
-const Robot& robot_of_file(const std::string& path) {
+const Robot& robot_of_file(const std::string& path, const std::string& lock) {
   static std::mutex mutex;
-  static std::map<std::string, std::unique_ptr<const Robot>> all;
-  const std::lock_guard lock(mutex);
-  std::unique_ptr<const Robot>& r = all[path];
-  if (!r) r = file_robot(path);
+  static std::map<std::pair<std::string, std::string>, std::unique_ptr<const Robot>> all;
+  const std::lock_guard alone(mutex);
+  std::unique_ptr<const Robot>& r = all[{path, lock}];
+  if (!r) r = file_robot(path, {lock});
   return *r;
 }
 
@@ -77,8 +78,12 @@ bool is_robot_file(std::string_view name_or_file) {
   return name_or_file.ends_with(".xml");
 }
 
-const Robot& robot(std::string_view name_or_file) {
-  if (is_robot_file(name_or_file)) return robot_of_file(std::string(name_or_file));
+const Robot& robot(std::string_view name_or_file, const std::string& lock) {
+  if (is_robot_file(name_or_file)) return robot_of_file(std::string(name_or_file), lock);
+  if (!lock.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--lock fixes joints of a robot from a file, and {} is none", name_or_file));
+  }
   return *find_robot(robots(), name_or_file);
 }
 

@@ -25,11 +25,12 @@ void add_robot(MakeRobot make);
 const std::vector<std::unique_ptr<const Robot>>& robots();
 
 /// A robot by its name, or by the path of its MJCF file (it ends in .xml), which then is its name:
-/// an arm of 1 to 7 hinges and slides with the estimators and detectors that every arm has. A file
+/// an arm of 1 to 8 hinges and slides with the estimators and detectors that every arm has. A file
 /// is read once.
-/// @throws std::invalid_argument for an unknown name, listing the known ones; std::runtime_error or
-/// std::invalid_argument naming the path and what is wrong with it
-const Robot& robot(std::string_view name_or_file);
+/// @param lock joints of a file that are fixed (ImportOptions)
+/// @throws std::invalid_argument for an unknown name, listing the known ones, or one with `lock`;
+/// std::runtime_error or std::invalid_argument naming the path and what is wrong with it
+const Robot& robot(std::string_view name_or_file, const std::string& lock = "");
 
 /// Whether robot(name) takes it for the path of a file.
 bool is_robot_file(std::string_view name_or_file);

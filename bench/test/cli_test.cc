@@ -13,8 +13,9 @@ namespace tauext::test {
 namespace {
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
-  for (const std::string name : {"tauext-bench", "tauext-detect", "tauext-identify", "tauext-live",
-                                 "tauext-record", "tauext-replay"}) {
+  for (const std::string name :
+       {"tauext-bench", "tauext-detect", "tauext-identify", "tauext-import", "tauext-live",
+        "tauext-record", "tauext-replay"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;

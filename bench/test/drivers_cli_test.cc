@@ -126,5 +126,29 @@ TEST_F(Drivers, EveryMessageOfAPandaIsUsedWithItsSigns) {
   check("panda", "PANDA_STATUS");
 }
 
+// an arm as newer MuJoCo has it, with a gripper
+TEST_F(Programs, AnImportedArmIsTheFilesOwn) {
+  std::string newer = hinge_arm(3, false);
+  newer.insert(newer.find("<joint"), "<joint name='grip' type='slide' actuatorfrcrange='-5 5'/>");
+  write("newer.xml", newer);
+  write("log.csv",
+        "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\n0,.1,.2,.3,0,0,0,1,2,3\n"
+        ".001,.1,.2,.3,0,0,0,1,2,3\n.002,.1,.2,.3,0,0,0,1,2,3\n");
+  const Outcome import = run("tauext-import newer.xml --lock grip --out arm.xml");
+  EXPECT_EQ(import.code, 0) << import.text;
+  EXPECT_TRUE(import.says("arm.xml: 3 joints")) << import.text;
+  EXPECT_TRUE(import.says("1 joint.actuatorfrcrange")) << import.text;
+  const std::string replay = "tauext-replay log.csv --estimator mo1,ekf --out ";
+  EXPECT_EQ(run(replay + "own.csv --robot newer.xml --lock grip").code, 0);
+  EXPECT_EQ(run(replay + "imported.csv --robot arm.xml").code, 0);
+  EXPECT_NE(content("own.csv"), "");
+  EXPECT_EQ(content("own.csv"), content("imported.csv"));
+
+  EXPECT_TRUE(run(replay + "x.csv --robot newer.xml --lock grab").says("there are: grip"));
+  EXPECT_TRUE(run(replay + "x.csv --robot wallmobot3 --lock grip").says("a robot from a file"));
+  EXPECT_EQ(run("tauext-import newer.xml --out newer.xml").code, 2) << "it would be replaced";
+  EXPECT_FALSE(exists("x.csv"));
+}
+
 }  // namespace
 }  // namespace tauext::test

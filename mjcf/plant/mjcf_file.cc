@@ -137,10 +137,37 @@ void try_step(const mjModel& m) {
   }
 }
 
-std::string compiled(const std::string& path) {
+// what of a message says what is wrong, not where
+std::string_view without_line(std::string_view message) {
+  return message.substr(0, message.rfind(", line"));
+}
+
+// whether all that drives it is motors
+bool has_motors(const mjModel& m) {
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_gaintype[i] != mjGAIN_FIXED || m.actuator_biastype[i] != mjBIAS_NONE)
+      return false;
+  }
+  return m.nu > 0;
+}
+
+// the file as it is, or, if it has to be, imported
+std::shared_ptr<const mjModel> loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
-  const Owned m(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()), mj_deleteModel);
-  if (!m) throw std::runtime_error(one_line(error.data()));
+  Owned m(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()), mj_deleteModel);
+  if (m && options.lock.empty() && has_motors(*m)) return m;
+  const std::string first = one_line(error.data());
+  try {
+    return load_files({{"robot.xml", import_mjcf(path, options).xml}});
+  } catch (const std::runtime_error& e) {
+    // the same in the words that name the file's own line
+    if (!m && without_line(first) == without_line(e.what())) throw std::runtime_error(first);
+    throw;
+  }
+}
+
+std::string compiled(const std::string& path, const ImportOptions& options) {
+  const std::shared_ptr<const mjModel> m = loaded(path, options);
   check_physical(*m);
   try_step(*m);
   std::string bytes(static_cast<std::size_t>(mj_sizeModel(m.get())), '\0');
@@ -158,10 +185,34 @@ void throw_mujoco_errors() {
   });
 }
 
-std::string compiled_mjcf(const std::string& path, const Limits& limits) {
+std::shared_ptr<const mjModel> load_files(
+    const std::vector<std::pair<std::string, std::string_view>>& files) {
+  // it holds a fixed table, and so lives on the heap
+  const std::unique_ptr<mjVFS, void (*)(mjVFS*)> vfs(new mjVFS, [](mjVFS* v) {
+    mj_deleteVFS(v);
+    delete v;
+  });
+  mj_defaultVFS(vfs.get());
+  for (const auto& [name, text] : files) {
+    if (mj_makeEmptyFileVFS(vfs.get(), name.c_str(), static_cast<int>(text.size())) != 0)
+      throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", name));
+    std::copy(text.begin(), text.end(), static_cast<char*>(vfs->filedata[vfs->nfile - 1]));
+  }
+  const std::string& main = files.front().first;
+  std::array<char, 1000> error{"MuJoCo cannot read its own binary form"};
+  mjModel* const m = main.ends_with(".mjb")
+                         ? mj_loadModel(main.c_str(), vfs.get())
+                         : mj_loadXML(main.c_str(), vfs.get(), error.data(), error.size());
+  if (m == nullptr) throw std::runtime_error(one_line(error.data()));
+  return std::shared_ptr<const mjModel>(
+      m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
+}
+
+std::string compiled_mjcf(const std::string& path, const Limits& limits,
+                          const ImportOptions& options) {
   throw_mujoco_errors();
   try {
-    return confined(limits, [&] { return compiled(path); });
+    return confined(limits, [&] { return compiled(path, options); });
   } catch (const Unfinished& e) {
     throw std::runtime_error(
         fmt::format("{}: MuJoCo {} when it loads this robot. Textures can be left out, and meshes "

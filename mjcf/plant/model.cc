@@ -18,31 +18,10 @@
 namespace tauext {
 namespace {
 
-Model own(mjModel* m) {
-  return Model(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
-}
-
-// the virtual file system of mj_loadXML, which holds a fixed table and so lives on the heap
-struct Vfs {
-  Vfs() { mj_defaultVFS(vfs.get()); }
-  ~Vfs() { mj_deleteVFS(vfs.get()); }
-  Vfs(const Vfs&) = delete;
-  Vfs& operator=(const Vfs&) = delete;
-  std::unique_ptr<mjVFS> vfs = std::make_unique<mjVFS>();
-};
-
 // the text of an embedded file
 template <class Files>
 std::string_view embedded(const Files& files, const char* what, std::string_view name) {
   return find_known(files, what, name, [](const EmbeddedFile& f) { return f.name; }).xml;
-}
-
-void add(Vfs& files, const std::string& name, std::string_view text) {
-  if (mj_makeEmptyFileVFS(files.vfs.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
-    throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", name));
-  }
-  std::copy(text.begin(), text.end(),
-            static_cast<char*>(files.vfs->filedata[files.vfs->nfile - 1]));
 }
 
 // robots that came from files
@@ -84,30 +63,22 @@ Model load_robot(std::string_view name, std::string_view scene) {
                     name, scene));
   }
   const std::string_view robot = embedded(kEmbeddedRobots, "robot", name);
-  Vfs files;
-  add(files, fmt::format("{}.xml", name), robot);
-  std::string include = fmt::format("<include file=\"{}.xml\"/>", name);
-  if (!scene.empty()) {
-    add(files, "scene.xml", embedded(kEmbeddedScenes, "scene", scene));
-    include += "<include file=\"scene.xml\"/>";
+  const std::string file = fmt::format("{}.xml", name);
+  std::string include = fmt::format("<include file=\"{}\"/>", file);
+  if (!scene.empty()) include += "<include file=\"scene.xml\"/>";
+  const std::string main = fmt::format("<mujoco>{}</mujoco>", include);
+  std::vector<std::pair<std::string, std::string_view>> files{{"main.xml", main}, {file, robot}};
+  if (!scene.empty()) files.emplace_back("scene.xml", embedded(kEmbeddedScenes, "scene", scene));
+  try {
+    return load_files(files);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(fmt::format("{} {}: {}", name, scene, e.what()));
   }
-  const std::string main = "main.xml";
-  add(files, main, fmt::format("<mujoco>{}</mujoco>", include));
-  char error[1000] = "";
-  mjModel* m = mj_loadXML(main.c_str(), files.vfs.get(), error, sizeof error);
-  if (m == nullptr) throw std::runtime_error(fmt::format("{} {}: {}", name, scene, error));
-  return own(m);
 }
 
-Model load_mjcf(const std::string& path) {
+Model load_mjcf(const std::string& path, const ImportOptions& options) {
   claim_input(path);
-  const char* const name = "robot.mjb";
-  Vfs files;
-  add(files, name, compiled_mjcf(path));
-  mjModel* const m = mj_loadModel(name, files.vfs.get());
-  if (m == nullptr)
-    throw std::runtime_error(fmt::format("{}: MuJoCo cannot read its own binary form of it", path));
-  return own(m);
+  return load_files({{"robot.mjb", compiled_mjcf(path, {}, options)}});
 }
 
 void register_mjcf(const std::string& name, const std::string& path) {
@@ -120,7 +91,7 @@ void register_mjcf(const std::string& name, const std::string& path) {
 
 Model changed(const Model& model, const std::function<void(mjModel&)>& change) {
   mjModel* const m = mj_copyModel(nullptr, model.get());
-  Model copy = own(m);
+  Model copy(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
   change(*m);
   const State d(mj_makeData(m));
   mj_setConst(m, d.get());

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mjcf/import/mjcf_text.h"
+
 // MuJoCo's own names; its header is included in the sources of mjcf/plant/ alone
 struct mjModel_;
 struct mjData_;
@@ -41,11 +43,11 @@ std::vector<std::string> robot_names();
 /// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
 Model load_robot(std::string_view name, std::string_view scene = "");
 
-/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says. It is compiled and
-/// tried in a child process with limits.
+/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says, or as people have it
+/// (mjcf/import/). It is compiled and tried in a child process with limits.
 /// @throws std::runtime_error naming the path, with MuJoCo's own message, what crashed, or the
 /// element whose numbers are not physical
-Model load_mjcf(const std::string& path);
+Model load_mjcf(const std::string& path, const ImportOptions& options = {});
 
 /// From now on load_robot(name) gives the robot of this MJCF file; it stands in no scene.
 /// @throws std::invalid_argument if the name is taken; std::runtime_error as load_mjcf does

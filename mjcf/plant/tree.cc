@@ -25,7 +25,7 @@ void check(const mjModel& m) {
     throw std::invalid_argument(
         "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
   }
-  refuse(m.neq > 0, "joints tied together by <equality>");
+  refuse(m.neq > 0, "joints tied together by <equality> (--lock REGEX fixes them)");
   refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
   for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
     refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");

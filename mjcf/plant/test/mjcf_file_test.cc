@@ -106,17 +106,17 @@ TEST_F(MjcfFile, SoAreThoseOfItsOptionsTendonsSitesAndMotors) {
 
 TEST_F(MjcfFile, WhatMuJoCoSaysIsOneLine) {
   const std::string schema = error(arm("strength='3'"));
-  EXPECT_TRUE(schema.starts_with(path_ + ": XML Error: Schema violation")) << schema;
+  EXPECT_TRUE(schema.starts_with(path_ + ": line 1: <joint> has no attribute")) << schema;
   EXPECT_NE(schema.find("'strength'"), std::string::npos) << schema;
   const std::string name = error(
       put("<mujoco><worldbody><body><joint name='a&#10;b' damping='-1'/><geom size='1'/></body>"
           "</worldbody></mujoco>"));
   EXPECT_EQ(name, path_ + ": joint 'a?b': damping is -1, and must be 0 to 1e+06");
   const std::string layout = error_of([&] {
-    Plant(
-        load_mjcf(put("<mujoco><option integrator='RK4'/><worldbody><body><joint name='j'/><geom "
-                      "size='1'/></body></worldbody>"
-                      "<actuator><position name='a&#10;b' joint='j'/></actuator></mujoco>")));
+    Plant(load_mjcf(
+        put("<mujoco><option integrator='RK4'/><worldbody><body><joint name='j'/><geom "
+            "size='1'/></body></worldbody>"
+            "<actuator><general name='a&#10;b' joint='j' gainprm='3'/></actuator></mujoco>")));
   });
   EXPECT_NE(layout.find("and 'a?b' is none"), std::string::npos) << layout;
   for (const std::string& xml : {std::string("no xml"), std::string("<mujoco>"), std::string()}) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -113,6 +114,40 @@ TEST(Tree, HasMuJoCosTermsOfRandomTrees) {
     expect_mujocos_terms<6>(random_tree(seed, 6), 100, seed);
     expect_mujocos_terms<7>(random_tree(seed, 7), 100, seed);
     expect_mujocos_terms<8>(random_tree(seed, 8), 100, seed);
+  }
+}
+
+// the Jacobian of a point of each body, by mj_jac
+template <int N>
+void expect_mujocos_jacobians(const Model& model, unsigned seed) {
+  const mjModel& m = *model;
+  const State d(mj_makeData(&m));
+  const TreeModel<N> tree = tree_model<N>(model);
+  Random random(seed);
+  const Vec<N> q = random.vector<N>(3);
+  Vec<N>::Map(d->qpos) = q;
+  mj_kinematics(&m, d.get());
+  mj_comPos(&m, d.get());
+  for (int b = 1; b < m.nbody; ++b) {
+    if (m.body_jntnum[b] == 0) continue;
+    const int joint = m.body_jntadr[b] + m.body_jntnum[b] - 1;
+    const Vec<3> point = random.vector<3>(0.3), anchor = Vec<3>::Map(m.jnt_pos + 3 * joint);
+    Vec<3> at;  // in the world
+    mju_rotVecMat(at.data(), point.data(), d->xmat + 9 * b);
+    at += Vec<3>::Map(d->xpos + 3 * b);
+    Eigen::Matrix<double, 3, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor> linear, angular;
+    mj_jac(&m, d.get(), linear.data(), angular.data(), at.data(), b);
+    const Eigen::Matrix<double, 6, N> J = tree.jacobian(q, joint, point - anchor);
+    ASSERT_LT((J.template topRows<3>() - linear).norm(), 1e-12);
+    ASSERT_LT((J.template bottomRows<3>() - angular).norm(), 1e-12);
+  }
+}
+
+TEST(Tree, HasMuJoCosJacobians) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    expect_mujocos_jacobians<1>(random_tree(seed, 1), seed);
+    expect_mujocos_jacobians<4>(random_tree(seed, 4), seed);
+    expect_mujocos_jacobians<7>(random_tree(seed, 7), seed);
   }
 }
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/import/lock.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include "mjcf/import/xml.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext::detail {
+namespace {
+
+std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,
+                                    std::map<std::string, int>& changed) {
+  std::set<std::string> locked;
+  if (lock.empty()) return locked;
+  std::regex which;
+  try {
+    which = std::regex(lock);
+  } catch (const std::regex_error& e) {
+    throw std::runtime_error(fmt::format("--lock '{}': {}", printable_name(lock), e.what()));
+  }
+  std::vector<std::string> names;
+  each(root, [&](XMLElement& e) {
+    if (name_of(e) != "joint" || parent_name(e) != "body") return true;
+    names.push_back(text(e, "name"));
+    if (!std::regex_match(names.back(), which)) return true;
+    locked.insert(names.back());
+    return drop(e, "joint locked", changed);
+  });
+  if (locked.empty()) {
+    throw std::runtime_error(one_line(
+        fmt::format("--lock '{}' matches no joint; there are: {}", lock, fmt::join(names, ", "))));
+  }
+  return locked;
+}
+
+// for each body the nearest one with a joint, itself or above: bodies that have the same do not
+// move against each other
+using Carriers = std::map<std::string, const XMLElement*>;
+void find_carriers(const XMLElement& at, const XMLElement* carrier, Carriers& all) {
+  for (const XMLElement* b = at.FirstChildElement("body"); b != nullptr;
+       b = b->NextSiblingElement("body")) {
+    const bool moves =
+        b->FirstChildElement("joint") != nullptr || b->FirstChildElement("freejoint") != nullptr;
+    const XMLElement* const own = moves ? b : carrier;
+    all[text(*b, "name")] = own;
+    find_carriers(*b, own, all);
+  }
+}
+
+bool is_idle(const XMLElement& e, const std::set<std::string>& locked, Carriers& carriers) {
+  if (name_of(e) != "joint") return carriers[text(e, "body1")] == carriers[text(e, "body2")];
+  const std::string one = text(e, "joint1"), two = text(e, "joint2");
+  const bool first = locked.count(one) > 0, second = two.empty() || locked.count(two) > 0;
+  if (!two.empty() && first != second) {
+    throw std::runtime_error(
+        one_line(fmt::format("joint '{}' is locked and an equality ties '{}' to it: lock both",
+                             first ? one : two, first ? two : one)));
+  }
+  return first;
+}
+
+}  // namespace
+
+void lock_joints(XMLElement& mujoco, const std::string& regex, std::map<std::string, int>& dropped,
+                 std::map<std::string, int>& changed) {
+  const std::set<std::string> locked = remove_joints(mujoco, regex, changed);
+  Carriers carriers;
+  each(mujoco, [&](XMLElement& e) {
+    if (name_of(e) == "worldbody") find_carriers(e, nullptr, carriers);
+    return true;
+  });
+  each(mujoco, [&](XMLElement& e) {
+    if (parent_name(e) == "fixed" && locked.count(text(e, "joint")) > 0)
+      return drop(e, "locked joint of a tendon", dropped);
+    if (parent_name(e) == "equality" && is_idle(e, locked, carriers))
+      return drop(e, "equality of what is locked", dropped);
+    return true;
+  });
+  each(mujoco, [&](XMLElement& e) {
+    if (name_of(e) != "fixed" || e.FirstChildElement() != nullptr) return true;
+    return drop(e, "tendon of locked joints", dropped);
+  });
+}
+
+}  // namespace tauext::detail

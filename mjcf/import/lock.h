@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Joints of an arm that are fixed, and what was tied to them.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace tinyxml2 {
+class XMLElement;
+}
+
+namespace tauext::detail {
+
+/// Takes the joints away whose whole name matches, so that their bodies stand as at 0; then
+/// equalities and tendons that have nothing left to tie.
+/// @param regex ECMAScript's; none if it is empty
+/// @throws std::runtime_error if it is no regular expression or matches no joint, listing them; and
+/// for a joint that an equality ties to one that is locked
+void lock_joints(tinyxml2::XMLElement& mujoco, const std::string& regex,
+                 std::map<std::string, int>& dropped, std::map<std::string, int>& changed);
+
+}  // namespace tauext::detail

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/import/mjcf_text.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "mjcf/import/lock.h"
+#include "mjcf/import/schema.h"
+#include "mjcf/import/xml.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::each, detail::drop, detail::inside, detail::name_of, detail::parent_name,
+    detail::text;
+using tinyxml2::XMLDocument, tinyxml2::XMLElement, tinyxml2::XMLNode;
+class Import {
+ public:
+  Import(const std::string& path, const ImportOptions& options) : path_(path), options_(options) {}
+
+  ImportedText run() {
+    XMLElement& root = load(doc_, path_);
+    if (name_of(root) != "mujoco") fail("line {}: <{}> is no MJCF", root, name_of(root));
+    include(root, fs::path(path_).parent_path(), 0);
+    refuse_unknown(root);
+    find_bodies_with_mass(root);
+    keep(root);
+    detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
+    set_compiler(root);
+    root.InsertNewChildElement("option")->SetAttribute("integrator", "RK4");
+    add_motors(root);
+    tinyxml2::XMLPrinter printer;
+    doc_.Print(&printer);
+    out_.xml = printer.CStr();
+    return std::move(out_);
+  }
+
+ private:
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<int, Args...> words, const XMLElement& e,
+                         Args&&... args) const {
+    throw std::runtime_error(
+        one_line(fmt::format(words, e.GetLineNum(), std::forward<Args>(args)...)));
+  }
+
+  XMLElement& load(XMLDocument& doc, const fs::path& file) {
+    if (!fs::is_regular_file(file))
+      throw std::runtime_error(fmt::format("{}: no such file", file.string()));
+    if (fs::file_size(file) > kMostBytes)
+      throw std::runtime_error(
+          fmt::format("{}: larger than {} MB", file.string(), kMostBytes >> 20));
+    doc.LoadFile(file.c_str());
+    if (doc.Error() || doc.RootElement() == nullptr) {
+      throw std::runtime_error(
+          one_line(fmt::format("{}: no XML: {}", file.filename().string(), doc.ErrorStr())));
+    }
+    return *doc.RootElement();
+  }
+
+  // <include file=".."/> by the content of that file
+  void include(XMLElement& at, const fs::path& folder, int depth) {
+    for (XMLElement* e = at.FirstChildElement(); e != nullptr;) {
+      XMLElement* const next = e->NextSiblingElement();
+      if (name_of(*e) == "include") {
+        const std::string file = text(*e, "file");
+        if (depth > 20 || !included_.insert(file).second)
+          fail("line {}: '{}' is included twice", *e, file);
+        XMLDocument other;
+        XMLElement& root = load(other, folder / file);
+        include(root, folder, depth + 1);
+        XMLNode* behind = e;
+        for (XMLNode* c = root.FirstChild(); c != nullptr; c = c->NextSibling())
+          behind = at.InsertAfterChild(behind, c->DeepClone(&doc_of(at)));
+        at.DeleteChild(e);
+      } else {
+        include(*e, folder, depth);
+      }
+      e = next;
+    }
+  }
+  static XMLDocument& doc_of(XMLElement& e) { return *e.GetDocument(); }
+
+  void refuse_unknown(XMLElement& root) {
+    each(root, [&](XMLElement& e) {
+      for (const std::string_view name : detail::kUnknown) {
+        if (name_of(e) == name && inside(e, "worldbody")) {
+          fail(
+              "line {}: MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
+              "(as newer MuJoCo does when it saves a model)",
+              e, name);
+        }
+      }
+      return true;
+    });
+  }
+
+  // geoms of meshes are needed where no <inertial> says the mass
+  void find_bodies_with_mass(XMLElement& root) {
+    std::string from_geom = "auto";
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) == "compiler" && e.Attribute("inertiafromgeom") != nullptr)
+        from_geom = text(e, "inertiafromgeom");
+      return true;
+    });
+    from_geom_ = from_geom == "true";
+  }
+  bool mass_is_of_geoms(const XMLElement& geom) const {
+    if (parent_name(geom) != "body") return false;
+    return from_geom_ || geom.Parent()->FirstChildElement("inertial") == nullptr;
+  }
+
+  static std::string_view attributes_of(const XMLElement& e) {
+    if (name_of(e) == "joint") {
+      if (parent_name(e) == "equality") return detail::kJointEquality;
+      if (parent_name(e) == "fixed") return detail::kFixedJoint;
+    }
+    for (const detail::Kept& k : detail::kKept) {
+      if (k.element == name_of(e)) return k.attributes;
+    }
+    return {};
+  }
+
+  void keep(XMLElement& root) {
+    while (root.FirstAttribute() != nullptr &&
+           std::string_view(root.FirstAttribute()->Name()) != "model")
+      root.DeleteAttribute(root.FirstAttribute()->Name());
+    std::set<std::string> meshes;
+    each(root, [&](XMLElement& e) {
+      const std::string_view attributes = attributes_of(e);
+      if (attributes.empty()) return drop(e, std::string(name_of(e)), out_.dropped);
+      if (name_of(e) == "geom" && e.Attribute("mesh") != nullptr && !inside(e, "default")) {
+        if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
+        meshes.insert(text(e, "mesh"));
+      }
+      keep_attributes(e, attributes);
+      return true;
+    });
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "mesh" || inside(e, "default")) return true;
+      std::string name = text(e, "name");
+      if (name.empty()) name = fs::path(text(e, "file")).stem().string();
+      if (meshes.count(name) > 0) return true;
+      return drop(e, "mesh", out_.dropped);
+    });
+  }
+
+  static bool is_left_out(const XMLElement& e, const std::string& attribute) {
+    for (const detail::Kept& k : detail::kLeftOut) {
+      if (k.element == name_of(e))
+        return k.attributes.find(" " + attribute + " ") != k.attributes.npos;
+    }
+    return false;
+  }
+
+  void keep_attributes(XMLElement& e, std::string_view kept) {
+    for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr;) {
+      const std::string attribute = a->Name();
+      a = a->Next();
+      if (kept.find(" " + attribute + " ") != kept.npos) continue;
+      if (!is_left_out(e, attribute)) {
+        fail("line {}: <{}> has no attribute '{}' that this import knows; take it out", e,
+             name_of(e), attribute);
+      }
+      if (attribute != "rgba" && attribute != "material" && attribute != "group")
+        ++out_.dropped[fmt::format("{}.{}", name_of(e), attribute)];
+      e.DeleteAttribute(attribute.c_str());
+    }
+  }
+
+  // the last <compiler> is obeyed; newer MuJoCo's default is that a range limits
+  void set_compiler(XMLElement& root) {
+    bool said = false;
+    std::string folder;
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "compiler") return true;
+      said = said || e.Attribute("autolimits") != nullptr;
+      if (e.Attribute("meshdir") != nullptr) folder = text(e, "meshdir");
+      e.DeleteAttribute("meshdir");
+      return true;
+    });
+    XMLElement* const compiler = root.InsertNewChildElement("compiler");
+    if (!said) compiler->SetAttribute("autolimits", true);
+    compiler->SetAttribute("meshdir", (fs::absolute(path_).parent_path() / folder).c_str());
+  }
+
+  void add_motors(XMLElement& root) {
+    std::vector<std::string> joints;
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "joint" || inside(e, "default") || inside(e, "equality") ||
+          inside(e, "tendon"))
+        return true;
+      if (text(e, "name").empty())
+        e.SetAttribute("name", fmt::format("joint{}", joints.size() + 1).c_str());
+      joints.push_back(text(e, "name"));
+      return true;
+    });
+    XMLElement* const actuators = root.InsertNewChildElement("actuator");
+    for (const std::string& j : joints) {
+      XMLElement* const motor = actuators->InsertNewChildElement("motor");
+      motor->SetAttribute("name", j.c_str());
+      motor->SetAttribute("joint", j.c_str());
+    }
+  }
+
+  static constexpr std::uintmax_t kMostBytes = 64u << 20;
+
+  std::string path_;
+  ImportOptions options_;
+  XMLDocument doc_;
+  ImportedText out_;
+  bool from_geom_ = false;
+  std::set<std::string> included_;
+};
+
+}  // namespace
+
+ImportedText import_mjcf(const std::string& path, const ImportOptions& options) {
+  return Import(path, options).run();
+}
+
+}  // namespace tauext

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// An arm's MJCF as people have it, made into what MuJoCo 2.2.2 reads.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace tauext {
+
+/// What becomes of a robot's file.
+struct ImportOptions {
+  /// A regular expression (ECMAScript): joints whose whole name matches are fixed where they are 0,
+  /// with the mass behind them. None if it is empty.
+  std::string lock;
+};
+
+/// A text, and what of the file is not in it.
+struct ImportedText {
+  std::string xml;                     ///< MJCF, in one piece
+  std::map<std::string, int> dropped;  ///< how often each element or attribute, like "geom (mesh)"
+  std::map<std::string, int> changed;  ///< what is different, like "joint locked"
+};
+
+/// Of the file, with all that it includes, the bodies, joints, masses and springs: what dynamics
+/// needs, and MuJoCo 2.2.2 knows. Its actuators are dropped; each joint gets a motor of unit gain.
+/// Meshes are left out but where a mass depends on them. Ranges are limits, as in newer MuJoCo.
+/// @throws std::runtime_error in one line, naming the file, the element and the remedy
+ImportedText import_mjcf(const std::string& path, const ImportOptions& options = {});
+
+}  // namespace tauext

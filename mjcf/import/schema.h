@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What of MJCF the dynamics of an arm needs, as far as MuJoCo 2.2.2 knows it.
+#pragma once
+
+#include <string_view>
+
+namespace tauext::detail {
+
+/// An element that is kept, with the attributes that are; those of other elements go with them.
+struct Kept {
+  std::string_view element;
+  std::string_view attributes;  ///< apart by blanks, one before and behind each
+};
+
+/// The same within <default>, within bodies and beside them.
+inline constexpr Kept kKept[] = {
+    {"compiler",
+     " boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq "
+     "inertiafromgeom inertiagrouprange autolimits meshdir "},
+    {"option",
+     " timestep impratio gravity wind density viscosity solver iterations tolerance "
+     "noslip_iterations mpr_iterations "},
+    {"default", " class "},
+    {"worldbody", " "},
+    {"body", " name childclass pos quat axisangle xyaxes zaxis euler "},
+    {"inertial", " pos quat axisangle xyaxes zaxis euler mass diaginertia fullinertia "},
+    {"joint",
+     " name class type pos axis springdamper limited range margin ref springref stiffness damping "
+     "frictionloss armature solreflimit solimplimit solreffriction solimpfriction "},
+    {"freejoint", " name "},
+    {"geom",
+     " name class type contype conaffinity condim size fromto friction mass density solmix solref "
+     "solimp margin gap pos quat axisangle xyaxes zaxis euler mesh fitscale "},
+    {"site", " name class type size fromto pos quat axisangle xyaxes zaxis euler "},
+    {"asset", " "},
+    {"mesh", " name class file vertex normal face refpos refquat scale smoothnormal "},
+    {"tendon", " "},
+    {"fixed",
+     " name class limited range margin springlength stiffness damping frictionloss solreflimit "
+     "solimplimit solreffriction solimpfriction "},
+    {"equality", " "},
+    {"connect", " name class active body1 body2 anchor solref solimp "},
+    {"weld", " name class active body1 body2 relpose anchor torquescale solref solimp "},
+    {"contact", " "},
+    {"exclude", " name body1 body2 "},
+};
+
+/// Of <equality><joint>, which is another element than a body's.
+inline constexpr std::string_view kJointEquality =
+    " name class active joint1 joint2 polycoef solref solimp ";
+/// Of <fixed><joint>.
+inline constexpr std::string_view kFixedJoint = " joint coef ";
+
+/// Attributes of kept elements, by name, that show things, are about contacts or actuators, or have
+/// no part in the dynamics that we take: left out. Any other one is an error.
+inline constexpr Kept kLeftOut[] = {
+    {"compiler",
+     " assetdir texturedir strippath fitaabb discardvisual usethread fusestatic alignfree "
+     "saveinertial exactmeshinertia convexhull convexmesh "},
+    {"option",
+     " integrator cone jacobian tolerance apirate magnetic o_margin o_solref o_solimp o_friction "
+     "noslip_tolerance mpr_tolerance ccd_iterations ccd_tolerance ls_iterations ls_tolerance "
+     "sdf_iterations sdf_initpoints actuatorgroupdisable sleep_tolerance collision "},
+    {"body", " gravcomp user mocap sleep "},
+    {"joint", " group user actuatorfrcrange actuatorfrclimited actuatorgravcomp "},
+    {"freejoint", " group align "},
+    {"geom", " group priority material rgba user hfield fluidshape fluidcoef shellinertia "},
+    {"site", " group material rgba user "},
+    {"mesh",
+     " maxhullvert inertia content_type builtin params material user texcoord "
+     "octree_maxdepth "},
+    {"fixed", " group user width rgba actuatorfrcrange actuatorfrclimited "},
+};
+
+/// Newer elements that would change the arm if they were left out.
+inline constexpr std::string_view kUnknown[] = {"frame", "replicate", "attach", "composite",
+                                                "flexcomp"};
+
+}  // namespace tauext::detail

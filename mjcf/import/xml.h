@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Small things about XML elements.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace tauext::detail {
+
+using tinyxml2::XMLElement;
+
+inline std::string_view name_of(const XMLElement& e) {
+  return e.Name();
+}
+
+/// "" if there is none.
+inline std::string text(const XMLElement& e, const char* attribute) {
+  const char* const value = e.Attribute(attribute);
+  return value == nullptr ? "" : value;
+}
+
+/// The name of the element around it, or "".
+inline std::string_view parent_name(const XMLElement& e) {
+  const XMLElement* const parent = e.Parent()->ToElement();
+  return parent == nullptr ? std::string_view() : name_of(*parent);
+}
+
+/// Whether it stands in such an element, at any depth.
+inline bool inside(const XMLElement& e, std::string_view section) {
+  for (const tinyxml2::XMLNode* p = e.Parent(); p != nullptr && p->ToElement() != nullptr;
+       p = p->Parent()) {
+    if (name_of(*p->ToElement()) == section) return true;
+  }
+  return false;
+}
+
+/// Calls visit(element) for every element within `at`; where it says false it may have deleted the
+/// element.
+template <class Visit>
+void each(XMLElement& at, Visit&& visit) {
+  for (XMLElement* e = at.FirstChildElement(); e != nullptr;) {
+    XMLElement* const next = e->NextSiblingElement();
+    if (visit(*e)) each(*e, visit);
+    e = next;
+  }
+}
+
+/// Deletes it and counts that; false, for `each`.
+inline bool drop(XMLElement& e, const std::string& what, std::map<std::string, int>& dropped) {
+  ++dropped[what];
+  e.Parent()->DeleteChild(&e);
+  return false;
+}
+
+}  // namespace tauext::detail

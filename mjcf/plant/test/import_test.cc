@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Other people's MJCF (mjcf/import/), as MuJoCo then reads it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "mjcf/import/mjcf_text.h"
+#include "mjcf/plant/plant.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/test/error_of.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// two links, and a hand whose fingers an equality ties: as newer MuJoCo has it, or (`plain`) as
+// MuJoCo 2.2.2 reads it, the fingers fixed
+std::string arm(bool plain) {
+  const auto newer = [plain](const char* words) { return plain ? "" : words; };
+  return fmt::format(
+      "<mujoco model='arm'><compiler angle='radian' {}/>{}"
+      "<worldbody>{}<body name='base'><body name='upper' pos='0 0 .3' {}>"
+      "<inertial pos='.01 .02 .15' mass='4' diaginertia='.04 .05 .01'/>"
+      "<joint name='shoulder' axis='0 1 0' damping='.5' frictionloss='.3' armature='.1' {}/>{}"
+      "<body name='lower' pos='0 .01 .3'><joint name='elbow' axis='1 0 0' damping='.2'/>"
+      "<geom type='capsule' size='.03' fromto='0 0 0 0 0 .2' {}/>"
+      "<body name='hand' pos='0 0 .2'><inertial pos='0 0 .02' mass='.7' fullinertia='2e-3 2e-3 "
+      "1e-3 1e-4 0 0'/>"
+      "<body name='left' pos='0 .03 .05'><inertial pos='0 0 .01' mass='.1' diaginertia='1e-4 1e-4 "
+      "1e-5'/>{}</body>"
+      "<body name='right' pos='0 -.03 .05'><inertial pos='0 0 .01' mass='.1' diaginertia='1e-4 "
+      "1e-4 1e-5'/>{}</body></body></body></body></body></worldbody>{}</mujoco>",
+      newer("autolimits='true' meshdir='assets'"),
+      newer("<option integrator='implicitfast'/><visual><global offwidth='100'/></visual>"
+            "<asset><mesh file='link.obj' maxhullvert='20'/><material name='grey'/></asset>"
+            "<default><default class='arm'><geom material='grey'/><joint range='-2 2'/>"
+            "<position kp='100' dampratio='1'/></default></default>"),
+      newer("<light pos='0 0 1'/><camera name='c' resolution='10 10'/>"),
+      newer("gravcomp='1' childclass='arm'"), newer("actuatorfrcrange='-87 87'"),
+      newer("<geom type='mesh' mesh='link'/>"), newer("material='grey' rgba='1 0 0 1'"),
+      newer("<joint name='left_finger' type='slide' axis='0 1 0' range='0 .04'/>"),
+      newer("<joint name='right_finger' type='slide' axis='0 -1 0' range='0 .04'/>"),
+      plain ? "<actuator><motor joint='shoulder'/><motor joint='elbow'/></actuator>"
+            : "<tendon><fixed name='grip'><joint joint='left_finger' coef='1'/></fixed></tendon>"
+              "<equality><joint joint1='left_finger' joint2='right_finger'/></equality>"
+              "<actuator><position joint='shoulder' inheritrange='1'/><general tendon='grip'/>"
+              "</actuator><sensor><jointpos joint='elbow'/></sensor>"
+              "<keyframe><key qpos='0 0 0 0'/></keyframe>");
+}
+
+class Import : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string put(const std::string& xml, const std::string& name = "robot.xml") {
+    std::ofstream(folder_ / name) << xml;
+    return folder_ / name;
+  }
+  // with these bodies
+  std::string body(const std::string& xml) {
+    return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("import_{}", ::getpid());
+};
+
+constexpr const char* kFingers = ".*_finger";
+
+TEST_F(Import, OfNewerMjcfIsTheSameArm) {
+  const TreeModel<2> one = tree_model<2>(load_mjcf(put(arm(false)), {kFingers})),
+                     two = tree_model<2>(load_mjcf(put(arm(true))));
+  const Vec<2> q(0.4, -1.1), qd(0.7, -0.3);
+  EXPECT_LT((one.inertia(q) - two.inertia(q)).norm(), 1e-14);
+  EXPECT_LT((one.bias(q, qd) - two.bias(q, qd)).norm(), 1e-13);
+  EXPECT_GT(two.bias(q, qd).norm(), 1);
+  EXPECT_EQ(one.friction(qd), two.friction(qd));
+}
+
+TEST_F(Import, SaysWhatItLeavesOut) {
+  const ImportedText text = import_mjcf(put(arm(false)), {kFingers});
+  for (const char* what : {"actuator", "sensor", "keyframe", "geom (mesh)", "mesh", "body.gravcomp",
+                           "joint.actuatorfrcrange", "option.integrator",
+                           "equality of what is locked", "tendon of locked joints"}) {
+    EXPECT_EQ(text.dropped.count(what), 1u) << what;
+  }
+  EXPECT_EQ(text.changed.at("joint locked"), 2);
+  // its own output needs no import, and an import of it changes nothing
+  const std::string again = put(text.xml, "again.xml");
+  EXPECT_EQ(tree_of(load_mjcf(again)).joints.size(), 2u);
+  EXPECT_EQ(import_mjcf(again).changed.size(), 0u);
+}
+
+TEST_F(Import, FlattensWhatIsIncluded) {
+  put("<mujoco><body name='link'><include file='joint.xml'/><geom size='.1'/></body></mujoco>",
+      "link.xml");
+  put("<mujoco><joint name='a' axis='0 1 0'/></mujoco>", "joint.xml");
+  const std::string path = body("<include file='link.xml'/>");
+  EXPECT_EQ(tree_of(load_mjcf(path)).joints.size(), 1u);
+  const std::string xml = import_mjcf(path).xml;
+  EXPECT_EQ(xml.find("include"), std::string::npos) << xml;
+  EXPECT_NE(xml.find("joint name=\"a\""), std::string::npos) << xml;
+}
+
+TEST_F(Import, OfADrivenArmCanBeSimulated) {
+  Plant plant(load_mjcf(put(arm(false)), {kFingers}));
+  EXPECT_EQ(plant.dof(), 2);
+}
+
+TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
+  const auto error = [&](const std::string& path, const std::string& lock = "") {
+    return error_of([&] { tree_of(load_mjcf(path, {lock})); });
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  };
+  const std::string path = put(arm(false));
+  has(error(path), "--lock");
+  has(error(path, "finger"), "there are: shoulder, elbow, left_finger, right_finger");
+  has(error(path, "left_finger"), "ties 'right_finger' to it: lock both");
+  has(error(path, "("), "--lock '('");
+  has(error(body("<frame><body/></frame>")), "MuJoCo 2.2.2 does not know <frame>");
+  has(error(body("<include file='none.xml'/>")), "none.xml");
+  has(error(body("<include file='robot.xml'/>")), "robot.xml");
+  has(error(put("<robot/>")), "robot.xml");
+  has(error(body("<body><joint name='a' dampening='1'/></body>")), "'dampening'");
+  has(error(body("<body><joint name='a' gravcomp='1'/></body>")), "'gravcomp'");
+  has(error(put("")), "robot.xml");
+  // the mass is the mesh's
+  has(error(put("<mujoco><asset><mesh name='m' file='gone.stl'/></asset><worldbody><body><joint "
+                "name='j'/><geom type='mesh' mesh='m'/></body></worldbody></mujoco>")),
+      "gone.stl");
+}
+
+}  // namespace
+}  // namespace tauext::test
