@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes of somebody's MJCF what every program here, and MuJoCo 2.2.2, reads.
+// Makes of somebody's MJCF or URDF what every program here, and MuJoCo 2.2.2, reads.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,16 +59,16 @@ int import(const std::string& file, const ImportOptions& options, const std::str
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Reads an arm's MJCF as people have it, and writes what its dynamics needs, in one file "
-      "that\n"
-      "MuJoCo 2.2.2 reads: bodies, joints, masses and friction, and a motor of gain 1 on each\n"
-      "joint. Says what it leaves out: actuators, meshes, contacts, newer attributes. --robot\n"
-      "FILE.xml does the same by itself.\n\n"
+      "Reads an arm's MJCF or URDF as people have it, and writes what its dynamics needs, in one\n"
+      "file that MuJoCo 2.2.2 reads: bodies, joints, masses and friction, and a motor of gain 1 "
+      "on\n"
+      "each joint. Says what it leaves out: actuators, meshes, contacts, newer attributes.\n"
+      "--robot FILE does the same by itself.\n\n"
       "  tauext-import panda.xml --lock 'finger_joint.*' --out arm.xml\n",
       "tauext-import");
   std::string file, out;
   ImportOptions options;
-  app.add_option("file", file, "MJCF file")->required()->type_name("FILE.xml");
+  app.add_option("file", file, "MJCF or URDF file")->required()->type_name("FILE.xml|FILE.urdf");
   app.add_option("--lock", options.lock,
                  "fix joints whose whole name matches where they are 0; mass stays")
       ->type_name("REGEX");

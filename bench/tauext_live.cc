@@ -21,8 +21,8 @@ using namespace tauext;
 
 // where samples come from
 void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
-  app.add_option("--robot", o.robot, "robot (see --list), or its MJCF file")
-      ->type_name("NAME|FILE.xml");
+  app.add_option("--robot", o.robot, "robot (see --list), or a file of MJCF or URDF")
+      ->type_name("NAME|FILE");
   app.add_option("--lock", o.lock, "joints of that file to fix, like grippers'")
       ->type_name("REGEX");
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");

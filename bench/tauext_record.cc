@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   ModelError model_error;
   Recording recording;
   bool list = false;
-  app.add_option("--robot", robot_name, "robot (see --list)")->type_name("NAME|FILE.xml");
+  app.add_option("--robot", robot_name, "robot (see --list)")->type_name("NAME|FILE");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_option("--type", type, "of an LCM log's messages: tauext, iiwa or panda")

@@ -166,8 +166,8 @@ struct Flags {
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("log", f.log, "log to read: CSV or LCM");
   app.add_option("--channel", f.channel, "of an LCM log with several that hold measurements");
-  app.add_option("--robot", f.robot, "robot (see --list), or its MJCF file")
-      ->type_name("NAME|FILE.xml");
+  app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
+      ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
       ->type_name("REGEX");
   app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")

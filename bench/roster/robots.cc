@@ -75,7 +75,7 @@ const std::vector<std::unique_ptr<const Robot>>& robots() {
 }
 
 bool is_robot_file(std::string_view name_or_file) {
-  return name_or_file.ends_with(".xml");
+  return name_or_file.ends_with(".xml") || name_or_file.ends_with(".urdf");
 }
 
 const Robot& robot(std::string_view name_or_file, const std::string& lock) {
@@ -118,7 +118,8 @@ std::string list_known() {
     out += table.format();
   }
   return out +
-         "\nrobot FILE.xml: any MJCF arm of 1 to 8 joints, hinges and slides; tauext-replay and "
+         "\nrobot FILE.xml or FILE.urdf: any arm of 1 to 8 joints, hinges and slides; "
+         "tauext-replay and "
          "tauext-live take it\n\n" +
          list_fields();
 }

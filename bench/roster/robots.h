@@ -24,9 +24,9 @@ void add_robot(MakeRobot make);
 /// Every robot of bench/roster/roster.h, and the registered ones.
 const std::vector<std::unique_ptr<const Robot>>& robots();
 
-/// A robot by its name, or by the path of its MJCF file (it ends in .xml), which then is its name:
-/// an arm of 1 to 8 hinges and slides with the estimators and detectors that every arm has. A file
-/// is read once.
+/// A robot by its name, or by the path of its MJCF or URDF file (.xml, .urdf), which then is its
+/// name: an arm of 1 to 8 hinges and slides with the estimators and detectors that every arm has.
+/// A file is read once.
 /// @param lock joints of a file that are fixed (ImportOptions)
 /// @throws std::invalid_argument for an unknown name, listing the known ones, or one with `lock`;
 /// std::runtime_error or std::invalid_argument naming the path and what is wrong with it

@@ -11,6 +11,7 @@
 
 #include "mjcf/import/lock.h"
 #include "mjcf/import/schema.h"
+#include "mjcf/import/urdf.h"
 #include "mjcf/import/xml.h"
 #include "mjcf/trace/printable.h"
 
@@ -26,8 +27,15 @@ class Import {
   Import(const std::string& path, const ImportOptions& options) : path_(path), options_(options) {}
 
   ImportedText run() {
-    XMLElement& root = load(doc_, path_);
-    if (name_of(root) != "mujoco") fail("line {}: <{}> is no MJCF", root, name_of(root));
+    load(doc_, path_);
+    if (name_of(*doc_.RootElement()) == "robot") {
+      XMLDocument mjcf;
+      detail::urdf_to_mjcf(*doc_.RootElement(), mjcf, out_.dropped);
+      mjcf.DeepCopy(&doc_);
+    }
+    XMLElement& root = *doc_.RootElement();
+    if (name_of(root) != "mujoco")
+      fail("line {}: <{}> is no MJCF, and no URDF", root, name_of(root));
     include(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     find_bodies_with_mass(root);

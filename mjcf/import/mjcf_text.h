@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// An arm's MJCF as people have it, made into what MuJoCo 2.2.2 reads.
+/// An arm's MJCF or URDF as people have it, made into what MuJoCo 2.2.2 reads.
 #pragma once
 
 #include <map>

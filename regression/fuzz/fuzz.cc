@@ -39,7 +39,7 @@
 namespace tauext {
 
 // what thresholds are read for
-const Robot& robot(std::string_view name_or_file) {
+const Robot& robot(std::string_view name_or_file, const std::string& /*lock*/) {
   static const AnyArm arm;
   if (name_or_file != arm.name()) throw std::invalid_argument("unknown robot");
   return arm;

@@ -2,6 +2,7 @@
 // Other people's MJCF (mjcf/import/), as MuJoCo then reads it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "mjcf/import/mjcf_text.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/test/arm_dynamics.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
@@ -111,6 +113,68 @@ TEST_F(Import, FlattensWhatIsIncluded) {
 TEST_F(Import, OfADrivenArmCanBeSimulated) {
   Plant plant(load_mjcf(put(arm(false)), {kFingers}));
   EXPECT_EQ(plant.dof(), 2);
+}
+
+// of three joints with everything turned; `more` stands in its robot
+std::string urdf(const std::string& more = "") {
+  return "<?xml version='1.0'?><robot name='arm'><link name='base'/><link name='upper'><visual>"
+         "<geometry><mesh filename='package://gone/upper.stl'/></geometry></visual><inertial>"
+         "<origin xyz='.01 .02 .15' rpy='.3 -.2 .5'/><mass value='4'/><inertia ixx='.04' "
+         "ixy='.001' ixz='0' iyy='.05' iyz='-.002' izz='.02'/></inertial></link><link name='lower'>"
+         "<inertial><origin xyz='0 0 .1'/><mass value='2'/><inertia ixx='.02' ixy='0' ixz='0' "
+         "iyy='.02' iyz='0' izz='.01'/></inertial></link><link name='tool'><inertial><mass "
+         "value='.5'/><inertia ixx='.002' ixy='0' ixz='0' iyy='.001' iyz='0' izz='.002'/>"
+         "</inertial></link><joint name='shoulder' type='revolute'><parent link='base'/><child "
+         "link='upper'/><origin xyz='0 .1 .3' rpy='.1 .2 .3'/><axis xyz='0 1 0'/><limit lower='-2' "
+         "upper='2' effort='10' velocity='1'/><dynamics damping='.5' friction='.3'/></joint>"
+         "<joint name='elbow' type='continuous'><parent link='upper'/><child link='lower'/><origin "
+         "xyz='0 0 .3' rpy='-.4 0 1'/><axis xyz='1 0 1'/></joint><joint name='lift' "
+         "type='prismatic'><parent link='lower'/><child link='tool'/><origin xyz='0 0 .2' rpy='0 "
+         "1 0'/><axis xyz='0 0 1'/><limit lower='0' upper='.1' effort='10' velocity='1'/></joint>" +
+         more + "</robot>";
+}
+
+TEST_F(Import, OfUrdfIsTheArmThatMuJoCosOwnReaderMakes) {
+  const std::string path = put(urdf(), "arm.urdf");
+  const TreeModel<3> tree = tree_model<3>(load_mjcf(path));
+  char why[1000];
+  const Model own(mj_loadXML(path.c_str(), nullptr, why, sizeof why),
+                  [](const mjModel* m) { mj_deleteModel(const_cast<mjModel*>(m)); });
+  ASSERT_NE(own, nullptr) << why;
+  const MjcfArm<3> oracle(own);
+  const Vec<3> q(0.4, -1.1, 0.05), qd(0.7, -0.3, 0.2);
+  EXPECT_LT((tree.inertia(q) - oracle.inertia(q)).norm(), 1e-8);  // MuJoCo finds axes to 1e-8
+  EXPECT_LT((tree.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-8);
+  EXPECT_LT((tree.friction(qd) - oracle.friction(qd)).norm(), 1e-9);
+  EXPECT_GT(tree.friction(qd)[0], 0.5);
+}
+
+TEST_F(Import, OfUrdfSaysWhatIsWrong) {
+  const auto error = [&](const std::string& more, const std::string& lock = "") {
+    const std::string path = put(urdf(more), "arm.urdf");
+    return error_of([&] { tree_of(load_mjcf(path, {lock})); });
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const std::string fingers =
+      "<link name='a'><inertial><mass value='.1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3'/>"
+      "</inertial></link><joint name='left' type='prismatic'><parent link='tool'/><child "
+      "link='a'/></joint><link name='b'><inertial><mass value='.1'/><inertia ixx='1e-3' "
+      "iyy='1e-3' izz='1e-3'/></inertial></link><joint name='right' type='prismatic'><parent "
+      "link='tool'/><child link='b'/><mimic joint='left'/></joint>";
+  has(error(fingers), "--lock");
+  EXPECT_EQ(error(fingers, "left|right"), "no error");
+  has(error("<joint name='x' type='fixed'><parent link='tool'/><child link='none'/></joint>"),
+      "joint 'x': its child 'none' is no link");
+  has(error("<link name='alone'/>"), "2 links are no child");
+  has(error("<link name='c'/><joint name='y' type='floating'><parent link='tool'/><child "
+            "link='c'/></joint>"),
+      "joint 'y' is floating");
+  has(error("<xacro:include filename='x'/>"), "xacro");
+  has(error("<link name='c'/><joint name='y' type='fixed'><parent link='tool'/><child link='c'/>"
+            "<origin xyz='0 0'/></joint>"),
+      "xyz of <origin> is '0 0', and must be 3 numbers");
 }
 
 TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/import/urdf.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <initializer_list>
+#include <locale>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mjcf/import/xml.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext::detail {
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector3d;
+
+template <class... Args>
+[[noreturn]] void fail(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
+  throw std::runtime_error(one_line(
+      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...))));
+}
+
+// numbers of an attribute, or of none
+std::vector<double> numbers(const XMLElement& e, const char* attribute, std::size_t n) {
+  std::vector<double> all;
+  std::istringstream in(text(e, attribute));
+  in.imbue(std::locale::classic());
+  for (double x = 0; in >> x;) all.push_back(x);
+  if (all.size() != n || !in.eof())
+    fail(e, "{} of <{}> is '{}', and must be {} numbers", attribute, name_of(e), text(e, attribute),
+         n);
+  return all;
+}
+double number(const XMLElement* e, const char* attribute, double otherwise) {
+  if (e == nullptr || e->Attribute(attribute) == nullptr) return otherwise;
+  return numbers(*e, attribute, 1).front();
+}
+Vector3d vector(const XMLElement* e, const char* attribute, const Vector3d& otherwise) {
+  if (e == nullptr || e->Attribute(attribute) == nullptr) return otherwise;
+  return Vector3d::Map(numbers(*e, attribute, 3).data());
+}
+
+// of <origin>: about the fixed axes x, y, z in turn
+Matrix3d rotation(const XMLElement* origin) {
+  const Vector3d rpy = vector(origin, "rpy", Vector3d::Zero());
+  return (Eigen::AngleAxisd(rpy[2], Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy[1], Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy[0], Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+void set(XMLElement& e, const char* attribute, std::initializer_list<double> values) {
+  e.SetAttribute(attribute, fmt::format("{}", fmt::join(values, " ")).c_str());
+}
+
+class Urdf {
+ public:
+  Urdf(const XMLElement& robot, XMLElement& mujoco, std::map<std::string, int>& dropped)
+      : mujoco_(mujoco) {
+    for (const XMLElement* e = robot.FirstChildElement(); e != nullptr;
+         e = e->NextSiblingElement()) {
+      const std::string_view kind = name_of(*e);
+      if (kind.starts_with("xacro:"))
+        fail(*e, "<{}>: this is no URDF yet; run it through xacro", kind);
+      if (kind == "link") {
+        if (!links_.emplace(text(*e, "name"), e).second)
+          fail(*e, "there are two links '{}'", text(*e, "name"));
+        for (const XMLElement* c = e->FirstChildElement(); c != nullptr;
+             c = c->NextSiblingElement())
+          if (name_of(*c) != "inertial") ++dropped[std::string(name_of(*c))];
+      } else if (kind == "joint") {
+        joints_.push_back(e);
+      } else {
+        ++dropped[std::string(kind)];
+      }
+    }
+    for (const XMLElement* j : joints_) {
+      const std::string child = link_of(*j, "child"), parent = link_of(*j, "parent");
+      if (!joint_of_child_.emplace(child, j).second)
+        fail(*j, "link '{}' is the child of two joints", child);
+      children_[parent].push_back(j);
+    }
+    XMLElement& world = *mujoco.InsertNewChildElement("worldbody");
+    int roots = 0;
+    for (const auto& [name, link] : links_) {
+      if (joint_of_child_.count(name) > 0) continue;
+      ++roots;
+      add_body(*link, nullptr, world, 0);
+    }
+    if (roots != 1)
+      fail(robot, "{} links are no child of a joint, and one must be: the base", roots);
+    for (const auto& [name, link] : links_)
+      if (placed_.count(name) == 0) fail(*link, "link '{}' hangs on itself", name);
+  }
+
+ private:
+  std::string link_of(const XMLElement& joint, const char* end) const {
+    const XMLElement* const e = joint.FirstChildElement(end);
+    const std::string link = e == nullptr ? "" : text(*e, "link");
+    if (links_.count(link) == 0)
+      fail(joint, "joint '{}': its {} '{}' is no link", text(joint, "name"), end, link);
+    return link;
+  }
+
+  void add_body(const XMLElement& link, const XMLElement* joint, XMLElement& parent, int depth) {
+    placed_.insert(text(link, "name"));
+    if (depth > 200) fail(link, "more than 200 links in a row");
+    XMLElement& body = *parent.InsertNewChildElement("body");
+    body.SetAttribute("name", text(link, "name").c_str());
+    if (joint != nullptr) {
+      const XMLElement* const origin = joint->FirstChildElement("origin");
+      const Vector3d at = vector(origin, "xyz", Vector3d::Zero());
+      const Eigen::Quaterniond q(rotation(origin));
+      set(body, "pos", {at[0], at[1], at[2]});
+      set(body, "quat", {q.w(), q.x(), q.y(), q.z()});
+    }
+    add_inertial(link, body);
+    if (joint != nullptr) add_joint(*joint, body);
+    for (const XMLElement* j : children_[text(link, "name")])
+      add_body(*links_.at(link_of(*j, "child")), j, body, depth + 1);
+  }
+
+  static void add_inertial(const XMLElement& link, XMLElement& body) {
+    const XMLElement* const inertial = link.FirstChildElement("inertial");
+    if (inertial == nullptr) return;
+    const XMLElement* const origin = inertial->FirstChildElement("origin");
+    const XMLElement* const mass = inertial->FirstChildElement("mass");
+    const XMLElement* const tensor = inertial->FirstChildElement("inertia");
+    if (mass == nullptr || tensor == nullptr)
+      fail(*inertial, "link '{}': its <inertial> wants a <mass> and an <inertia>",
+           text(link, "name"));
+    const double kg = numbers(*mass, "value", 1).front();
+    const auto of = [&](const char* which) { return number(tensor, which, 0); };
+    Matrix3d I;
+    I << of("ixx"), of("ixy"), of("ixz"), of("ixy"), of("iyy"), of("iyz"), of("ixz"), of("iyz"),
+        of("izz");
+    if (kg == 0 && I.isZero(0)) return;
+    const Matrix3d R = rotation(origin);
+    I = R * I * R.transpose();
+    const Vector3d at = vector(origin, "xyz", Vector3d::Zero());
+    XMLElement& out = *body.InsertNewChildElement("inertial");
+    set(out, "pos", {at[0], at[1], at[2]});
+    set(out, "mass", {kg});
+    set(out, "fullinertia", {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)});
+  }
+
+  void add_joint(const XMLElement& joint, XMLElement& body) {
+    const std::string type = text(joint, "type"), name = text(joint, "name");
+    if (type == "fixed") return;
+    const bool slide = type == "prismatic";
+    if (!slide && type != "revolute" && type != "continuous")
+      fail(joint, "joint '{}' is {}: revolute, continuous, prismatic and fixed are known", name,
+           type);
+    XMLElement& out = *body.InsertNewChildElement("joint");
+    out.SetAttribute("name", name.c_str());
+    out.SetAttribute("type", slide ? "slide" : "hinge");
+    const Vector3d axis = vector(joint.FirstChildElement("axis"), "xyz", Vector3d::UnitX());
+    set(out, "axis", {axis[0], axis[1], axis[2]});
+    const XMLElement* const limit = joint.FirstChildElement("limit");
+    const double lower = number(limit, "lower", 0), upper = number(limit, "upper", 0);
+    if (type != "continuous" && lower < upper) set(out, "range", {lower, upper});
+    const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
+    set(out, "damping", {number(dynamics, "damping", 0)});
+    set(out, "frictionloss", {number(dynamics, "friction", 0)});
+    if (const XMLElement* const mimic = joint.FirstChildElement("mimic")) {
+      XMLElement* all = mujoco_.FirstChildElement("equality");
+      if (all == nullptr) all = mujoco_.InsertNewChildElement("equality");
+      XMLElement& tie = *all->InsertNewChildElement("joint");
+      tie.SetAttribute("joint1", name.c_str());
+      tie.SetAttribute("joint2", text(*mimic, "joint").c_str());
+      set(tie, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
+    }
+  }
+
+  XMLElement& mujoco_;
+  std::map<std::string, const XMLElement*> links_, joint_of_child_;
+  std::map<std::string, std::vector<const XMLElement*>> children_;
+  std::vector<const XMLElement*> joints_;
+  std::set<std::string> placed_;
+};
+
+}  // namespace
+
+void urdf_to_mjcf(const XMLElement& robot, tinyxml2::XMLDocument& mjcf,
+                  std::map<std::string, int>& dropped) {
+  mjcf.Clear();
+  XMLElement* const mujoco = mjcf.NewElement("mujoco");
+  mjcf.InsertEndChild(mujoco);
+  mujoco->InsertNewChildElement("compiler")->SetAttribute("angle", "radian");
+  Urdf(robot, *mujoco, dropped);
+}
+
+}  // namespace tauext::detail
