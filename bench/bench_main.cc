@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/program/program.h"
@@ -48,6 +50,7 @@ struct Flags {
   Selection selection;
   StudyFlags studies;  // what runs instead of the suite; its format is that of all tables
   bool list = false, list_metrics = false, list_tests = false, paper = false;
+  std::string lock;
   std::optional<std::string> out, out_format, format, golden, commands, lcm, lcm_log;
   std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
 };
@@ -91,7 +94,13 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   }
 }
 
-int run(const CLI::App& app, const Flags& flags) {
+int run(const CLI::App& app, Flags& flags) {
+  std::optional<std::string>& name = flags.studies.robot;
+  if (!name && !flags.lock.empty()) throw std::invalid_argument("--lock: of which --robot FILE?");
+  if (name) {
+    name = with_lock(*name, flags.lock);
+    flags.selection.robot = &robot(*name);
+  }
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
   const bool study = wants_study(flags.studies);
@@ -105,7 +114,7 @@ int run(const CLI::App& app, const Flags& flags) {
   if (study) return run_study(flags.studies, flags.suite);
   if (flags.golden) return run_golden(flags, all ? "" : filter);
   if (flags.commands) {
-    fmt::print("{}", record_and_replay(*flags.commands, flags.suite));
+    fmt::print("{}", record_and_replay(*flags.commands, flags.suite, flags.selection));
     return kGood;
   }
   if (flags.list) {
@@ -137,9 +146,14 @@ Arguments take_benchmark_flags(int argc, char** argv, Flags& flags) {
   flags.out = take_flag(a.texts, "--benchmark_out");
   flags.format = take_flag(a.texts, "--benchmark_format");
   flags.out_format = take_flag(a.texts, "--benchmark_out_format");
-  bool help = false;
+  const auto given = [&](std::string_view flag) {
+    return std::any_of(a.texts.begin(), a.texts.end(),
+                       [&](const std::string& text) { return text.starts_with(flag); });
+  };
+  const bool help = given("--help") || given("-h");
+  if (!help && !given("--benchmark_min_time"))  // its own 0.5 s would be minutes
+    a.texts.insert(a.texts.begin() + 1, "--benchmark_min_time=0.05");
   for (std::string& text : a.texts) {
-    help = help || text == "--help" || text == "-h";
     flags.list_tests = flags.list_tests || text.starts_with("--benchmark_list_tests");
     a.pointers.push_back(text.data());
   }
@@ -150,6 +164,10 @@ Arguments take_benchmark_flags(int argc, char** argv, Flags& flags) {
 }
 
 void add_selection_flags(CLI::App& app, Flags& flags) {
+  app.add_option("--robot", flags.studies.robot,
+                 "only this one, or that of an MJCF or URDF file (with --lock REGEX)")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", flags.lock)->group("");
   app.add_option("--estimator", flags.selection.estimators,
                  "run only these, as NAME[:KEY=VALUE].., like mo2:bandwidth=50")
       ->delimiter(',')
@@ -189,8 +207,8 @@ void add_flags(CLI::App& app, Flags& flags) {
       ->type_name("FILE");
   app.add_option("--noise_probe", flags.suite.noise_probe)->group("");  // bench/score/README.md
   add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
-  for (const char* less_used :
-       {"--kp", "--kd", "--velocity_noise", "--loadcell", "--degrade", "--list-metrics"}) {
+  for (const char* less_used : {"--kp", "--kd", "--velocity_noise", "--loadcell", "--degrade",
+                                "--list-metrics", "--lcm-log"}) {
     app.get_option(less_used)->group("");
   }
 }
@@ -207,7 +225,7 @@ int bench_main(int argc, char** argv) {
   add_flags(app, flags);
   app.footer(
       "Of tauext-record: --loadcell --degrade --velocity_noise --kp --kd. Google Benchmark's:\n"
-      "  --benchmark_filter=REGEX --benchmark_out=FILE (JSON) --benchmark_min_time=SECONDS\n"
+      "  --benchmark_filter=REGEX --benchmark_out=FILE (JSON) --benchmark_min_time=0.05\n"
       "  --benchmark_repetitions=N --benchmark_format=console|json");
   Arguments rest = take_benchmark_flags(argc, argv, flags);
   return run_program(app, rest.count, rest.pointers.data(), [&] {

@@ -17,7 +17,7 @@
 #include "bench/roster/robot_of.h"
 #include "bench/roster/robots.h"
 #include "mjcf/plant/model.h"
-#include "mjcf/scenario.h"
+#include "mjcf/scenarios/scenario.h"
 
 namespace tauext {
 

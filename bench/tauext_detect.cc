@@ -26,7 +26,7 @@ using namespace tauext;
 struct Flags {
   study::StudyOptions study;
   study::CalibrationOptions calibration;
-  std::string calibrate_to, thresholds, out, format = "text";
+  std::string lock, calibrate_to, thresholds, out, format = "text";
   bool list = false;
 };
 
@@ -93,7 +93,8 @@ int run_study(const Flags& f) {
   return kGood;
 }
 
-int run(const CLI::App& app, const Flags& f) {
+int run(const CLI::App& app, Flags& f) {
+  f.study.robot = with_lock(f.study.robot, f.lock);
   if (f.list) {
     list_conditions(f.study.robot);
     return kGood;
@@ -130,8 +131,10 @@ void add_flags(CLI::App& app, Flags& f) {
       ->type_name("FILE");
   app.add_option("--format", f.format, "of the printed table: text, csv, json, md or latex")
       ->type_name("NAME");
-  app.add_option("--robot", f.study.robot, "robot to study; by default the first that has runs")
-      ->type_name("NAME");
+  app.add_option("--robot", f.study.robot,
+                 "robot to study, or its file of MJCF or URDF (with --lock REGEX)")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", f.lock)->group("");
   add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
   add_count(app, "--runs", f.calibration.runs, 1, 10000,
             "training runs of 30 s for each condition");
@@ -153,8 +156,8 @@ void add_flags(CLI::App& app, Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Every detector behind every estimator of a robot: recall, delay, false alarms, pushes and\n"
-      "clampings, under many conditions. Without a file of thresholds it calibrates first.\n\n"
+      "Tries every detector behind every estimator of a robot; without --thresholds it "
+      "calibrates.\n\n"
       "  tauext-detect --calibrate thresholds.json\n"
       "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
       "tauext-detect");

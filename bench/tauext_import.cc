@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cctype>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -36,6 +39,48 @@ ArmTree arm_of(const std::string& file, const ImportOptions& options) {
   }
 }
 
+template <class Numbers>
+std::string listed(const Numbers& all) {
+  return fmt::format("{{{:.17g}}}", fmt::join(all.reshaped().begin(), all.reshaped().end(), ", "));
+}
+
+// by rows, as Eigen's << takes them
+std::string rows(const Eigen::MatrixXd& m) {
+  const Eigen::MatrixXd t = m.transpose();
+  return fmt::format("{:.17g}", fmt::join(t.reshaped().begin(), t.reshaped().end(), ", "));
+}
+
+// the arm as a function that returns its model
+std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOptions& options,
+                   const std::string& out) {
+  std::string name = std::filesystem::path(out).stem().string();
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (std::isdigit(static_cast<unsigned char>(name[0]))) name.insert(0, "arm_");
+  const std::string type = fmt::format("tauext::TreeModel<{}>", arm.joints.size());
+  std::string text = fmt::format(
+      "// Made by tauext-import from {}{}.\n#pragma once\n\n#include "
+      "\"estimators/tree/tree_model.h\"\n\ninline {} {}() {{\n  {}::Parameters p;\n  using K = "
+      "tauext::TreeJoint::Kind;\n",
+      printable_name(file), options.lock.empty() ? "" : " --lock " + printable_name(options.lock),
+      type, name, type);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const TreeJoint& j = arm.joints[i];
+    text += fmt::format(
+        "  {{\n    tauext::TreeJoint& j = p.joints[{}];\n    j.parent = {};\n    j.kind = K::{};\n"
+        "    j.axis = {};\n    j.rotation << {};\n    j.position = {};\n    j.zero = {:.17g};\n"
+        "    j.mass = {:.17g};\n    j.center = {};\n    j.inertia << {};\n    j.armature = "
+        "{:.17g};\n"
+        "    j.viscous = {:.17g};\n    j.dry = {:.17g};\n  }}\n",
+        i, j.parent, j.kind == TreeJoint::Kind::kSlide ? "kSlide" : "kHinge", listed(j.axis),
+        rows(j.rotation), listed(j.position), j.zero, j.mass, listed(j.center), rows(j.inertia),
+        j.armature, j.viscous, j.dry);
+  }
+  return text + fmt::format(
+                    "  p.gravity = {};\n  p.coordinates << {};\n  p.offset << {};\n  return "
+                    "{}(p);\n}}\n",
+                    listed(arm.gravity), rows(arm.coordinates), rows(arm.offset), type);
+}
+
 int import(const std::string& file, const ImportOptions& options, const std::string& out) {
   const ArmTree arm = arm_of(file, options);
   const ImportedText text = import_mjcf(file, options);
@@ -46,7 +91,7 @@ int import(const std::string& file, const ImportOptions& options, const std::str
     slides += j.kind == TreeJoint::Kind::kSlide;
   }
   AtomicFile to(out);
-  to.write(text.xml);
+  to.write(out.ends_with(".h") ? cpp_of(arm, file, options, out) : text.xml);
   to.commit();
   say(fmt::format("{}: {} joints, {} of them slides, that move {:.4g} kg", out, arm.joints.size(),
                   slides, mass));
@@ -63,7 +108,8 @@ int main(int argc, char** argv) {
       "file that MuJoCo 2.2.2 reads: bodies, joints, masses and friction, and a motor of gain 1 "
       "on\n"
       "each joint. Says what it leaves out: actuators, meshes, contacts, newer attributes.\n"
-      "--robot FILE does the same by itself.\n\n"
+      "--robot FILE does the same by itself. To a file that ends in .h it writes the arm as C++:\n"
+      "a function that returns its TreeModel, which needs Eigen alone.\n\n"
       "  tauext-import panda.xml --lock 'finger_joint.*' --out arm.xml\n",
       "tauext-import");
   std::string file, out;

@@ -41,12 +41,14 @@ int main(int argc, char** argv) {
       "or, to a file that ends in .lcm, as an LCM log with simulated times.\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
-  std::string robot_name, scenario_name, out, stop, type = "tauext";
+  std::string robot_name, lock, scenario_name, out, stop, type = "tauext";
   Sensors sensors;
   ModelError model_error;
   Recording recording;
   bool list = false;
-  app.add_option("--robot", robot_name, "robot (see --list)")->type_name("NAME|FILE");
+  app.add_option("--robot", robot_name, "robot (see --list), or a file of MJCF or URDF")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", lock, "joints of that file to fix, like grippers'")->type_name("REGEX");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_option("--type", type, "of an LCM log's messages: tauext, iiwa or panda")
@@ -67,11 +69,11 @@ int main(int argc, char** argv) {
     if (message_type(type) != MessageType::kTauext && !lcm) {
       throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", type, out));
     }
-    const Robot& r = robot(robot_name);
+    const Robot& r = robot(with_lock(robot_name, lock));
     const Scenario& s = scenario_of(r, scenario_name);
     const Supervisor supervisor = supervisor_of(r, stop);
-    const Trace trace = measure(
-        simulate(load_for(r.name(), s, model_error), s, recording, sensors, supervisor), sensors);
+    const Trace trace =
+        measure(simulate(r.load_for(s, model_error), s, recording, sensors, supervisor), sensors);
     if (lcm) {
       LogBuffer log;
       append_samples(readings_of(trace), message_type(type), log);

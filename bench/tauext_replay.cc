@@ -194,7 +194,7 @@ int replay(Flags& f) {
     throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", f.out));
   }
   refuse_twice("estimator", f.estimators);
-  const Robot& r = robot(f.robot, f.lock);
+  const Robot& r = robot(with_lock(f.robot, f.lock));
   for (std::string& e : f.estimators) {
     r.check(e, f.detector);
     if (f.torque.empty()) continue;

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mjcf/motion.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/scenarios/motion.h"
 
 namespace tauext {
 namespace {
@@ -16,16 +16,17 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr const char* kEndEffector = "end_effector";
-
 Tracking tracking(const Scenario& s, const Recording& r) {
   return {r.Kp.value_or(s.tracking.Kp), r.Kd.value_or(s.tracking.Kd)};
 }
 
-VectorXd computed_torque(const Plant& plant, const VectorXd& q_ref, const Reference& ref,
-                         const Tracking& c) {
-  const VectorXd q = plant.q(), qd = plant.qd();
-  const VectorXd a = (ref.qdd + c.Kp * (q_ref - q).array() + c.Kd * (ref.qd - qd.array())).matrix();
+// where every joint should be
+struct Motion {
+  VectorXd q, qd, qdd;
+};
+
+VectorXd computed_torque(const Plant& plant, const Motion& ref, const Tracking& c) {
+  const VectorXd a = ref.qdd + c.Kp * (ref.q - plant.q()) + c.Kd * (ref.qd - plant.qd());
   return plant.inertia() * a + plant.bias() + plant.damping();
 }
 
@@ -85,8 +86,8 @@ class Run {
         load_(s.load),
         trace_(empty_trace(plant_.dof(), static_cast<int>(std::lround(s.duration / r.Ts)))) {
     trace_.screws = plant_.screws();
-    const Reference start = s.start_on_reference ? s.reference(0) : Reference{};
-    plant_.set_state(everywhere(start.q), everywhere(start.qd));
+    const Motion start = s.start_on_reference ? reference(0) : at_rest(VectorXd::Zero(dof()));
+    plant_.set_state(start.q, start.qd);
   }
 
   Trace operator()(const Supervisor& supervisor) {
@@ -101,21 +102,34 @@ class Run {
   }
 
  private:
-  VectorXd everywhere(double x) const { return VectorXd::Constant(plant_.dof(), x); }
+  int dof() const { return plant_.dof(); }
+
+  Motion at_rest(const VectorXd& q) const {
+    return {q, VectorXd::Zero(dof()), VectorXd::Zero(dof())};
+  }
+  Motion reference(double t) const {
+    Motion m = at_rest(VectorXd::Zero(dof()));
+    for (int i = 0; i < dof(); ++i) {
+      const Reference r = s_.reference(t, i);
+      m.q[i] = r.q;
+      m.qd[i] = r.qd;
+      m.qdd[i] = r.qdd;
+    }
+    return m;
+  }
 
   void apply_input(double t) {
     load_.apply(plant_, t);
-    VectorXd tau_ext = everywhere(s_.tau_ext(t));
-    if (const Vector3d f = s_.force(t, plant_.site(kEndEffector)); !f.isZero(0)) {
-      tau_ext += plant_.tau_ext_of(f, kEndEffector);
-    }
-    if (stopped_) {
-      plant_.set_input(computed_torque(plant_, *stopped_, {}, control_), tau_ext);
-    } else if (s_.floats) {
+    VectorXd tau_ext(dof());
+    for (int i = 0; i < dof(); ++i) tau_ext[i] = s_.tau_ext(t, i);
+    tip_ = plant_.end_effector();
+    force_ = s_.force(t, tip_);
+    if (!force_.isZero(0)) tau_ext += plant_.tau_ext_of(force_);
+    if (s_.floats && !stopped_) {
       plant_.set_input(plant_.bias(), tau_ext);
     } else {
-      const Reference ref = s_.reference(t);
-      plant_.set_input(computed_torque(plant_, everywhere(ref.q), ref, control_), tau_ext);
+      const Motion ref = stopped_ ? at_rest(*stopped_) : reference(t);
+      plant_.set_input(computed_torque(plant_, ref, control_), tau_ext);
     }
   }
 
@@ -123,11 +137,23 @@ class Run {
     trace_.q.col(k) = plant_.q();
     trace_.qd.col(k) = plant_.qd();
     trace_.tau.col(k) = plant_.tau();
-    trace_.tau_ext.col(k) = plant_.tau_ext();
+    trace_.tau_ext.col(k) = plant_.tau_ext() + limits(k);
     trace_.qdd.col(k) = plant_.qdd();
     trace_.friction.col(k) = plant_.friction();
-    trace_.contact_force[k] = plant_.contact_force();
-    trace_.contact[k] = s_.contact(trace_.t[k]) || trace_.contact_force[k] > 0;
+    const bool touched = s_.contact(trace_.t[k], tip_);
+    trace_.contact_force[k] = plant_.contact_force() + (touched ? force_.norm() : 0);
+    trace_.contact[k] = touched || trace_.contact_force[k] > 0;
+  }
+
+  // [N m] what the limits of joints do, where the scenario means to reach them
+  VectorXd limits(int k) const {
+    const std::vector<int> joints = plant_.joints_at_limits();
+    if (joints.empty()) return VectorXd::Zero(dof());
+    if (s_.reaches_limits) return plant_.limit_torque();
+    throw std::runtime_error(fmt::format(
+        "scenario {}: joint {} reaches its limit at t = {:g} s, at {:.4g} rad (or m); a "
+        "scenario that means to sets reaches_limits",
+        s_.name, joints.front() + 1, trace_.t[k], trace_.q(joints.front(), k)));
   }
 
   void ask(const Supervisor& supervisor, int k) {
@@ -154,6 +180,8 @@ class Run {
   SensorStream stream_;
   LoadHandler load_;
   Trace trace_;
+  Point tip_{};                      // the end effector
+  Vector3d force_;                   // [N] of the scenario, there
   std::optional<VectorXd> stopped_;  // where a mark stopped the arm
 };
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "mjcf/plant/model.h"
-#include "mjcf/scenario.h"  // IWYU pragma: export
+#include "mjcf/scenarios/scenario.h"  // IWYU pragma: export
 #include "mjcf/trace/sensors.h"
 #include "mjcf/trace/trace.h"
 

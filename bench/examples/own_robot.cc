@@ -28,8 +28,8 @@ int main(int argc, char** argv) {
   s.name = "step";
   s.description = "3 N m from t = 1 s, while it swings by 0.5 sin 2t rad";
   s.response = Response::kStep;
-  s.reference = [](double t) { return sine_motion(0.5, 2, t); };
-  s.tau_ext = [](double t) { return t < 1 ? 0 : 3; };
+  s.reference = [](double t, int) { return sine_motion(0.5, 2, t); };
+  s.tau_ext = [](double t, int) { return t < 1 ? 0 : 3; };
   register_scenario("pendulum", s);
   return bench_main(argc, argv);
 }

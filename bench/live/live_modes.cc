@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 // a robot on which all that was asked for can run
 const Robot& checked_robot(const Options& o) {
-  const Robot& r = robot(o.robot, o.lock);
+  const Robot& r = robot(with_lock(o.robot, o.lock));
   for (const std::string& e : o.estimators) r.check(e, o.detector);
   return r;
 }
@@ -40,7 +40,8 @@ const Robot& checked_robot(const Options& o) {
 DetectorsOf thresholds_of(const Options& o) {
   const Thresholds all = o.thresholds.empty() ? Thresholds() : read_thresholds(o.thresholds);
   return [&o, all](const std::string& estimator) {
-    return trained_for(all, o.robot, o.sensors.velocity_noise, estimator, o.detector);
+    return trained_for(all, with_lock(o.robot, o.lock), o.sensors.velocity_noise, estimator,
+                       o.detector);
   };
 }
 
@@ -54,9 +55,8 @@ RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& th
         r.supervisor(o.estimators[0], o.detector, {.thresholds = thresholds(o.estimators[0])});
   }
   say(fmt::format("simulating {} s of {}", s.duration, s.name));
-  return {
-      measure(simulate(load_for(r.name(), s, o.model_error), s, o.recording, o.sensors, supervisor),
-              o.sensors)};
+  return {measure(simulate(r.load_for(s, o.model_error), s, o.recording, o.sensors, supervisor),
+                  o.sensors)};
 }
 
 std::string title_of(const Options& o) {

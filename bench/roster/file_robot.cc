@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <stdexcept>
 
 #include "mjcf/plant/tree.h"
@@ -12,19 +13,21 @@ namespace {
 
 // the robot of that number of joints, N or more
 template <int N>
-std::unique_ptr<const Robot> robot_from(int joints, const std::string& path, const Model& model) {
-  if (joints == N) return detail::file_robot_of<N>(path, model);
-  if constexpr (N < kMaxFileJoints) return robot_from<N + 1>(joints, path, model);
+std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
+  if (joints == N) return detail::file_robot_of<N>(name, model);
+  if constexpr (N < kMaxFileJoints) return robot_from<N + 1>(joints, name, model);
   throw std::invalid_argument(
       fmt::format("{} joints: 1 to {} are supported", joints, kMaxFileJoints));
 }
 
 }  // namespace
 
-std::unique_ptr<const Robot> file_robot(const std::string& path, const ImportOptions& options) {
-  const Model model = load_mjcf(path, options);
+std::unique_ptr<const Robot> file_robot(const std::string& name) {
+  const std::size_t lock = name.find(kLock);
+  const std::string path = name.substr(0, lock);
+  const Model model = load_mjcf(path, {lock == name.npos ? "" : name.substr(lock + kLock.size())});
   try {
-    return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), path, model);
+    return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), name, model);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
   }

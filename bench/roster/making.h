@@ -56,12 +56,22 @@ std::vector<std::string> trained_parts_of() {
   }
 }
 
-// first what training says, then what the specification says
+// times what the torques in detectors' defaults are right for this arm
+template <int N>
+Vec<N> torques_of(const Eigen::VectorXd& usual) {
+  constexpr double kUsualTorque = 1200;  // [N m] that the defaults fit
+  if (usual.size() == 0) return Vec<N>::Ones();
+  return usual / kUsualTorque;
+}
+
+// the arm's defaults, then what training says, then what the specification says
 template <class D>
-D make_detector(const DetectorSettings& settings, const Specification& s) {
+D make_detector(const DetectorSettings& settings, const Specification& s,
+                const Vec<D::kDof>& torques) {
   constexpr int N = D::kDof;
   if constexpr (requires { typename D::Parameters; }) {
     typename D::Parameters p;
+    scale_torques(p, torques);
     if constexpr (OfTrainedParts<D>) {
       set_trained(p.collision, PanTompkins<N>::kName, settings.thresholds);
       set_trained(p.clamping, Clamping<N>::kName, settings.thresholds);
@@ -117,9 +127,24 @@ std::vector<FieldHelp> fields_of(const P& p, bool tunable) {
 }
 
 template <class D>
-std::vector<FieldHelp> fields_of_detector() {
+std::optional<Calibration> calibration_of(const Vec<D::kDof>& torques) {
+  if constexpr (CalibratableDetector<D>) {
+    typename D::Parameters p;
+    scale_torques(p, torques);
+    constexpr bool kMetric = requires(D d) {
+      p.metric, d.change();
+    };
+    return Calibration{D::kDegree, p.threshold, kMetric};
+  } else {
+    return std::nullopt;
+  }
+}
+
+template <class D>
+std::vector<FieldHelp> fields_of_detector(const Vec<D::kDof>& torques) {
   if constexpr (requires { typename D::Parameters; }) {
-    const typename D::Parameters p;
+    typename D::Parameters p;
+    scale_torques(p, torques);
     return field_help(&p);
   } else {
     return {};

@@ -3,11 +3,41 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/roster/baselines.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/scenarios/generic.h"
+#include "mjcf/scenarios/scenario.h"
 
 namespace tauext {
+
+Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
+  if (!file) return;
+  file_ = simulated(file);
+  usual_torque_ = scale_of(file_).usual_torque;
+}
+
+std::string Robot::label() const {
+  if (!file_) return name_;
+  return std::filesystem::path(name_.substr(0, name_.find(kLock))).stem().string();
+}
+
+Eigen::VectorXd Robot::small_torque() const {
+  return file_ ? Eigen::VectorXd(usual_torque_ / 240) : Eigen::VectorXd::Constant(dof_, 5);
+}
+
+const std::vector<Scenario>& Robot::scenarios() const {
+  if (!file_) return tauext::scenarios(name_);
+  std::call_once(listed_, [&] { scenarios_ = generic_scenarios(file_); });
+  return scenarios_;
+}
+
+Model Robot::load_for(const Scenario& s, const ModelError& error) const {
+  return file_ ? with_errors(file_, error) : tauext::load_for(name_, s, error);
+}
 
 void Robot::check(std::string_view estimator, std::string_view detector) const {
   Trace one;  // copies of the truth need a sample of it

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,9 @@
 #include "mjcf/record.h"
 
 namespace tauext {
+
+/// Between the path of a robot's file and the joints that are fixed (ImportOptions), in its name.
+inline constexpr std::string_view kLock = ":lock=";
 
 /// How the detectors behind an estimator are set.
 struct DetectorSettings {
@@ -38,8 +42,21 @@ class Robot {
  public:
   virtual ~Robot() = default;
 
-  const std::string& name() const { return name_; }  ///< or the path of its file
-  int dof() const { return dof_; }                   ///< joints
+  const std::string& name() const { return name_; }  ///< by which robot() finds it
+  std::string label() const;        ///< its name, or its file's without folder and ending
+  int dof() const { return dof_; }  ///< joints
+
+  /// [N m] that matters little, of each joint: 5, or of a file's robot 1/240 of
+  /// ArmScale::usual_torque.
+  Eigen::VectorXd small_torque() const;
+  /// [N m] of a dry friction that studies hide from its estimators: the least of these.
+  double hidden_friction() const { return small_torque().minCoeff(); }
+
+  /// What happens to it; the generic ones (mjcf/scenarios/generic.h) if it is from a file.
+  const std::vector<Scenario>& scenarios() const;
+  /// The simulated robot as the scenario needs it, with errors that its estimators do not know of.
+  /// @throws std::invalid_argument for an error out of range
+  Model load_for(const Scenario& scenario, const ModelError& error = {}) const;
 
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
   virtual std::vector<std::string> detectors() const = 0;   ///< by name
@@ -100,11 +117,20 @@ class Robot {
 
  protected:
   /// For whoever derives.
-  Robot(std::string name, int dof) : name_(std::move(name)), dof_(dof) {}
+  /// @param file the model, if it is from a file
+  /// @throws std::invalid_argument if that cannot be simulated, saying why not
+  Robot(std::string name, int dof, const Model& file = nullptr);
+
+  /// ArmScale::usual_torque [N m] of a file's robot; else empty.
+  const Eigen::VectorXd& usual_torque() const { return usual_torque_; }
 
  private:
   std::string name_;
   int dof_;
+  Model file_;  // to be simulated
+  Eigen::VectorXd usual_torque_;
+  mutable std::once_flag listed_;
+  mutable std::vector<Scenario> scenarios_;  // of a file's robot
 };
 
 }  // namespace tauext

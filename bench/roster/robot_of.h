@@ -41,7 +41,8 @@ template <int N>
 class RobotOf final : public Robot {
  public:
   template <RobotModel M>
-  RobotOf(const std::string& name, const M& model) : Robot(name, N) {
+  RobotOf(const std::string& name, const M& model, const Model& file)
+      : Robot(name, N, file), torques_(torques_of<N>(usual_torque())) {
     for_each_estimator(model, [&](auto make) { add_estimator(model, make); });
     add_roster_detectors();
     for (const auto& add : registered_estimators<M>()) add(model, *this);
@@ -89,19 +90,12 @@ class RobotOf final : public Robot {
   template <CollisionDetector D>
   void add_detector() {
     refuse_taken(detectors_, "detector", D::kName);
-    DetectorEntry entry{D::kName,
-                        [](const DetectorSettings& s, const Specification& spec) -> DetectorPtr {
-                          return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec));
-                        },
-                        fields_of_detector<D>(), trained_parts_of<D>()};
-    if constexpr (CalibratableDetector<D>) {
-      const typename D::Parameters p;
-      constexpr bool kMetric = requires(D d) {
-        p.metric, d.change();
-      };
-      entry.calibration = Calibration{D::kDegree, p.threshold, kMetric};
-    }
-    detectors_.push_back(std::move(entry));
+    const auto make = [torques = torques_](const DetectorSettings& s,
+                                           const Specification& spec) -> DetectorPtr {
+      return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec, torques));
+    };
+    detectors_.push_back({D::kName, make, fields_of_detector<D>(torques_), trained_parts_of<D>(),
+                          calibration_of<D>(torques_)});
   }
 
   void add_roster_detectors();
@@ -267,6 +261,7 @@ class RobotOf final : public Robot {
     }
   }
 
+  Vec<N> torques_;  // of torques_of()
   std::vector<EstimatorEntry> estimators_;
   std::vector<DetectorEntry> detectors_;
   std::vector<std::string> specifications_;  // that are listed beside the estimators
@@ -285,14 +280,18 @@ extern template class RobotOf<3>;
 }  // namespace detail
 
 /// A robot with every estimator that for_each_estimator has for its model, and every detector.
+/// @param file the simulated robot, if it is from a file
 template <RobotModel M>
-std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model) {
-  return std::make_unique<detail::RobotOf<M::kDof>>(name, model);
+std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model,
+                                        const Model& file = nullptr) {
+  return std::make_unique<detail::RobotOf<M::kDof>>(name, model, file);
 }
 
 /// That of wallmobot3 is compiled in robots.cc.
-extern template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&);
+extern template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&,
+                                                        const Model&);
 /// That of testbed1 is compiled in robots.cc.
-extern template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&);
+extern template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&,
+                                                        const Model&);
 
 }  // namespace tauext

@@ -12,13 +12,14 @@
 
 #include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
-#include "mjcf/scenario.h"
+#include "mjcf/trace/known.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext {
 
-template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&);
-template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&);
+template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&,
+                                                 const Model&);
+template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&, const Model&);
 
 namespace {
 
@@ -29,13 +30,13 @@ std::vector<detail::MakeRobot>& registered_robots() {
 
 bool in_use = false;  // whether the list of robots has been made
 
-// the robot of an MJCF file, read the first time that it is asked for
-const Robot& robot_of_file(const std::string& path, const std::string& lock) {
+// the robot of a file, read the first time that it is asked for
+const Robot& robot_of_file(const std::string& name) {
   static std::mutex mutex;
-  static std::map<std::pair<std::string, std::string>, std::unique_ptr<const Robot>> all;
+  static std::map<std::string, std::unique_ptr<const Robot>> all;
   const std::lock_guard alone(mutex);
-  std::unique_ptr<const Robot>& r = all[{path, lock}];
-  if (!r) r = file_robot(path, {lock});
+  std::unique_ptr<const Robot>& r = all[name];
+  if (!r) r = file_robot(name);
   return *r;
 }
 
@@ -74,17 +75,20 @@ const std::vector<std::unique_ptr<const Robot>>& robots() {
   return all;
 }
 
-bool is_robot_file(std::string_view name_or_file) {
-  return name_or_file.ends_with(".xml") || name_or_file.ends_with(".urdf");
+bool is_robot_file(std::string_view name) {
+  const std::string_view path = name.substr(0, name.find(kLock));
+  return path.ends_with(".xml") || path.ends_with(".urdf");
 }
 
-const Robot& robot(std::string_view name_or_file, const std::string& lock) {
-  if (is_robot_file(name_or_file)) return robot_of_file(std::string(name_or_file), lock);
-  if (!lock.empty()) {
-    throw std::invalid_argument(
-        fmt::format("--lock fixes joints of a robot from a file, and {} is none", name_or_file));
-  }
-  return *find_robot(robots(), name_or_file);
+std::string with_lock(const std::string& robot, const std::string& lock) {
+  if (lock.empty()) return robot;
+  if (is_robot_file(robot)) return robot + std::string(kLock) + lock;
+  throw std::invalid_argument(
+      fmt::format("--lock fixes joints of a robot from a file, and {} is none", robot));
+}
+
+const Robot& robot(std::string_view name) {
+  return is_robot_file(name) ? robot_of_file(std::string(name)) : *find_robot(robots(), name);
 }
 
 std::unique_ptr<const Robot> wallmobot3_believing(double panel) {
@@ -92,13 +96,9 @@ std::unique_ptr<const Robot> wallmobot3_believing(double panel) {
 }
 
 const Scenario& scenario_of(const Robot& r, std::string_view name) {
-  if (is_robot_file(r.name())) {
-    throw std::invalid_argument(fmt::format(
-        "{}: a robot from a file has no scenarios yet: it cannot be simulated, but its logs can be "
-        "replayed (tauext-replay, tauext-live --from) and its messages estimated (--subscribe)",
-        r.name()));
-  }
-  return scenario(r.name(), name);
+  return find_known(
+      r.scenarios(), "scenario", name,
+      [](const Scenario& s) -> const std::string& { return s.name; }, r.name());
 }
 
 bool study_only(std::string_view detector) {
@@ -114,13 +114,10 @@ std::string list_known() {
     out += fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n", r->name(),
                        r->dof(), fmt::join(r->estimators(), ", "), fmt::join(r->detectors(), ", "));
     TableWriter table({{"  scenario", "", true}, {"what happens", "", true}});
-    for (const Scenario& s : scenarios(r->name())) table.add({"  " + s.name, s.description});
+    for (const Scenario& s : r->scenarios()) table.add({"  " + s.name, s.description});
     out += table.format();
   }
-  return out +
-         "\nrobot FILE.xml or FILE.urdf: any arm of 1 to 8 joints, hinges and slides; "
-         "tauext-replay and "
-         "tauext-live take it\n\n" +
+  return out + "\nrobot FILE.xml or FILE.urdf: any arm of 1 to 8 joints, hinges and slides\n\n" +
          list_fields();
 }
 

@@ -2,7 +2,7 @@
 /// @file
 /// THE list: what the suite runs. One line here adds an estimator, a detector or a robot to the
 /// benchmark, to tauext-replay and to the conformance tests. (Scenarios:
-/// mjcf/scenario_wallmobot3.cc and its like.)
+/// mjcf/scenarios/wallmobot3.cc and its like.)
 #pragma once
 
 #include <type_traits>

@@ -6,6 +6,7 @@
 /// (estimators/parameters.h), and `bandwidth` [rad/s] of every estimator that can be set to one.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "estimators/parameters.h"
+#include "estimators/types.h"
 
 namespace tauext {
 
@@ -153,6 +155,31 @@ std::vector<FieldHelp> field_help(const P* p = nullptr) {
     for_each_field<P>([&](const auto& f) { detail::add_help(f, p, "", out); });
   }
   return out;
+}
+
+/// Times factor, joint by joint, for every parameter in N m: squared for one in (N m)^2. Where a
+/// metric mixes the joints, it makes them comparable, and its threshold is that of as many.
+template <class P, int N>
+void scale_torques(P& p, const Vec<N>& factor) {
+  if constexpr (ListsFields<P>) {
+    for_each_field<P>([&]<class F>(const F& f) {
+      using T = std::remove_reference_t<decltype(p.*f.at)>;
+      if constexpr (!requires { f.unit; }) {
+        scale_torques(p.*f.at, factor);
+      } else if constexpr (std::is_same_v<T, Vec<N>>) {
+        const std::string_view unit = f.unit;
+        if (unit.starts_with("N m")) p.*f.at = (p.*f.at).cwiseProduct(factor);
+        if (unit.starts_with("(N m")) p.*f.at = (p.*f.at).cwiseProduct(factor.cwiseAbs2());
+      }
+    });
+  }
+  if constexpr (requires { p.metric; }) {
+    if (factor == Vec<N>::Ones()) return;
+    const double largest = factor.maxCoeff();
+    const Vec<N> even = largest * factor.cwiseInverse();
+    p.metric = even.asDiagonal() * p.metric * even.asDiagonal();
+    p.threshold = p.threshold.cwiseProduct(even) * std::sqrt(N / 3.);
+  }
 }
 
 /// Sets the keys in p, in their order.

@@ -34,7 +34,8 @@ std::string recording_flags(const SuiteOptions& o) {
 
 }  // namespace
 
-std::string record_and_replay(const std::string& golden, const SuiteOptions& options) {
+std::string record_and_replay(const std::string& golden, const SuiteOptions& options,
+                              const Selection& selection) {
   SuiteOptions o = options;
   std::string name = golden;
   if (const auto at = name.find(kDegraded); at != std::string::npos) {
@@ -42,7 +43,7 @@ std::string record_and_replay(const std::string& golden, const SuiteOptions& opt
     o.sensors = degraded_sensors();
     o.sensors.seed = options.sensors.seed;
   }
-  const std::vector<Entry> all = golden_entries();
+  const std::vector<Entry> all = golden_entries(selection);
   const auto e =
       std::find_if(all.begin(), all.end(), [&](const Entry& x) { return x.name() == name; });
   if (e == all.end()) {
@@ -54,7 +55,8 @@ std::string record_and_replay(const std::string& golden, const SuiteOptions& opt
   return fmt::format(
       "  tauext-record --robot {0} --scenario {1}{2}{3} --out log.csv\n"
       "  tauext-replay log.csv --robot {0} --estimator {4}{5}{6} --out est.csv\n",
-      e->robot().name(), e->scenario().name, recording_flags(o),
+      is_robot_file(e->robot().name()) ? fmt::format("'{}'", e->robot().name()) : e->robot().name(),
+      e->scenario().name, recording_flags(o),
       e->closed_loop() ? fmt::format(" --stop {}+{}", e->estimator(), e->detector()) : "",
       e->estimator(), e->detector().empty() ? "" : " --detector " + e->detector(),
       e->scenario().score_from > 0 ? fmt::format(" --score_from {}", e->scenario().score_from)

@@ -12,9 +12,10 @@ namespace tauext {
 /// Two lines: tauext-record with everything that the entry's trace depends on (the pair that stops
 /// the motor, in a scenario that reacts), and tauext-replay, which prints the errors of the same
 /// estimates.
-/// @param entry its name
+/// @param entry its name, of those that are selected
 /// @throws std::invalid_argument for an unknown entry, and for thresholds, which those two programs
 /// do not take
-std::string record_and_replay(const std::string& entry, const SuiteOptions& options);
+std::string record_and_replay(const std::string& entry, const SuiteOptions& options,
+                              const Selection& selection = {});
 
 }  // namespace tauext

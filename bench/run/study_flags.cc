@@ -64,19 +64,15 @@ void add_study_flags(CLI::App& app, StudyFlags& f) {
   app.add_option("--equal-bandwidth", f.equal_bandwidth,
                  "study instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
-  app.add_flag("--pareto", f.pareto,
-               "study instead: noise against delay (all three: --robot, --out)");
+  app.add_flag("--pareto", f.pareto, "study instead: noise against delay (all three: --out)");
   app.add_option("--format", f.format, "of the tables: text, csv, json, md or latex")
       ->type_name("NAME");
-  // hidden, as the help fits a screen: bench/study/README.md
-  app.add_option("--robot", f.robot)->group("");
-  app.add_option("--out", f.out)->group("");
+  app.add_option("--out", f.out)->group("");  // the help fits a screen: bench/study/README.md
 }
 
 bool wants_study(const StudyFlags& f) {
-  if (f.studies() == 0 && (f.robot || f.out)) {
-    throw std::invalid_argument(
-        "--robot and --out go with --reliability, --equal-bandwidth or --pareto");
+  if (f.studies() == 0 && f.out) {
+    throw std::invalid_argument("--out goes with --reliability, --equal-bandwidth or --pareto");
   }
   if (format_of(f) != TableFormat::kText && f.studies() > 1) {
     throw std::invalid_argument(

@@ -18,7 +18,8 @@ namespace tauext {
 struct StudyFlags {
   bool reliability = false, pareto = false;  ///< whether that study is asked for
   std::optional<double> equal_bandwidth;     ///< [rad/s]
-  std::optional<std::string> robot;          ///< else the roster's first one that can be studied so
+  /// By which robot() finds it; else the roster's first one that can be studied so.
+  std::optional<std::string> robot;
   std::optional<std::string> format;  ///< of all tables, as table_format() knows it; else text
   std::optional<std::string> out;     ///< file, else standard output
 
@@ -26,8 +27,7 @@ struct StudyFlags {
   int studies() const { return reliability + pareto + equal_bandwidth.has_value(); }
 };
 
-/// Adds --reliability, --equal-bandwidth, --pareto, --robot and --out of these, and --format of all
-/// tables.
+/// Adds --reliability, --equal-bandwidth, --pareto and --out of these, and --format of all tables.
 void add_study_flags(CLI::App& app, StudyFlags& flags);
 
 /// Whether a study was asked for.

@@ -19,10 +19,11 @@ class Selected {
  public:
   enum class Kind { kEstimators, kDetectors };
 
-  Selected(Kind kind, const std::vector<std::string>& specifications)
+  Selected(Kind kind, const std::vector<std::string>& specifications,
+           const std::vector<const Robot*>& robots)
       : kind_(kind), specifications_(specifications) {
     refuse_twice(kind == Kind::kEstimators ? "estimator" : "detector", specifications_);
-    for (const std::string& s : specifications_) require_on_some_robot(s);
+    for (const std::string& s : specifications_) require_on_some_robot(s, robots);
   }
 
   std::vector<std::string> of(const Robot& r) const {
@@ -54,9 +55,10 @@ class Selected {
   }
 
   // the error of a robot that knows the name says more than that of one that does not
-  void require_on_some_robot(const std::string& specification) const {
+  void require_on_some_robot(const std::string& specification,
+                             const std::vector<const Robot*>& robots) const {
     std::string unknown_name, wrong_keys;
-    for (const auto& r : robots()) {
+    for (const Robot* r : robots) {
       const std::string e = error(*r, specification);
       if (e.empty()) return;
       const std::vector<std::string> known = names(*r);
@@ -84,7 +86,7 @@ Entry::Entry(std::string_view robot, std::string_view scenario, std::string_view
 }
 
 std::string Entry::group() const {
-  return robot_->name() + "/" + scenario_->name;
+  return robot_->label() + "/" + scenario_->name;
 }
 
 std::string Entry::name() const {
@@ -97,14 +99,22 @@ Entry Entry::with_detector(const std::string& detector) const {
   return e;
 }
 
+std::vector<const Robot*> robots_of(const Selection& selection) {
+  if (selection.robot != nullptr) return {selection.robot};
+  std::vector<const Robot*> all;
+  for (const auto& r : robots()) all.push_back(r.get());
+  return all;
+}
+
 std::vector<Entry> entries(const Selection& selection) {
-  const Selected estimators(Selected::Kind::kEstimators, selection.estimators);
-  const Selected detectors(Selected::Kind::kDetectors, selection.detectors);
+  const std::vector<const Robot*> robots = robots_of(selection);
+  const Selected estimators(Selected::Kind::kEstimators, selection.estimators, robots);
+  const Selected detectors(Selected::Kind::kDetectors, selection.detectors, robots);
   std::vector<Entry> all;
-  for (const auto& known : robots()) {
+  for (const Robot* known : robots) {
     const Robot& r = *known;
     const std::vector<std::string> of_robot = estimators.of(r), behind = detectors.of(r);
-    for (const Scenario& s : scenarios(r.name())) {
+    for (const Scenario& s : r.scenarios()) {
       for (const std::string& e : of_robot) all.push_back(Entry(r, s, e));
       if (s.response != Response::kDetection && s.response != Response::kLag) continue;
       for (const std::string& e : of_robot) {

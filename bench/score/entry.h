@@ -8,17 +8,23 @@
 #include <vector>
 
 #include "bench/roster/robots.h"
-#include "mjcf/scenario.h"
+#include "mjcf/scenarios/scenario.h"
 
 namespace tauext {
 
-/// Which estimators and detectors run: specifications. None means those of the roster.
+/// Which estimators and detectors run, as specifications, and on which robot. None means those of
+/// the roster.
 struct Selection {
+  const Robot* robot = nullptr;         ///< else every one
   std::vector<std::string> estimators;  ///< by specification
   std::vector<std::string> detectors;   ///< also such as the studies alone run otherwise
 
-  bool empty() const { return estimators.empty() && detectors.empty(); }  ///< nobody asked for any
+  /// Nobody asked for estimators or detectors.
+  bool empty() const { return estimators.empty() && detectors.empty(); }
 };
+
+/// The robots that run.
+std::vector<const Robot*> robots_of(const Selection& selection);
 
 /// One row of the suite: a robot, what happens to it, and the specifications of the estimator and
 /// the detector (bench/roster/specification.h) that it runs.
@@ -35,7 +41,7 @@ class Entry {
   const std::string& estimator() const { return estimator_; }  ///< its specification
   const std::string& detector() const { return detector_; }    ///< its specification; "" for none
 
-  std::string name() const;   ///< ROBOT/SCENARIO/ESTIMATOR[+DETECTOR]
+  std::string name() const;   ///< ROBOT/SCENARIO/ESTIMATOR[+DETECTOR], by the robot's label
   std::string group() const;  ///< ROBOT/SCENARIO: the entries that compete
 
   /// Whether its own marks stop its motor.

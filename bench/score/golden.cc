@@ -172,9 +172,10 @@ std::vector<Entry> golden_entries(const Selection& selection) {
   if (!selection.empty()) return all;
   std::set<std::string> known;
   for (const Entry& e : all) known.insert(e.name());
-  for (const auto& robot : robots()) {
+  for (const Robot* robot : robots_of(selection)) {
     for (const std::string& d : robot->detectors()) {
-      for (Entry& e : entries({.estimators = {"ekf"}, .detectors = {d}})) {
+      for (Entry& e :
+           entries({.robot = selection.robot, .estimators = {"ekf"}, .detectors = {d}})) {
         if (known.insert(e.name()).second) all.push_back(std::move(e));
       }
     }

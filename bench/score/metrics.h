@@ -10,7 +10,7 @@
 
 #include "bench/roster/stages.h"
 #include "bench/score/score.h"
-#include "mjcf/scenario.h"
+#include "mjcf/scenarios/scenario.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {

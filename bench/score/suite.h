@@ -30,8 +30,9 @@ std::string bad_status(const Trace& trace, const Output& output);
 
 /// Why the estimates of an ideal run cannot be those of a working estimator ("" if they can): one
 /// is not finite, a status says so, or from time `from` [s] on some joint's rmse exceeds
-/// 1.5 times that of an estimate of 0 by more than 5 N m.
-std::string failure(const Trace& ideal, const Output& output, double from);
+/// 1.5 times that of an estimate of 0 by more than `slack` [N m], of each joint.
+std::string failure(const Trace& ideal, const Output& output, double from,
+                    const Eigen::VectorXd& slack);
 
 /// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is
 /// recorded anew for each pair of estimator and detector, whose mark then stops the motor. Safe for
@@ -66,10 +67,17 @@ class Suite {
   std::unique_ptr<Runner> runner(const Entry& entry, const Trace& trace) const;
   std::string error(const Entry& entry, const Output& ideal, const Output& noisy);
   const Traces& traces(const Entry& entry);
+  // what an estimator makes of them, without a detector
+  struct Estimates {
+    Output ideal, noisy;
+  };
+  const Estimates& estimates(const Entry& entry);
   const Trace& scored(const Entry& entry);
 
   SuiteOptions options_;
-  std::map<std::string, Traces> traces_;  // by group; a closed loop's by name
+  std::map<std::string, Traces> traces_;        // by group; a closed loop's by name
+  std::string estimated_;                       // the group of
+  std::map<std::string, Estimates> estimates_;  // by trace and estimator
 };
 
 }  // namespace tauext

@@ -18,7 +18,6 @@ namespace tauext::study {
 namespace {
 
 constexpr double kFloor = 0.05;  // of a default threshold: no calibrated one is lower
-constexpr double kUnseen = 5;    // [N m] counts in a direction in which training shows nothing
 
 std::string name_of(const std::string& specification) {
   return std::string(name_of_specification(specification));
@@ -36,13 +35,14 @@ std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std
 }
 
 // what undoes the covariances of training, run by run in their order: a sum of rounded numbers
-// depends on it
-Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances) {
+// depends on it. `unseen` [N m] counts where training shows nothing, joint by joint
+Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances,
+                          const Eigen::VectorXd& unseen) {
   const auto n = covariances.begin()->second.rows();
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
   for (const auto& [run, part] : covariances) C += part / static_cast<double>(covariances.size());
-  const Eigen::MatrixXd metric =
-      (Eigen::MatrixXd::Identity(n, n) + C / (kUnseen * kUnseen)).inverse();
+  const Eigen::MatrixXd floor = unseen.cwiseAbs2().asDiagonal();
+  const Eigen::MatrixXd metric = (floor + C).inverse() * unseen.cwiseAbs2().maxCoeff();
   return (metric + metric.transpose()) / 2;
 }
 
@@ -92,7 +92,7 @@ class Training {
     });
     for_each([&](const std::string&, Trained& to) {
       const auto found = covariances.find(&to);
-      if (found != covariances.end()) to.metric = metric_of(found->second);
+      if (found != covariances.end()) to.metric = metric_of(found->second, robot_.small_torque());
     });
   }
 
@@ -153,7 +153,7 @@ class Training {
   const StudyRuns& runs_;
   const Robot& robot_;
   std::vector<std::string> names_;
-  std::map<double, std::unique_ptr<const Robot>> believers_;
+  std::map<double, std::shared_ptr<const Robot>> believers_;
   Thresholds result_;
   std::mutex mutex_;  // of result_
 };

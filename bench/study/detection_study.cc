@@ -113,7 +113,7 @@ class Study {
   const StudyRuns& runs_;
   std::vector<std::string> estimators_, detectors_;
   std::vector<const Condition*> conditions_;
-  std::map<double, std::unique_ptr<const Robot>> believers_;  // by the panel that they believe in
+  std::map<double, std::shared_ptr<const Robot>> believers_;  // by the panel that they believe in
   std::map<PlantKey, Model> models_;
   std::vector<Job> jobs_;
   std::vector<Cell> cells_;

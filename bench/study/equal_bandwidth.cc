@@ -28,17 +28,14 @@ constexpr const char* kBandwidthLegend =
 `bandwidth` that gives it. noise: what a velocity noise of 1e-3 rad/s and an encoder of 17 bits
 add. lag: how far the estimate is behind `sine`. rise 0-90 %, overshoot: the answer to `step`. mass:
 mean error if the last link is 5 % heavier than the model says. friction: rms error under a dry
-friction of 5 N m that the model does not know. step: CPU time. Every figure is that of the worst
-joint.
+friction of {:.2g} N m that the model does not know. step: CPU time. Every figure is that of the
+worst joint.
 )";
 constexpr const char* kNever = "never: no design comes within 25 % of this bandwidth.\n";
 
 void require_scenarios(const Robot& r, const std::vector<std::string>& wanted) {
   std::vector<std::string> lacks = wanted;
-  try {
-    for (const Scenario& s : scenarios(r.name())) std::erase(lacks, s.name);
-  } catch (const std::invalid_argument&) {  // it has none at all
-  }
+  for (const Scenario& s : r.scenarios()) std::erase(lacks, s.name);
   if (lacks.empty()) return;
   throw std::invalid_argument(fmt::format("this study needs the scenarios {}; {} lacks {}",
                                           fmt::join(wanted, ", "), r.name(),
@@ -46,8 +43,8 @@ void require_scenarios(const Robot& r, const std::vector<std::string>& wanted) {
 }
 
 Trace run_of(const Robot& r, const char* name, const ModelError& error = {}) {
-  const Scenario& s = scenario(r.name(), name);
-  return simulate(load_for(r.name(), s, error), s);
+  const Scenario& s = scenario_of(r, name);
+  return simulate(r.load_for(s, error), s);
 }
 
 Output estimate(const Robot& r, const std::string& specification, const Trace& t) {
@@ -61,7 +58,7 @@ struct SharedRuns : StepRuns {
         chirp(run_of(r, "chirp")),
         sine(run_of(r, "sine")),
         heavy(run_of(r, "free", {.mass = 1.05})),
-        rubbing(run_of(r, "free", {.friction = 5})) {}
+        rubbing(run_of(r, "free", {.friction = r.hidden_friction()})) {}
 
   Trace chirp, sine, heavy, rubbing;
 };
@@ -74,7 +71,7 @@ double value(const Score& score, Metric metric) {
 Score response_of(const Robot& r, const std::string& specification, const char* name,
                   const Trace& t) {
   Score score;
-  add_response_metrics(t, estimate(r, specification, t), scenario(r.name(), name), score);
+  add_response_metrics(t, estimate(r, specification, t), scenario_of(r, name), score);
   return score;
 }
 
@@ -220,7 +217,7 @@ std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<A
   const bool all =
       std::all_of(rows.begin(), rows.end(), [](const AtBandwidth& x) { return bool(x.worth); });
   return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}", r.name(), w, table.format(),
-                     kBandwidthLegend, all ? "" : kNever);
+                     fmt::format(kBandwidthLegend, r.hidden_friction()), all ? "" : kNever);
 }
 
 }  // namespace tauext::study

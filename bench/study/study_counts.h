@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimators/types.h"
-#include "mjcf/touch.h"
+#include "mjcf/scenarios/touch.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext::study {

@@ -5,13 +5,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
 #include "mjcf/plant/model_error.h"
 #include "mjcf/record.h"
-#include "mjcf/scenario_testbed1.h"
+#include "mjcf/scenarios/generic.h"
+#include "mjcf/scenarios/testbed1.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext::study {
@@ -35,6 +38,10 @@ Degradation dry_friction() {
   return d;
 }
 
+ModelError error_of(const PlantKey& p) {
+  return {.mass = p.mass, .friction = p.friction};
+}
+
 StudyRuns runs_of_wallmobot3() {
   StudyRuns r{.robot = "wallmobot3"};
   r.conditions = {
@@ -54,7 +61,7 @@ StudyRuns runs_of_wallmobot3() {
   // the paper's range, 0 to 150 kg, known and unknown
   r.training = {"known_0", "known_50", "known_150", "unknown_50", "unknown_150"};
   r.model = [](const PlantKey& p) {
-    return with_errors(wallmobot3_with_panel(p.panel), {.friction = p.friction});
+    return with_errors(wallmobot3_with_panel(p.panel), error_of(p));
   };
   r.believer = wallmobot3_believing;
   r.touched = touched_wallmobot3;
@@ -69,9 +76,51 @@ StudyRuns runs_of_testbed1() {
   return r;
 }
 
+// of any arm
+StudyRuns runs_of_file(const Robot& r) {
+  StudyRuns runs{.robot = r.name()};
+  Degradation heavy = noisy(1e-4), rubbing = noisy(1e-4);
+  heavy.model_error.mass = 1.05;
+  rubbing.model_error.friction = r.hidden_friction();
+  runs.conditions = {
+      {"known", "the estimators know the arm", 0, 0, noisy(1e-4)},
+      {"noise", "known; velocity noise 1e-3 rad/s", 0, 0, noisy(1e-3)},
+      {"heavy", "the last link weighs 5 % more than the estimators know", 0, 0, heavy},
+      {"dry_friction",
+       fmt::format("{:.2g} N m of dry friction that the estimators do not know",
+                   rubbing.model_error.friction),
+       0, 0, rubbing},
+  };
+  runs.training = {"known", "heavy"};
+  const ArmScale scale = scale_of(r.load_for(quiet()));
+  if (!(scale.force > 0))
+    throw std::invalid_argument(
+        fmt::format("{}: no force on its end effector moves it: nothing to detect", r.name()));
+  runs.model = [&r](const PlantKey& p) { return r.load_for(quiet(), error_of(p)); };
+  runs.believer = [&r](double) { return std::shared_ptr<const Robot>(&r, [](const Robot*) {}); };
+  runs.touched = [scale](TouchKind kind, std::uint64_t seed) {
+    return touched_arm(scale, kind, seed);
+  };
+  runs.touches = [scale](TouchKind kind, std::uint64_t seed) {
+    return touches_of(scale, kind, seed);
+  };
+  return runs;
+}
+
+// made when it is first asked for
+const StudyRuns& of_file(const std::string& name) {
+  static std::mutex mutex;
+  static std::map<std::string, StudyRuns> all;
+  const std::lock_guard alone(mutex);
+  const auto found = all.find(name);
+  return found != all.end() ? found->second
+                            : all.emplace(name, runs_of_file(robot(name))).first->second;
+}
+
 // the runs of a robot for which has(runs) holds; of the first one for ""
 const StudyRuns& find(const char* study, const std::string& name, bool (*has)(const StudyRuns&)) {
   static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
+  if (is_robot_file(name) && has(of_file(name))) return of_file(name);
   if (!name.empty()) robot(name);  // an unknown one is no robot without runs
   std::vector<std::string> with;
   for (const StudyRuns& r : all) {
@@ -105,7 +154,7 @@ std::vector<std::string> competitors(const Robot& r) {
 }  // namespace
 
 PlantKey plant_of(const Condition& c) {
-  return {c.panel, c.degradation.model_error.friction};
+  return {c.panel, c.degradation.model_error.mass, c.degradation.model_error.friction};
 }
 
 const StudyRuns& touched_runs(const std::string& robot) {

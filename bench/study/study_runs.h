@@ -2,6 +2,7 @@
 /// @file
 /// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All
 /// that belongs to one robot stands in study_runs.cc; the studies themselves know no robot by name.
+/// A robot from a file has those that every arm has.
 #pragma once
 
 #include <compare>
@@ -14,7 +15,7 @@
 #include "bench/roster/robot.h"
 #include "bench/score/degradation.h"
 #include "mjcf/plant/model.h"
-#include "mjcf/touch.h"
+#include "mjcf/scenarios/touch.h"
 
 namespace tauext::study {
 
@@ -31,7 +32,7 @@ struct Condition {
 
 /// Conditions that differ in the sensors alone share their simulated runs.
 struct PlantKey {
-  double panel, friction;                             ///< [kg], [N m]
+  double panel, mass, friction;                       ///< [kg], [1] of the last link, [N m]
   auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 };
 
@@ -46,7 +47,7 @@ struct StudyRuns {
   std::vector<Condition> conditions;  ///< all that there are
   std::vector<std::string> training;  ///< conditions for calibration unless others are named
   std::function<Model(const PlantKey&)> model;                         ///< the simulated robot
-  std::function<std::unique_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it
+  std::function<std::shared_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it
   std::function<Scenario(TouchKind, std::uint64_t seed)> touched;      ///< a run with touches
   std::function<std::vector<Touch>(TouchKind, std::uint64_t seed)> touches;  ///< those in that run
 

@@ -9,9 +9,9 @@
 #include "bench/test/live_programs.h"
 #include "lcmtypes/log.h"
 #include "lcmtypes/wire.h"
-#include "mjcf/motion.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/record.h"
+#include "mjcf/scenarios/motion.h"
 
 namespace tauext::test {
 namespace {
@@ -79,8 +79,8 @@ Trace seven_joints(const std::string& mjcf) {
   Scenario s = quiet();
   s.duration = 6;
   s.start_on_reference = true;
-  s.reference = [](double t) { return sine_motion(0.3, 1, t); };
-  s.tau_ext = [](double t) { return t < 1 ? 0 : 3 * std::sin(2 * (t - 1)); };
+  s.reference = [](double t, int) { return sine_motion(0.3, 1, t); };
+  s.tau_ext = [](double t, int) { return t < 1 ? 0 : 3 * std::sin(2 * (t - 1)); };
   return record(load_mjcf(mjcf), s);
 }
 

@@ -249,8 +249,8 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   refuses("--robot wallmobot3 --subscribe TAUEXT_ESTIMATE_ekf --estimator ekf", "would come back");
   refuses("--robot wallmobot3 --from nothing.lcm --estimator ekf", "nothing.lcm: No such file");
   refuses("--robot nothing.xml --subscribe A --estimator mo1", "nothing.xml");
-  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --scenario step --estimator mo1",
-          "has no scenarios");
+  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --scenario payload --estimator mo1",
+          "unknown scenario 'payload'");
   refuses("--listen --robot wallmobot3", "--listen shows streams");
   refuses("--listen --duration -1", "--duration -1");
   refuses("--listen --lcm memq://", "memq:// does not leave a process");

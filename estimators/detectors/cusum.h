@@ -30,9 +30,10 @@ class Cusum {
     /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
     /// of 100 N and 10 ms at 1.2 m
     Vec<N> threshold = Vec<N>::Constant(0.4);
-    /// [N m] what z may have for ever: larger forgets quicker; by default above what a push of 80 N
-    /// in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
-    double drift = 12;
+    /// [N m] per joint, what z may have for ever: larger forgets quicker; by default above what a
+    /// push of 80 N in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s,
+    /// over w)
+    Vec<N> drift = Vec<N>::Constant(12);
     double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
     double refractory = 0.2;  ///< [s] after a mark without another
     double start_up = 0;      ///< [s] after the first sample without a mark
@@ -65,9 +66,8 @@ class Cusum {
     } else {
       const double h = t - t_;
       const Vec<N> z = tau_ext - mean_(t, tau_ext), most = 2 * p_.threshold;
-      const Vec<N> drift = Vec<N>::Constant(p_.drift);
-      up_ = (up_ + h * (z - drift)).cwiseMax(0).cwiseMin(most);  // (i)
-      down_ = (down_ - h * (z + drift)).cwiseMax(0).cwiseMin(most);
+      up_ = (up_ + h * (z - p_.drift)).cwiseMax(0).cwiseMin(most);  // (i)
+      down_ = (down_ - h * (z + p_.drift)).cwiseMax(0).cwiseMin(most);
       statistic_ = up_.cwiseMax(down_);
     }
     t_ = t;

@@ -87,7 +87,7 @@ TEST(BandPass, AnswersAStepByTheDifferenceOfTwoExp) {
 
 TEST(Cusum, MarksAStepAfterItsThresholdOverWhatIsBeyondTheDrift) {
   // a slow mean that hardly moves: S grows by (a - drift) per second
-  const Cusum<3> d({.threshold = Vec<3>::Constant(0.8), .drift = 12, .w = 1e-3});
+  const Cusum<3> d({.threshold = Vec<3>::Constant(0.8), .drift = Vec<3>::Constant(12), .w = 1e-3});
   for (const double a : {20., 52., -92.}) {
     EXPECT_NEAR(first_mark(d, step(a)) - 0.5, 0.8 / (std::abs(a) - 12), 2e-3) << a << " N m";
   }
@@ -95,7 +95,7 @@ TEST(Cusum, MarksAStepAfterItsThresholdOverWhatIsBeyondTheDrift) {
 }
 
 TEST(Cusum, ForgetsASlowLoadAndDoesNotDependOnTheSamplingTime) {
-  const Cusum<3> d({.threshold = Vec<3>::Constant(0.4), .drift = 12, .w = 20});
+  const Cusum<3> d({.threshold = Vec<3>::Constant(0.4), .drift = Vec<3>::Constant(12), .w = 20});
   // a ramp is slope / w above its mean
   EXPECT_EQ(first_mark(d, [](double t) { return 230 * t; }), -1);
   EXPECT_GT(first_mark(d, [](double t) { return 300 * t; }), 0);
@@ -183,7 +183,7 @@ TEST(Detectors, RefuseThresholdsAndCutOffsOfZero) {
   EXPECT_THROW(HighPass<3>({.threshold = zero}), std::invalid_argument);
   EXPECT_THROW(HighPass<3>({.w = 0}), std::invalid_argument);
   EXPECT_THROW(BandPass<3>({.w_low = 100, .w_high = 10}), std::invalid_argument);
-  EXPECT_THROW(Cusum<3>({.drift = -1}), std::invalid_argument);
+  EXPECT_THROW(Cusum<3>({.drift = Vec<3>::Constant(-1)}), std::invalid_argument);
   EXPECT_THROW(Clamping<3>({.duration = 0}), std::invalid_argument);
 }
 

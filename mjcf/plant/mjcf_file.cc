@@ -142,13 +142,13 @@ std::string_view without_line(std::string_view message) {
   return message.substr(0, message.rfind(", line"));
 }
 
-// whether all that drives it is motors
+// whether motors drive it, and each of its joints
 bool has_motors(const mjModel& m) {
   for (int i = 0; i < m.nu; ++i) {
     if (m.actuator_gaintype[i] != mjGAIN_FIXED || m.actuator_biastype[i] != mjBIAS_NONE)
       return false;
   }
-  return m.nu > 0;
+  return m.nu > 0 && m.nu >= m.nv;
 }
 
 // the file as it is, or, if it has to be, imported

@@ -19,6 +19,10 @@ Eigen::Map<const VectorXd> view(const mjtNum* p, int n) {
   return {p, n};
 }
 
+bool is_limit(int type) {
+  return type == mjCNSTR_LIMIT_JOINT || type == mjCNSTR_LIMIT_TENDON;
+}
+
 }  // namespace
 
 Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model_)) {
@@ -33,6 +37,7 @@ Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model
   St_lu_.compute(layout_.S.transpose());
   q0_ = view(data_->actuator_length, dof()) - layout_.S * view(data_->qpos, m.nq)(layout_.arm);
   if (layout_.load_dof >= 0) load_ = LoadState::kHeld;
+  end_effector_ = carried_end_effector();
 }
 
 VectorXd Plant::of_arm(const double* force) const {
@@ -154,6 +159,19 @@ VectorXd Plant::qdd() const {
   return layout_.S * view(data_->qacc, model_->nv)(layout_.arm);
 }
 
+VectorXd Plant::limit_torque() const {
+  return -constraint_force([](int type) { return is_limit(type); });
+}
+
+std::vector<int> Plant::joints_at_limits() const {
+  std::vector<int> joints;
+  const VectorXd torque = limit_torque();
+  for (int i = 0; i < dof(); ++i) {
+    if (torque[i] != 0) joints.push_back(i);
+  }
+  return joints;
+}
+
 VectorXd Plant::tau_ext() const {
   VectorXd sum = constraint_force([](int type) {
     return type == mjCNSTR_CONTACT_FRICTIONLESS || type == mjCNSTR_CONTACT_PYRAMIDAL ||
@@ -180,24 +198,56 @@ double Plant::contact_force() const {
   return sum;
 }
 
-int Plant::site_id(const std::string& name) const {
+Plant::Carried Plant::carried_site(const std::string& name) const {
   const int id = mj_name2id(model_.get(), mjOBJ_SITE, name.c_str());
   if (id < 0) throw std::invalid_argument(fmt::format("the robot has no site '{}'", name));
-  return id;
+  return {model_->site_bodyid[id], Vector3d::Map(model_->site_pos + 3 * id)};
+}
+
+Plant::Carried Plant::carried_end_effector() const {
+  for (const char* site : {"end_effector", "attachment_site"}) {
+    if (mj_name2id(model_.get(), mjOBJ_SITE, site) >= 0) return carried_site(site);
+  }
+  const int body = model_->dof_bodyid[layout_.arm.back()];
+  return {body, Vector3d::Map(model_->body_ipos + 3 * body)};
+}
+
+Vector3d Plant::position(const Carried& c) const {
+  return Vector3d::Map(data_->xpos + 3 * c.body) +
+         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data_->xmat + 9 * c.body) *
+             c.at;
+}
+
+MatrixXd Plant::jacobian(const Carried& c) const {
+  RowMajor J(3, model_->nv);
+  mj_jac(model_.get(), data_.get(), J.data(), nullptr, position(c).data(), c.body);
+  return J;
+}
+
+Point Plant::moving(const Carried& c) const {
+  return {position(c), jacobian(c) * view(data_->qvel, model_->nv)};
+}
+
+VectorXd Plant::tau_ext_at(const Carried& c, const Vector3d& f) const {
+  const VectorXd force = jacobian(c).transpose() * f;
+  return -of_arm(force.data());
 }
 
 Point Plant::site(const std::string& name) const {
-  const int id = site_id(name);
-  RowMajor J(3, model_->nv);
-  mj_jacSite(model_.get(), data_.get(), J.data(), nullptr, id);
-  return {Vector3d::Map(data_->site_xpos + 3 * id), J * view(data_->qvel, model_->nv)};
+  return moving(carried_site(name));
+}
+
+MatrixXd Plant::end_effector_jacobian() const {
+  const MatrixXd J = jacobian(end_effector_)(Eigen::all, layout_.arm);
+  return St_lu_.solve(J.transpose()).transpose();
+}
+
+VectorXd Plant::tau_ext_of(const Vector3d& f) const {
+  return tau_ext_at(end_effector_, f);
 }
 
 VectorXd Plant::tau_ext_of(const Vector3d& f, const std::string& site) const {
-  RowMajor J(3, model_->nv);
-  mj_jacSite(model_.get(), data_.get(), J.data(), nullptr, site_id(site));
-  const VectorXd force = J.transpose() * f;
-  return -of_arm(force.data());
+  return tau_ext_at(carried_site(site), f);
 }
 
 void Plant::step(double h) {

@@ -51,7 +51,7 @@ class Plant {
   Eigen::VectorXd tau() const;       ///< [N m] as applied, clipped
   Eigen::MatrixXd inertia() const;   ///< B [kg m^2]
   Eigen::VectorXd bias() const;      ///< C qd + g [N m]
-  Eigen::VectorXd damping() const;   ///< the part of F that is linear in qd [N m]
+  Eigen::VectorXd damping() const;   ///< the part of F that is smooth [N m]
   Eigen::VectorXd friction() const;  ///< F [N m], damping and dry friction
   Eigen::VectorXd qdd() const;       ///< [rad/s^2] MuJoCo's acceleration under the present input
 
@@ -63,8 +63,20 @@ class Plant {
   /// A site of the arm.
   /// @throws std::invalid_argument for an unknown site
   Point site(const std::string& name) const;
+  /// The point that touches the outside: the site `end_effector`, else `attachment_site`, else the
+  /// centre of mass of the body behind the last joint.
+  Point end_effector() const { return moving(end_effector_); }
+  /// Its Jacobian [m per joint coordinate] in the world frame.
+  Eigen::MatrixXd end_effector_jacobian() const;
 
-  /// tau_ext = -J^T f [N m] of a force f [N, world frame] that acts on the arm at the site.
+  /// The joints, counted from 0, that press against a limit of theirs.
+  std::vector<int> joints_at_limits() const;
+  /// What the limits do to the arm [N m, sign of (3)]; no part of tau_ext().
+  Eigen::VectorXd limit_torque() const;
+
+  /// tau_ext = -J^T f [N m] of a force f [N, world frame] that acts on the arm at its end effector.
+  Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f) const;
+  /// The same at a site.
   /// @throws std::invalid_argument for an unknown site
   Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f, const std::string& site) const;
 
@@ -83,8 +95,19 @@ class Plant {
  private:
   enum class LoadState { kNone, kHeld, kHung, kDropped };
 
+  // a point that a body carries
+  struct Carried {
+    int body = 0;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();  // [m] in its frame
+  };
+
   void apply_to_load();
-  int site_id(const std::string& name) const;
+  Carried carried_site(const std::string& name) const;
+  Carried carried_end_effector() const;
+  Eigen::Vector3d position(const Carried& c) const;
+  Eigen::MatrixXd jacobian(const Carried& c) const;  // by MuJoCo's degrees of freedom
+  Point moving(const Carried& c) const;
+  Eigen::VectorXd tau_ext_at(const Carried& c, const Eigen::Vector3d& f) const;
   Eigen::VectorXd of_arm(const double* force) const;  // a generalised force, in joint coordinates
   template <class Counts>
   Eigen::VectorXd constraint_force(Counts&& counts) const;
@@ -95,6 +118,7 @@ class Plant {
   Eigen::PartialPivLU<Eigen::MatrixXd> S_lu_;   // of S
   Eigen::PartialPivLU<Eigen::MatrixXd> St_lu_;  // of S^T
   Eigen::VectorXd q0_;
+  Carried end_effector_;
   Eigen::VectorXd tau_ext_;  // of set_input
   LoadState load_ = LoadState::kNone;
   Eigen::Vector3d push_ = Eigen::Vector3d::Zero();

@@ -5,9 +5,15 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
+#include "estimators/friction.h"
 #include "mjcf/plant/layout.h"
 
 namespace tauext {
@@ -15,6 +21,17 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+constexpr int kSmoothFriction = 1 << 30;  // of disableflags: a bit that MuJoCo does not know
+
+// to the passive forces, for MuJoCo
+void add_smooth_friction(const mjModel* m, mjData* d) {
+  if ((m->opt.disableflags & kSmoothFriction) == 0) return;
+  for (int i = 0; i < m->nv; ++i) {
+    const CoulombFriction dry{m->dof_frictionloss[i], TreeJoint().v_s};
+    d->qfrc_passive[i] -= dry.torque(d->qvel[i]);
+  }
+}
 
 void check(const mjModel& m) {
   const auto refuse = [](bool present, const char* what) {
@@ -61,6 +78,47 @@ void set_coordinates(const mjModel& m, ArmTree& tree) {
   if (l.dof != m.nv) throw std::invalid_argument("the motors do not move every joint of the model");
   tree.coordinates = l.S;
   tree.offset = VectorXd::Map(d->actuator_length, m.nv) - l.S * VectorXd::Map(d->qpos, m.nv);
+}
+
+void set_ranges(const mjModel& m, ArmTree& tree) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  tree.lower = VectorXd::Constant(m.nv, -kNone);
+  tree.upper = VectorXd::Constant(m.nv, kNone);
+  if (!tree.coordinates.isIdentity(0)) return;
+  for (int i = 0; i < m.njnt; ++i) {
+    if (!m.jnt_limited[i]) continue;
+    tree.lower[i] = m.jnt_range[2 * i];
+    tree.upper[i] = m.jnt_range[2 * i + 1];
+  }
+}
+
+// over poses that fill the range evenly: multiples of square roots of primes, modulo 1
+void set_usual_torque(const mjModel& m, ArmTree& tree) {
+  constexpr int kPoses = 200;
+  constexpr double kAcceleration = 10;  // [rad/s^2] or [m/s^2]
+  constexpr double kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19};
+  const State d = initial_state(m);
+  MatrixXd M(m.nv, m.nv);
+  tree.usual_torque = VectorXd::Zero(m.nv);
+  const auto to_q = tree.coordinates.transpose().partialPivLu();
+  for (int k = 0; k < kPoses; ++k) {
+    for (int i = 0; i < m.nv; ++i) {
+      const double most = m.jnt_type[i] == mjJNT_SLIDE ? 0.5 : 3.14159;
+      const double* const range = m.jnt_range + 2 * i;
+      const double from = m.jnt_limited[i] ? range[0] : -most;
+      const double to = m.jnt_limited[i] ? range[1] : most;
+      const double turns = k * std::sqrt(kPrimes[i % 8]);
+      d->qpos[i] = from + (to - from) * (turns - std::floor(turns));
+    }
+    mj_fwdPosition(&m, d.get());
+    mj_fwdVelocity(&m, d.get());
+    mj_fullM(&m, M.data(), d->qM);
+    const VectorXd gravity = to_q.solve(VectorXd::Map(d->qfrc_bias, m.nv));
+    const MatrixXd half = to_q.solve(M);
+    const VectorXd inertia = to_q.solve(half.transpose()).diagonal();
+    tree.usual_torque = tree.usual_torque.cwiseMax(gravity.cwiseAbs());
+    tree.usual_torque = tree.usual_torque.cwiseMax(kAcceleration * inertia);
+  }
 }
 
 Vec<3> vector(const mjtNum* v) {
@@ -117,12 +175,31 @@ void detail::require_equal_joints(std::size_t have, int want) {
   throw std::invalid_argument(fmt::format("the model has {} joints, not {}", have, want));
 }
 
+Model simulated(const Model& model) {
+  static std::once_flag once;
+  std::call_once(once, [] { mjcb_passive = add_smooth_friction; });
+  return changed(model, [](mjModel& m) {
+    m.opt.integrator = mjINT_RK4;
+    m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | kSmoothFriction;
+    const bool on_joints = std::all_of(m.actuator_trntype, m.actuator_trntype + m.nu,
+                                       [](int type) { return type == mjTRN_JOINT; });
+    if (m.nu != m.nv || !on_joints) return;
+    for (int i = 0; i < m.nu; ++i) {
+      m.actuator_trnid[2 * i] = i;
+      m.actuator_gear[6 * i] = m.actuator_gainprm[i * mjNGAIN] = 1;
+      m.actuator_ctrllimited[i] = m.actuator_forcelimited[i] = 0;
+    }
+  });
+}
+
 ArmTree tree_of(const Model& model) {
   const mjModel& m = *model;
   check(m);
   ArmTree tree;
   tree.gravity = vector(m.opt.gravity);
   set_coordinates(m, tree);
+  set_ranges(m, tree);
+  set_usual_torque(m, tree);
   std::vector<Place> places(static_cast<std::size_t>(m.nbody));
   std::vector<Mass> masses(static_cast<std::size_t>(m.nv));
   for (int body = 1; body < m.nbody; ++body) {

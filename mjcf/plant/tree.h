@@ -24,11 +24,22 @@ struct ArmTree {
   Vec<3> gravity = Vec<3>::Zero();  ///< [m/s^2]
   Eigen::MatrixXd coordinates;      ///< dq/drho, rho being MuJoCo's
   Eigen::VectorXd offset;           ///< [rad] q at rho = 0
+  Eigen::VectorXd lower;  ///< [rad] or [m] of q's range; infinite without one, or if q is mixed
+  Eigen::VectorXd upper;  ///< likewise
+  /// [N m] or [N] what each joint is used to: the larger of its gravity torque, over poses in all
+  /// of its range, and of 10 rad/s^2 of its own inertia.
+  Eigen::VectorXd usual_torque;
 };
 
 /// @throws std::invalid_argument for what it would have to ignore: free or ball joints, springs,
 /// equality constraints, forces of tendons, a fluid; and for motors on tendons with gears
 ArmTree tree_of(const Model& model);
+
+/// The arm to be simulated as its ArmTree has it: by RK4, ideal motors of gain 1 on the joints, in
+/// their order, and the same smooth dry friction, so that nothing is left to the estimators but
+/// what a scenario or a model error hides from them. Without contacts, which shapes that somebody
+/// drew would have with each other: what touches it is a scenario's force.
+Model simulated(const Model& model);
 
 namespace detail {
 /// @throws std::invalid_argument unless they are equal

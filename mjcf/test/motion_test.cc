@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/motion.h"
+#include "mjcf/scenarios/motion.h"
 
 #include <gtest/gtest.h>
 

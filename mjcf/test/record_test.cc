@@ -8,7 +8,7 @@
 
 #include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
-#include "mjcf/scenario_testbed1.h"
+#include "mjcf/scenarios/testbed1.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -215,7 +215,7 @@ TEST(Scenarios, AnUnknownNameListsTheKnownOnes) {
             "unknown scenario 'dance' of wallmobot3; known: free, step, ramp, sine, collision, "
             "in_motion, push, brisk_push, clamp, payload, contact, chirp");
   EXPECT_EQ(error_of([] { scenario("r2d2", "dance"); }),
-            "unknown robot with scenarios 'r2d2'; known: testbed1, wallmobot3");
+            "unknown robot 'r2d2'; known: testbed1, wallmobot3");
 }
 
 TEST(Scenarios, OfOneSeedAreTheSameAndOfTwoAreNot) {
@@ -239,7 +239,7 @@ TEST(Scenarios, ABlowIsOf100To300NewtonAnd10To50MillisecondsEitherWay) {
       const double f = s.force(k * 1e-4, {}).z();
       peak = std::max(peak, std::abs(f));
       sum += f;
-      samples += s.contact(k * 1e-4);
+      samples += s.contact(k * 1e-4, {});
     }
     EXPECT_GT(peak, 99) << seed;
     EXPECT_LE(peak, 300) << seed;

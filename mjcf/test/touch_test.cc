@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/touch.h"
+#include "mjcf/scenarios/touch.h"
 
 #include <gtest/gtest.h>
 
@@ -77,9 +77,9 @@ TEST(WithTouches, ContactIsWhereABlowOrAClampingActsAndNotAPush) {
     const Scenario s = touched_wallmobot3(kind, 3);
     for (const Touch& t : touches_of_wallmobot3(kind, 3)) {
       const double middle = t.begin + t.rise / 2;
-      EXPECT_EQ(s.contact(middle), counts);
+      EXPECT_EQ(s.contact(middle, {}), counts);
       EXPECT_EQ(s.force(middle, {}), t(middle));
-      EXPECT_FALSE(s.contact(t.begin - 0.5));
+      EXPECT_FALSE(s.contact(t.begin - 0.5, {}));
     }
   }
 }

@@ -39,9 +39,9 @@
 namespace tauext {
 
 // what thresholds are read for
-const Robot& robot(std::string_view name_or_file, const std::string& /*lock*/) {
+const Robot& robot(std::string_view name) {
   static const AnyArm arm;
-  if (name_or_file != arm.name()) throw std::invalid_argument("unknown robot");
+  if (name != arm.name()) throw std::invalid_argument("unknown robot");
   return arm;
 }
 

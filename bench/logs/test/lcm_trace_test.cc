@@ -28,7 +28,7 @@ class LcmTrace : public testing::Test {
   static Trace truth() {
     Scenario s = scenario("wallmobot3", "collision");
     s.duration = 0.5;
-    s.contact = [](double t) { return t > 0.2 && t < 0.3; };
+    s.contact = [](double t, const Point&) { return t > 0.2 && t < 0.3; };
     return record(load_for("wallmobot3", s), s);
   }
   void put(LogBuffer& log) const {

@@ -49,9 +49,9 @@ TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
   Scenario s = quiet();
   s.duration = 3;
   s.start_on_reference = true;
-  s.reference = [](double t) { return sine_motion(0.3, 3, t); };
-  s.tau_ext = [](double t) { return t < 1 ? 0 : 5; };
-  const Trace trace = record(load_mjcf(path_.string()), s);
+  s.reference = [](double t, int) { return sine_motion(0.3, 3, t); };
+  s.tau_ext = [](double t, int) { return t < 1 ? 0 : 5; };
+  const Trace trace = record(r.load_for(s), s);
   for (const std::string& e : r.estimators()) {
     if (is_baseline(e)) continue;
     const Output out = r.runner(e, "", trace)->run();

@@ -53,8 +53,8 @@ const Trace& trace() {
     Scenario s = quiet();
     s.duration = 0.6;
     s.start_on_reference = true;
-    s.reference = [](double t) { return sine_motion(0.3, 3, t); };
-    s.tau_ext = [](double t) { return t < 0.2 ? 0 : 50; };
+    s.reference = [](double t, int) { return sine_motion(0.3, 3, t); };
+    s.tau_ext = [](double t, int) { return t < 0.2 ? 0 : 50; };
     return record(load_robot("wallmobot3"), s);
   }();
   return recorded;

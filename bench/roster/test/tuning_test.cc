@@ -23,8 +23,8 @@ Trace held(const Model& model, double pose, double step) {
   Scenario s = quiet();
   s.duration = 2;
   s.start_on_reference = true;
-  s.reference = [pose](double) { return Reference{pose, 0, 0}; };
-  s.tau_ext = [step](double t) { return t < 0.5 ? 0 : step; };
+  s.reference = [pose](double, int) { return Reference{pose, 0, 0}; };
+  s.tau_ext = [step](double t, int) { return t < 0.5 ? 0 : step; };
   return record(model, s);
 }
 

@@ -75,7 +75,7 @@ class Seen {
  public:
   bool estimator(const Robot& r, const std::string& a, const std::string& b) {
     std::vector<std::pair<Entry, Entry>> all;
-    for (const Scenario& s : scenarios(r.name()))
+    for (const Scenario& s : r.scenarios())
       all.push_back({{r.name(), s.name, a}, {r.name(), s.name, b}});
     return seen(all);
   }

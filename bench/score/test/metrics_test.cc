@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bench/score/detection_metrics.h"
-#include "mjcf/scenario.h"
+#include "mjcf/scenarios/scenario.h"
 
 namespace tauext::test {
 namespace {
@@ -225,7 +225,7 @@ struct Swept {
     for (int k = 0; k < n; ++k) {
       t.push_back(k * h);
       estimate[k] = y;
-      truth[k] = chirp.tau_ext(t[k]);
+      truth[k] = chirp.tau_ext(t[k], 0);
       y += -std::expm1(-K * h) * (truth[k] - y);
     }
   }

@@ -16,7 +16,7 @@ Suite& suite() {
 
 TEST(Suite, TheTruthScoresExactlyZeroOnEveryScenario) {
   for (const auto& r : robots()) {
-    for (const Scenario& s : scenarios(r->name())) {
+    for (const Scenario& s : r->scenarios()) {
       const Score score = suite().score({r->name(), s.name, "truth", ""});
       EXPECT_EQ(score.error, "");
       for (const Metric m : {Metric::kRmse, Metric::kMax, Metric::kBias, Metric::kNoise})
@@ -139,19 +139,21 @@ Output output(const Trace& t, double factor) {
 
 TEST(Failure, AWrongSignIsAWrongAnswer) {
   const Trace t = record(load_robot("wallmobot3"), scenario("wallmobot3", "step"));
-  EXPECT_EQ(failure(t, output(t, 1), 0), "");
-  EXPECT_EQ(failure(t, output(t, 0), 0), "");
-  EXPECT_NE(failure(t, output(t, -1), 0).find("wrong answer"), std::string::npos);
+  EXPECT_EQ(failure(t, output(t, 1), 0, Eigen::VectorXd::Constant(t.dof(), 5)), "");
+  EXPECT_EQ(failure(t, output(t, 0), 0, Eigen::VectorXd::Constant(t.dof(), 5)), "");
+  EXPECT_NE(
+      failure(t, output(t, -1), 0, Eigen::VectorXd::Constant(t.dof(), 5)).find("wrong answer"),
+      std::string::npos);
 }
 
 TEST(Failure, AStatusOrANonFiniteEstimateIsNamedWithItsTime) {
   const Trace t = record(load_robot("wallmobot3"), scenario("wallmobot3", "free"));
   Output diverged = output(t, 1);
   diverged.status[2000] = Status::kDiverged;
-  EXPECT_EQ(failure(t, diverged, 0), "diverged at t = 2 s");
+  EXPECT_EQ(failure(t, diverged, 0, Eigen::VectorXd::Constant(t.dof(), 5)), "diverged at t = 2 s");
   Output nan = output(t, 1);
   nan.tau_ext(1, 500) = std::nan("");
-  EXPECT_EQ(failure(t, nan, 0), "not finite at t = 0.5 s");
+  EXPECT_EQ(failure(t, nan, 0, Eigen::VectorXd::Constant(t.dof(), 5)), "not finite at t = 0.5 s");
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 #include "bench/study/calibration.h"
 #include "bench/study/detection_report.h"
+#include "mjcf/scenarios/touch.h"
 #include "mjcf/test/error_of.h"
-#include "mjcf/touch.h"
 
 namespace tauext::study::test {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/touch.h"
+#include "mjcf/scenarios/touch.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/motion.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/scenarios/motion.h"
 #include "mjcf/trace/random.h"
 
 namespace tauext {
@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
-constexpr double kFirstTouch =
-    4;  // [s] estimators have settled by then, with an unknown panel, too
 
 // 0 to 1 as x goes from 0 to 1
 double minimum_jerk(double x) {
@@ -81,7 +79,7 @@ Scenario with_touches(Scenario s, const std::vector<Touch>& touches) {
     for (const Touch& touch : touches) sum += touch(t);
     return sum;
   };
-  s.contact = [=](double t) {
+  s.contact = [=](double t, const Point&) {
     for (const Touch& touch : touches) {
       const bool counts = touch.kind == TouchKind::kBlow || touch.kind == TouchKind::kClamp;
       if (counts && touch.on(t)) return true;
@@ -102,7 +100,7 @@ Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed) {
   s.name = "touched";
   s.description = "drawn touches of one kind";
   s.response = Response::kDetection;
-  s.reference = [=](double t) { return sine_motion(amplitude, w, t); };
+  s.reference = [=](double t, int) { return sine_motion(amplitude, w, t); };
   return with_touches(s, touches_of_wallmobot3(kind, seed));
 }
 

@@ -9,13 +9,14 @@
 
 #include "mjcf/plant/model.h"
 #include "mjcf/plant/model_error.h"
-#include "mjcf/scenario_type.h"
+#include "mjcf/scenarios/scenario_type.h"
 
 namespace tauext {
 
-/// All scenarios of a robot, in the order in which they are listed.
-/// @throws std::invalid_argument for a robot without scenarios, listing those that have some; and
-/// if scenarios were registered for a robot that does not exist
+/// All scenarios of a robot, in the order in which they are listed; the generic ones
+/// (mjcf/scenarios/generic.h) of a robot for which nobody wrote or registered any.
+/// @throws std::invalid_argument for an unknown robot, listing the known ones; and if scenarios
+/// were registered for a robot that does not exist
 const std::vector<Scenario>& scenarios(std::string_view robot);
 
 /// The scenario of that name.

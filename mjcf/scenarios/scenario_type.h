@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "mjcf/motion.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/scenarios/motion.h"
 
 namespace tauext {
 
@@ -42,7 +42,8 @@ struct Load {
   std::function<Eigen::Vector3d(double)> push;  ///< [N] world, on the load while it hangs
 };
 
-/// A run of a robot. Functions are of time [s]; what they return is held over one sample.
+/// A run of a robot. Functions are of time [s], some also of a joint, counted from 0; what they
+/// return is held over one sample.
 struct Scenario {
   std::string name;                     ///< unique among those of the robot
   std::string description;              ///< one line, with numbers and units
@@ -52,14 +53,16 @@ struct Scenario {
   bool start_on_reference = false;      ///< else the arm starts at rest at q = 0
   bool floats = false;  ///< manual mode: tau = C qd + g alone, so that a hand can move the arm
   Tracking tracking;    ///< of the controller
-  std::function<Reference(double)> reference;  ///< of every joint
-  std::function<double(double)> tau_ext;       ///< [N m] on every joint, sign of (3)
+  std::function<Reference(double, int)> reference;  ///< of that joint
+  std::function<double(double, int)> tau_ext;       ///< [N m] on that joint, sign of (3)
   /// [N] world, on the end effector, which is where the second argument says
   std::function<Eigen::Vector3d(double, const Point&)> force;
-  std::function<bool(double)> contact;  ///< whether a collision acts; the obstacle's adds to it
-  std::string scene;         ///< what stands around the arm: a name of mjcf/scene_*.xml, or ""
-  std::optional<Load> load;  ///< with the scene "load"
-  bool reacts = false;       ///< whether a detector's mark stops the motor: a closed loop
+  /// Whether a collision acts, the end effector being there; the obstacle's adds to it.
+  std::function<bool(double, const Point&)> contact;
+  std::string scene;            ///< what stands around the arm: a name of mjcf/scene_*.xml, or ""
+  std::optional<Load> load;     ///< with the scene "load"
+  bool reaches_limits = false;  ///< of joints, whose torque is tau_ext then; else they end the run
+  bool reacts = false;          ///< whether a detector's mark stops the motor: a closed loop
 
   /// Whether something stands in the arm's way: the names of such scenes end in "obstacle".
   bool has_obstacle() const { return scene.ends_with("obstacle"); }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mjcf/scenario_type.h"
+#include "mjcf/scenarios/scenario_type.h"
 
 namespace tauext {
 

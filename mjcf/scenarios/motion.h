@@ -19,6 +19,13 @@ struct Reference {
 /// amplitude sin(w t), w in rad/s.
 Reference sine_motion(double amplitude, double w, double t);
 
+/// The load of Fig. 6: 10 sin t + 5 cos(2t + pi/2) - 5 [N m].
+double paper_sine(double t);
+
+/// A sine of amplitude 1 from 2 to 38 s whose frequency grows from 0.5 to 300 rad/s, as quickly as
+/// itself, faded in and out, so that it begins and ends at rest.
+double swept_sine(double t);
+
 /// From rest to rest with the least jerk, as a human arm moves (Flash and Hogan 1985).
 struct MinimumJerk {
   double begin = 0, duration = 1;  ///< [s]
@@ -47,8 +54,8 @@ class Moves {
   /// @param moves in the order of time, each from where the last one ended; not empty
   explicit Moves(std::vector<Move> moves) : moves_(std::move(moves)) {}
 
-  /// At time t [s].
-  Reference operator()(double t) const {
+  /// At time t [s]; every joint's.
+  Reference operator()(double t, int = 0) const {
     // the last one that has begun
     std::size_t i = moves_.size() - 1;
     while (i > 0 && moves_[i].begin > t) --i;

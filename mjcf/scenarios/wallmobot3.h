@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "mjcf/scenario_type.h"
+#include "mjcf/scenarios/scenario_type.h"
 
 namespace tauext {
 

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/scenario_wallmobot3.h"
+#include "mjcf/scenarios/wallmobot3.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/motion.h"
 #include "mjcf/plant/plant.h"
-#include "mjcf/touch.h"
+#include "mjcf/scenarios/motion.h"
+#include "mjcf/scenarios/touch.h"
 
 namespace tauext {
 namespace {
-
-double paper_sine(double t) {
-  return 10 * std::sin(t) + 5 * std::cos(2 * t + std::numbers::pi / 2) - 5;
-}
 
 // the collision of Fig. 7 (b): when, how long, how hard is ours
 constexpr double kHitAt = 5, kHitFor = 0.02, kHitForce = 200;  // [s], [s], [N]
@@ -22,25 +17,12 @@ bool hit(double t) {
   return t >= kHitAt && t < kHitAt + kHitFor;
 }
 
-// a sine whose frequency grows exponentially, faded in and out, so that it begins and ends at rest
-double swept_sine(double t) {
-  constexpr double kBegin = 2, kEnd = 38, kFade = 1;  // [s]
-  constexpr double kSlowest = 0.5, kFastest = 300;    // [rad/s]
-  constexpr double kAmplitude = 10;                   // [N m]
-  if (t < kBegin || t >= kEnd) return 0;
-  const double octaves = std::log(kFastest / kSlowest), duration = kEnd - kBegin;
-  const double phase =
-      kSlowest * duration / octaves * std::expm1(octaves * (t - kBegin) / duration);
-  const double edge = std::min({1., (t - kBegin) / kFade, (kEnd - t) / kFade});
-  return kAmplitude * 0.5 * (1 - std::cos(std::numbers::pi * edge)) * std::sin(phase);
-}
-
 // scenarios on the motion that the paper's have
 class List {
  public:
   List() {
     base_ = quiet();
-    base_.reference = [](double t) { return sine_motion(0.1, 1, t); };
+    base_.reference = [](double t, int) { return sine_motion(0.1, 1, t); };
   }
   /// Good until the next one is added.
   Scenario& add(const char* name, const char* description) {
@@ -62,24 +44,24 @@ void add_those_of_the_paper(List& list) {
 
   Scenario& step = list.add("step", "98.2 N m on every joint from t = 1 s (Fig. 4)");
   step.response = Response::kStep;
-  step.tau_ext = [](double t) { return t < 1 ? 0 : 98.2; };
+  step.tau_ext = [](double t, int) { return t < 1 ? 0 : 98.2; };
 
   Scenario& ramp = list.add("ramp", "from t = 1 s, 5 N m/s on every joint (Fig. 5)");
   ramp.response = Response::kLag;
-  ramp.tau_ext = [](double t) { return t < 1 ? 0 : 5 * (t - 1); };
+  ramp.tau_ext = [](double t, int) { return t < 1 ? 0 : 5 * (t - 1); };
 
   Scenario& sine = list.add(
       "sine", "10 sin t + 5 cos(2t + pi/2) - 5 N m on every joint (Fig. 6); scored from 3 s");
   sine.response = Response::kLag;
   sine.score_from = 3;
-  sine.tau_ext = paper_sine;
+  sine.tau_ext = [](double t, int) { return paper_sine(t); };
 
   Scenario& collision =
       list.add("collision",
                "5 sin(t/2) N m, and at t = 5 s a half sine of 200 N, 20 ms on the panel (Fig. 7)");
   collision.response = Response::kDetection;
-  collision.tau_ext = [](double t) { return 5 * std::sin(t / 2); };
-  collision.contact = hit;
+  collision.tau_ext = [](double t, int) { return 5 * std::sin(t / 2); };
+  collision.contact = [](double t, const Point&) { return hit(t); };
   collision.force = [](double t, const Point&) -> Eigen::Vector3d {
     const double f = hit(t) ? -kHitForce * std::sin(std::numbers::pi * (t - kHitAt) / kHitFor) : 0;
     return {f, 0, 0};
@@ -123,7 +105,7 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
   Scenario& in_motion =
       list.add("in_motion", "no contact; starts at 0.6 rad/s on q_ref = 0.3 sin 2t rad");
   in_motion.start_on_reference = true;
-  in_motion.reference = [](double t) { return sine_motion(0.3, 2, t); };
+  in_motion.reference = [](double t, int) { return sine_motion(0.3, 2, t); };
 
   add_touches(list);
 
@@ -143,7 +125,7 @@ std::vector<Scenario> scenarios_of_wallmobot3() {
       list.add("chirp", "10 N m on every joint, swept from 0.5 to 300 rad/s between 2 and 38 s");
   chirp.duration = 40;
   chirp.response = Response::kBandwidth;
-  chirp.tau_ext = swept_sine;
+  chirp.tau_ext = [](double t, int) { return 10 * swept_sine(t); };
   return list.all;
 }
 

@@ -8,9 +8,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "mjcf/scenario_type.h"
+#include "mjcf/scenarios/scenario_type.h"
 
 namespace tauext {
+
+/// [s] of the first drawn touch: estimators have settled by then, with an unknown panel, too.
+inline constexpr double kFirstTouch = 4;
 
 /// What a touch is.
 enum class TouchKind : std::uint8_t {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Section 6 of the paper: the experiments of Figs. 10 to 15. What the paper leaves open (speeds,
 // limits, the human's hand, the obstacle) is ours.
-#include "mjcf/scenario_testbed1.h"
+#include "mjcf/scenarios/testbed1.h"
 
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "mjcf/motion.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/scenarios/motion.h"
 #include "mjcf/trace/random.h"
 
 namespace tauext {
@@ -105,7 +105,7 @@ Scenario hold(const char* name, const char* description) {
   Scenario s = base(name, description);
   s.duration = 40;
   s.response = Response::kStep;
-  s.reference = [](double) { return Reference{kHold, 0, 0}; };
+  s.reference = [](double, int) { return Reference{kHold, 0, 0}; };
   s.scene = "load";
   return s;
 }
@@ -135,9 +135,9 @@ Scenario blow_on_testbed1(std::uint64_t seed) {
   const double sense = random.uniform() < 0.5 ? -1 : 1;
   const double height = sense * random.uniform(100, 300), width = random.uniform(0.01, 0.05);
   const double begin = random.uniform(0.6, 1.5);
-  s.contact = [=](double t) { return t >= begin && t < begin + width; };
-  s.force = [=, on = s.contact](double t, const Point&) -> Vector3d {
-    return {0, 0, on(t) ? height * std::sin(std::numbers::pi * (t - begin) / width) : 0};
+  s.contact = [=](double t, const Point&) { return t >= begin && t < begin + width; };
+  s.force = [=, on = s.contact](double t, const Point& tip) -> Vector3d {
+    return {0, 0, on(t, tip) ? height * std::sin(std::numbers::pi * (t - begin) / width) : 0};
   };
   return s;
 }
@@ -185,7 +185,7 @@ std::vector<Scenario> scenarios_of_testbed1() {
   all.push_back(collision);
 
   Scenario identify = base("identify", "no load; three sines that excite every term of (36)");
-  identify.reference = [](double t) {
+  identify.reference = [](double t, int) {
     Reference sum{0.1, 0, 0};
     for (const auto& [amplitude, w] : {std::pair{0.3, 0.9}, {0.12, 2.9}, {0.04, 7.1}}) {
       const Reference r = sine_motion(amplitude, w, t);

@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/motion.h"
+#include "mjcf/scenarios/motion.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tauext {
 
 Reference sine_motion(double amplitude, double w, double t) {
   return {amplitude * std::sin(w * t), amplitude * w * std::cos(w * t),
           -amplitude * w * w * std::sin(w * t)};
+}
+
+double paper_sine(double t) {
+  return 10 * std::sin(t) + 5 * std::cos(2 * t + std::numbers::pi / 2) - 5;
+}
+
+double swept_sine(double t) {
+  constexpr double kBegin = 2, kEnd = 38, kFade = 1;  // [s]
+  constexpr double kSlowest = 0.5, kFastest = 300;    // [rad/s]
+  if (t < kBegin || t >= kEnd) return 0;
+  const double octaves = std::log(kFastest / kSlowest), duration = kEnd - kBegin;
+  const double phase =
+      kSlowest * duration / octaves * std::expm1(octaves * (t - kBegin) / duration);
+  const double edge = std::min({1., (t - kBegin) / kFade, (kEnd - t) / kFade});
+  return 0.5 * (1 - std::cos(std::numbers::pi * edge)) * std::sin(phase);
 }
 
 Reference reference_at(const MinimumJerk& m, double t) {

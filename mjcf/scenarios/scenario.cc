@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/scenario.h"
+#include "mjcf/scenarios/scenario.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,9 @@
 #include <map>
 #include <stdexcept>
 
-#include "mjcf/scenario_testbed1.h"
-#include "mjcf/scenario_wallmobot3.h"
+#include "mjcf/scenarios/generic.h"
+#include "mjcf/scenarios/testbed1.h"
+#include "mjcf/scenarios/wallmobot3.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -32,6 +33,9 @@ const Lists& final_lists() {
     for (const auto& [robot, list] : lists()) {
       find_known(robots, "robot", robot, [](const std::string& name) { return name; });
     }
+    for (const std::string& robot : robots) {
+      if (!lists().contains(robot)) lists()[robot] = generic_scenarios(load_robot(robot));
+    }
     return lists();
   }();
   return all;
@@ -54,7 +58,7 @@ void register_scenario(const std::string& robot, const Scenario& s) {
 }
 
 const std::vector<Scenario>& scenarios(std::string_view robot) {
-  return find_known(final_lists(), "robot with scenarios", robot,
+  return find_known(final_lists(), "robot", robot,
                     [](const auto& list) -> const std::string& { return list.first; })
       .second;
 }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// A robot from a file, in every program.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "arm7.h"  // by tauext-import, from bench/examples/arm7.xml
+#include "bench/test/programs.h"
+#include "mjcf/plant/plant.h"
+#include "mjcf/plant/tree.h"
+
+namespace tauext::test {
+namespace {
+
+const std::string kArm6 = TAUEXT_EXAMPLES "/arm6.xml";
+const std::string kArm7 = TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
+const std::string kTwoArms = TAUEXT_EXAMPLES "/two_arms.urdf";
+
+// what the header has, beside MuJoCo on the file
+TEST(ImportedArm, AsCppIsTheArmOfTheFile) {
+  const TreeModel<7> arm = arm7();
+  Plant plant(simulated(load_mjcf(TAUEXT_EXAMPLES "/arm7.xml", {"finger.*"})));
+  for (int k = 0; k < 20; ++k) {
+    Vec<7> q, qd;
+    for (int i = 0; i < 7; ++i) {
+      q[i] = std::sin(3. * k + i);
+      qd[i] = std::cos(5. * k + 2 * i);
+    }
+    plant.set_state(q, qd);
+    EXPECT_LT((arm.inertia(q) - plant.inertia()).norm(), 1e-10);
+    EXPECT_LT((arm.bias(q, qd) - plant.bias()).norm(), 1e-10);
+    EXPECT_LT((arm.friction(qd) - plant.friction()).norm(), 1e-10);
+  }
+}
+
+using FilePrograms = Programs;
+
+TEST_F(FilePrograms, TheSuiteRunsOnIt) {
+  const Outcome list = run("tauext-bench --list --robot " + kTwoArms);
+  EXPECT_EQ(list.code, 0) << list.text;
+  EXPECT_TRUE(list.says("two_arms/contact/mo2+pan_tompkins\n")) << list.text;
+  EXPECT_FALSE(list.says("wallmobot3/"));
+  const Outcome o = run("tauext-bench --robot " + kArm7 +
+                        " --benchmark_filter='arm7/(step|blow)/(mo2|ekf)' "
+                        "--benchmark_min_time=0.01 --benchmark_out=r.json");
+  EXPECT_EQ(o.code, 0) << o.text;
+  const auto results = nlohmann::json::parse(content("r.json")).at("benchmarks");
+  double mo2 = 0, ekf = 0, recall = 0;
+  for (const auto& row : results) {
+    const std::string name = row.at("name");
+    if (name == "arm7/step/mo2") mo2 = row.at("rmse_Nm");
+    if (name == "arm7/step/ekf") ekf = row.at("rmse_Nm");
+    if (name == "arm7/blow/mo2+pan_tompkins") recall = row.at("recall");
+  }
+  EXPECT_GT(mo2, 0.01) << "a step costs every estimator its delay";
+  EXPECT_LT(mo2, 1);
+  EXPECT_LT(ekf, 1.5 * mo2);
+  EXPECT_EQ(recall, 1);
+}
+
+TEST_F(FilePrograms, RecordsAndReplaysIt) {
+  const Outcome record = run("tauext-record --robot " + kArm6 + " --scenario sine --out x.csv");
+  EXPECT_EQ(record.code, 0) << record.text;
+  const Outcome replay =
+      run("tauext-replay x.csv --robot " + kArm6 + " --estimator truth,mo2,ekf --out e.csv");
+  EXPECT_EQ(replay.code, 0) << replay.text;
+  const Outcome commands =
+      run("tauext-bench --commands arm7/contact/mo2+pan_tompkins --robot " + kArm7);
+  EXPECT_TRUE(commands.says("arm7.xml:lock=finger.*' --scenario contact")) << commands.text;
+  EXPECT_TRUE(commands.says("--stop mo2+pan_tompkins")) << commands.text;
+  const std::string line = commands.text.substr(0, commands.text.find('\n'));
+  EXPECT_EQ(run(line.substr(line.find("tauext-record"))).code, 0);
+}
+
+TEST_F(FilePrograms, CalibratesAndStudiesIt) {
+  const std::string few =
+      " --robot " + kTwoArms + " --estimator mo2 --detector high_pass,pan_tompkins";
+  const Outcome list = run("tauext-detect --list --robot " + kTwoArms);
+  EXPECT_TRUE(list.says("heavy") && list.says("(trained on)")) << list.text;
+  const Outcome calibrate = run("tauext-detect --calibrate t.json --runs 2" + few);
+  EXPECT_EQ(calibrate.code, 0) << calibrate.text;
+  const Outcome study =
+      run("tauext-detect --thresholds t.json --conditions known --collisions 20 "
+          "--pushes 0 --clampings 0 --hours 0.02 --format csv" +
+          few);
+  EXPECT_EQ(study.code, 0) << study.text;
+  EXPECT_TRUE(study.says("known,mo2+pan_tompkins,100.0,")) << study.text;
+}
+
+TEST_F(FilePrograms, SayWhatIsWrongWithIt) {
+  EXPECT_TRUE(run("tauext-bench --lock x").says("--lock: of which --robot FILE?"));
+  EXPECT_TRUE(run("tauext-bench --robot wallmobot3 --lock x").says("wallmobot3 is none"));
+  const Outcome tied = run("tauext-bench --robot " TAUEXT_EXAMPLES "/arm7.xml");
+  EXPECT_EQ(tied.code, 2);
+  EXPECT_TRUE(tied.says("--lock REGEX fixes them")) << tied.text;
+  EXPECT_EQ(run("tauext-record --robot nothing.urdf --scenario step --out x.csv").code, 2);
+  EXPECT_TRUE(
+      run("tauext-record --robot " + kArm6 + " --scenario dance --out x.csv")
+          .says("known: free, step, ramp, sine, in_motion, chirp, push, blow, clamp, contact"));
+}
+
+}  // namespace
+}  // namespace tauext::test

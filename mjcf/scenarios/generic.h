@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Scenarios for any arm, scaled to it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "mjcf/scenarios/scenario_type.h"
+#include "mjcf/scenarios/touch.h"
+
+namespace tauext {
+
+/// What the generic scenarios of an arm are scaled by, joint by joint [rad or m, N m or N].
+struct ArmScale {
+  Eigen::VectorXd home;       ///< a bent pose about the middle of the joints' ranges
+  Eigen::VectorXd amplitude;  ///< of slow motions about it: 0.1 rad, or less in a short range
+  /// What each joint is used to: ArmTree::usual_torque, or three times what `force` does to it.
+  Eigen::VectorXd usual_torque;
+  /// Of loads on the joints: a fifth of usual_torque, or what moves a joint by 0.05 rad against the
+  /// tracking controller.
+  Eigen::VectorXd torque;
+  /// The two directions, world frame, in which a force on the end effector moves the arm most, or
+  /// twice the only one.
+  Eigen::Matrix<double, 3, 2> directions;
+  double mass = 0;  ///< [kg] of the end effector between these directions, by B at home
+  /// [N] of blows, pushes being smaller: 20 m/s^2 of that mass, 300 N, or what moves a joint by
+  /// 0.05 rad. 0 if no force on the end effector moves the arm.
+  double force = 0;
+};
+
+/// @throws std::invalid_argument if the model cannot be simulated (mjcf/plant/layout.h)
+ArmScale scale_of(const Model& model);
+
+/// free, step, ramp, sine, chirp, in_motion, and, where a force on the end effector moves the arm,
+/// push, blow, clamp and contact.
+/// @throws std::invalid_argument as scale_of does
+std::vector<Scenario> generic_scenarios(const Model& model);
+
+/// A run for studies: about home by half to all of the amplitude and 0.5 to 1 rad/s as the seed
+/// draws them, 30 s, with touches of one kind from 4 s on, in the plane of the directions. A blow
+/// has a third to all of the force, other touches in proportion.
+Scenario touched_arm(const ArmScale& scale, TouchKind kind, std::uint64_t seed);
+
+/// The touches in that run.
+std::vector<Touch> touches_of(const ArmScale& scale, TouchKind kind, std::uint64_t seed);
+
+}  // namespace tauext
