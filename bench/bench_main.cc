@@ -16,6 +16,7 @@
 #include "bench/roster/threshold_file.h"
 #include "bench/run/commands.h"
 #include "bench/run/recording_flags.h"
+#include "bench/run/scenario_file.h"
 #include "bench/run/study_flags.h"
 #include "bench/run/suite_run.h"
 #include "bench/score/entry.h"
@@ -51,7 +52,7 @@ struct Flags {
   StudyFlags studies;  // what runs instead of the suite; its format is that of all tables
   bool list = false, list_metrics = false, list_tests = false, paper = false;
   std::string lock;
-  std::optional<std::string> out, out_format, format, golden, commands, lcm, lcm_log;
+  std::optional<std::string> scenarios, out, out_format, format, golden, commands, lcm, lcm_log;
   std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
 };
 
@@ -97,9 +98,11 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
 int run(const CLI::App& app, Flags& flags) {
   std::optional<std::string>& name = flags.studies.robot;
   if (!name && !flags.lock.empty()) throw std::invalid_argument("--lock: of which --robot FILE?");
+  if (!name && flags.scenarios) throw std::invalid_argument("--scenarios: of which --robot?");
   if (name) {
     name = with_lock(*name, flags.lock);
     flags.selection.robot = &robot(*name);
+    if (flags.scenarios) add_scenarios(*flags.scenarios, *flags.selection.robot);
   }
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
@@ -168,6 +171,7 @@ void add_selection_flags(CLI::App& app, Flags& flags) {
                  "only this one, or that of an MJCF or URDF file (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", flags.lock)->group("");
+  app.add_option("--scenarios", flags.scenarios)->group("");
   app.add_option("--estimator", flags.selection.estimators,
                  "run only these, as NAME[:KEY=VALUE].., like mo2:bandwidth=50")
       ->delimiter(',')
@@ -224,7 +228,8 @@ int bench_main(int argc, char** argv) {
   Flags flags;
   add_flags(app, flags);
   app.footer(
-      "Of tauext-record: --loadcell --degrade --velocity_noise --kp --kd. Google Benchmark's:\n"
+      "Of tauext-record: --scenarios --loadcell --degrade --velocity_noise --kp --kd. Google "
+      "Benchmark's:\n"
       "  --benchmark_filter=REGEX --benchmark_out=FILE (JSON) --benchmark_min_time=0.05\n"
       "  --benchmark_repetitions=N --benchmark_format=console|json");
   Arguments rest = take_benchmark_flags(argc, argv, flags);

@@ -14,6 +14,7 @@
 #include "bench/program/realtime.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
+#include "bench/run/scenario_file.h"
 
 namespace {
 
@@ -73,13 +74,24 @@ int main(int argc, char** argv) {
   add_source_flags(app, o, listen);
   add_run_flags(app, o);
   add_recording_flags(app, o.sensors, o.model_error, o.recording);
-  const std::vector<const char*> of_scenarios = {
-      "--degrade",      "--sensors",        "--loadcell", "--model_error", "--velocity_noise",
-      "--encoder_step", "--loadcell_noise", "--seed",     "--kp",          "--kd"};
+  std::string scenarios;
+  app.add_option("--scenarios", scenarios);
+  const std::vector<const char*> of_scenarios = {"--scenarios",
+                                                 "--degrade",
+                                                 "--sensors",
+                                                 "--loadcell",
+                                                 "--model_error",
+                                                 "--velocity_noise",
+                                                 "--encoder_step",
+                                                 "--loadcell_noise",
+                                                 "--seed",
+                                                 "--kp",
+                                                 "--kd"};
   for (const char* flag : of_scenarios) app.get_option(flag)->group("");
   app.add_flag("--list", list, "list robots, scenarios, estimators and detectors, and stop");
   app.footer(
-      "With --scenario: tauext-record's --sensors, --model_error, --degrade, --seed, --kp, --kd.");
+      "With --scenario: tauext-record's --scenarios --sensors --model_error --degrade --seed --kp "
+      "--kd.");
   return run_program(app, argc, argv, [&]() -> int {
     if (list) {
       fmt::print("{}", list_known());
@@ -95,6 +107,7 @@ int main(int argc, char** argv) {
     require_mode(app, o.stream && !listen, "--lcm", {"--rate"});
     live::check(o, listen);
     if (listen) return live::run_listen(o);
+    if (!scenarios.empty()) add_scenarios(scenarios, robot(with_lock(o.robot, o.lock)));
     return o.subscribe.empty() ? live::run_recorded(o) : live::run_subscribed(o);
   });
 }

@@ -9,6 +9,7 @@
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
+#include "bench/run/scenario_file.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
 
@@ -31,6 +32,17 @@ tauext::Supervisor supervisor_of(const tauext::Robot& robot, const std::string& 
   return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
 }
 
+// as CSV, or as an LCM log
+void write(const tauext::Trace& trace, tauext::MessageType type, const std::string& out) {
+  using namespace tauext;
+  if (!is_lcm_log(out)) return write_csv(trace, out);
+  LogBuffer log;
+  append_samples(readings_of(trace), type, log);
+  AtomicFile file(out);
+  file.write(log.bytes());
+  file.commit();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,7 +53,7 @@ int main(int argc, char** argv) {
       "or, to a file that ends in .lcm, as an LCM log with simulated times.\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
-  std::string robot_name, lock, scenario_name, out, stop, type = "tauext";
+  std::string robot_name, lock, scenario_name, scenario_file, out, stop, type = "tauext";
   Sensors sensors;
   ModelError model_error;
   Recording recording;
@@ -50,6 +62,8 @@ int main(int argc, char** argv) {
       ->type_name("NAME|FILE");
   app.add_option("--lock", lock, "joints of that file to fix, like grippers'")->type_name("REGEX");
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
+  app.add_option("--scenarios", scenario_file, "add those of a JSON file (bench/run/README.md)")
+      ->type_name("FILE");
   app.add_option("--out", out, "file to write; - is standard output");
   app.add_option("--type", type, "of an LCM log's messages: tauext, iiwa or panda")
       ->capture_default_str();
@@ -65,24 +79,17 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(
           "--robot, --scenario and --out are required; see tauext-record --help");
     }
-    const bool lcm = is_lcm_log(out);
-    if (message_type(type) != MessageType::kTauext && !lcm) {
+    if (message_type(type) != MessageType::kTauext && !is_lcm_log(out)) {
       throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", type, out));
     }
     const Robot& r = robot(with_lock(robot_name, lock));
+    if (!scenario_file.empty()) add_scenarios(scenario_file, r);
     const Scenario& s = scenario_of(r, scenario_name);
+    sensors = sensors_for(s, sensors);
     const Supervisor supervisor = supervisor_of(r, stop);
     const Trace trace =
         measure(simulate(r.load_for(s, model_error), s, recording, sensors, supervisor), sensors);
-    if (lcm) {
-      LogBuffer log;
-      append_samples(readings_of(trace), message_type(type), log);
-      AtomicFile file(out);
-      file.write(log.bytes());
-      file.commit();
-    } else {
-      write_csv(trace, out);
-    }
+    write(trace, message_type(type), out);
     const std::string stopped = trace.stopped_at >= 0
                                     ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
                                 : stop.empty() ? ""

@@ -55,8 +55,9 @@ RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& th
         r.supervisor(o.estimators[0], o.detector, {.thresholds = thresholds(o.estimators[0])});
   }
   say(fmt::format("simulating {} s of {}", s.duration, s.name));
-  return {measure(simulate(r.load_for(s, o.model_error), s, o.recording, o.sensors, supervisor),
-                  o.sensors)};
+  const Sensors sensors = sensors_for(s, o.sensors);
+  return {measure(simulate(r.load_for(s, o.model_error), s, o.recording, sensors, supervisor),
+                  sensors)};
 }
 
 std::string title_of(const Options& o) {

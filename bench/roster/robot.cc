@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,15 @@
 #include "mjcf/scenarios/scenario.h"
 
 namespace tauext {
+namespace {
+
+// scenarios that somebody added to a file's robot
+std::vector<Scenario>& registered_for(const std::string& robot) {
+  static std::map<std::string, std::vector<Scenario>> all;
+  return all[robot];
+}
+
+}  // namespace
 
 Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
   if (!file) return;
@@ -31,12 +41,32 @@ Eigen::VectorXd Robot::small_torque() const {
 
 const std::vector<Scenario>& Robot::scenarios() const {
   if (!file_) return tauext::scenarios(name_);
-  std::call_once(listed_, [&] { scenarios_ = generic_scenarios(file_); });
+  std::call_once(listed_, [&] {
+    scenarios_ = generic_scenarios(file_);
+    for (const Scenario& s : registered_for(name_)) scenarios_.push_back(s);
+  });
   return scenarios_;
 }
 
 Model Robot::load_for(const Scenario& s, const ModelError& error) const {
-  return file_ ? with_errors(file_, error) : tauext::load_for(name_, s, error);
+  return file_ ? with_errors(file_, error_for(s, error)) : tauext::load_for(name_, s, error);
+}
+
+Eigen::VectorXd Robot::home() const {
+  return file_ ? scale_of(file_).home : Eigen::VectorXd::Zero(dof_);
+}
+
+void register_scenario_of(const Robot& r, const Scenario& s) {
+  if (!r.is_from_file()) return register_scenario(r.name(), s);
+  const auto refuse_taken = [&](const std::vector<Scenario>& all) {
+    for (const Scenario& known : all) {
+      if (known.name != s.name) continue;
+      throw std::invalid_argument(fmt::format("{} has a scenario '{}' already", r.label(), s.name));
+    }
+  };
+  refuse_taken(generic_scenarios(r.load_for(quiet())));
+  refuse_taken(registered_for(r.name()));
+  registered_for(r.name()).push_back(s);
 }
 
 void Robot::check(std::string_view estimator, std::string_view detector) const {

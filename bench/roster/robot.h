@@ -52,6 +52,10 @@ class Robot {
   /// [N m] of a dry friction that studies hide from its estimators: the least of these.
   double hidden_friction() const { return small_torque().minCoeff(); }
 
+  bool is_from_file() const { return file_ != nullptr; }  ///< and none of those that are known
+  /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.
+  Eigen::VectorXd home() const;
+
   /// What happens to it; the generic ones (mjcf/scenarios/generic.h) if it is from a file.
   const std::vector<Scenario>& scenarios() const;
   /// The simulated robot as the scenario needs it, with errors that its estimators do not know of.
@@ -132,5 +136,9 @@ class Robot {
   mutable std::once_flag listed_;
   mutable std::vector<Scenario> scenarios_;  // of a file's robot
 };
+
+/// Adds a scenario to the robot's list, before that is first asked for.
+/// @throws std::invalid_argument if the name is taken or empty
+void register_scenario_of(const Robot& robot, const Scenario& scenario);
 
 }  // namespace tauext

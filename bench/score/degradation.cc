@@ -142,10 +142,14 @@ void set_fields(const std::vector<std::string>& items, ModelError& e) {
   set_items(items, "model_error", e);
 }
 
+void set_degradation(const std::string& json, Degradation& d) {
+  d = from_json(Json::parse(json, nullptr, true, true), d);  // comments are welcome
+}
+
 void read_degradation(const std::string& path, Degradation& d) {
   const std::string text = read_json_text(path);
   try {
-    d = from_json(Json::parse(text, nullptr, true, true), d);  // comments are welcome
+    set_degradation(text, d);
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }

@@ -27,6 +27,10 @@ struct Degradation {
 /// number
 void read_degradation(const std::string& path, Degradation& d);
 
+/// The same from the text of such a file.
+/// @throws std::invalid_argument or std::runtime_error for what is wrong in it
+void set_degradation(const std::string& json, Degradation& d);
+
 /// Sets fields from "key=number" items: of Sensors, of a Loadcell, of a ModelError.
 /// @throws std::invalid_argument naming the key and the known ones with their units and limits
 void set_fields(const std::vector<std::string>& items, Sensors& s);

@@ -52,7 +52,8 @@ std::string failure(const Trace& ideal, const Output& out, double from,
 
 DetectorSettings Suite::settings(const Entry& e) const {
   return {.thresholds = trained_for(options_.thresholds, e.robot().name(),
-                                    options_.sensors.velocity_noise, e.estimator(), e.detector())};
+                                    sensors_for(e.scenario(), options_.sensors).velocity_noise,
+                                    e.estimator(), e.detector())};
 }
 
 const Suite::Traces& Suite::traces(const Entry& e) {
@@ -61,10 +62,10 @@ const Suite::Traces& Suite::traces(const Entry& e) {
   if (it != traces_.end()) return it->second;
   Traces t;
   const Scenario& s = e.scenario();
+  Sensors sensors = sensors_for(s, options_.sensors);
   t.ideal = simulate(
-      e.robot().load_for(s, options_.model_error), s, options_.recording, options_.sensors,
+      e.robot().load_for(s, options_.model_error), s, options_.recording, sensors,
       e.closed_loop() ? e.robot().supervisor(e.estimator(), e.detector(), settings(e)) : nullptr);
-  Sensors sensors = options_.sensors;
   if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
   t.noisy = measure(t.ideal, sensors);
   return traces_.emplace(key, std::move(t)).first->second;
@@ -83,8 +84,12 @@ const Suite::Estimates& Suite::estimates(const Entry& e) {
   return estimates_.emplace(key, Estimates{run(t.ideal), run(t.noisy)}).first->second;
 }
 
+bool Suite::is_ideal(const Entry& e) const {
+  return sensors_for(e.scenario(), options_.sensors).ideal();
+}
+
 const Trace& Suite::scored(const Entry& e) {
-  return options_.sensors.ideal() ? traces(e).ideal : traces(e).noisy;
+  return is_ideal(e) ? traces(e).ideal : traces(e).noisy;
 }
 
 std::unique_ptr<Runner> Suite::runner(const Entry& e, const Trace& trace) const {
@@ -107,7 +112,7 @@ Suite::Run Suite::run(const Entry& e) {
 std::string Suite::error(const Entry& e, const Output& ideal, const Output& noisy) {
   const Traces& recorded = traces(e);
   const std::string bad =
-      options_.model_error.none()
+      error_for(e.scenario(), options_.model_error).none()
           ? failure(recorded.ideal, ideal, e.scenario().score_from, e.robot().small_torque())
           : bad_status(recorded.ideal, ideal);
   if (!bad.empty()) return bad;
@@ -123,7 +128,7 @@ Score Suite::score(const Entry& e) {
   Score score;
   score.error = error(e, ideal, noisy);
   const Trace& trace = scored(e);
-  Output out = options_.sensors.ideal() ? ideal : noisy;
+  Output out = is_ideal(e) ? ideal : noisy;
   score.counts = out.counts;
   score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
   add_error_metrics(trace, out, s.score_from, score);

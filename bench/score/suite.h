@@ -72,6 +72,7 @@ class Suite {
     Output ideal, noisy;
   };
   const Estimates& estimates(const Entry& entry);
+  bool is_ideal(const Entry& entry) const;
   const Trace& scored(const Entry& entry);
 
   SuiteOptions options_;

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A robot from a file, in every program.
+#include <cctype>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "arm7.h"  // by tauext-import, from bench/examples/arm7.xml
 #include "bench/test/programs.h"
@@ -85,6 +91,71 @@ TEST_F(FilePrograms, CalibratesAndStudiesIt) {
           few);
   EXPECT_EQ(study.code, 0) << study.text;
   EXPECT_TRUE(study.says("known,mo2+pan_tompkins,100.0,")) << study.text;
+}
+
+// that of bench/run/README.md
+std::string own_scenario() {
+  std::ifstream readme(TAUEXT_EXAMPLES "/../run/README.md");
+  const std::string text{std::istreambuf_iterator<char>(readme), {}};
+  const auto begin = text.find("```json") + 7;
+  return text.substr(begin, text.find("```", begin) - begin);
+}
+
+TEST_F(FilePrograms, RunScenariosOfAFile) {
+  write("own.json", own_scenario());
+  const Outcome bench = run("tauext-bench --robot " + kArm7 +
+                            " --scenarios own.json --benchmark_filter='pick/mo2' "
+                            "--benchmark_min_time=0.001 --benchmark_out=r.json");
+  ASSERT_EQ(bench.code, 0) << bench.text;
+  const auto rows = nlohmann::json::parse(content("r.json")).at("benchmarks");
+  EXPECT_EQ(rows.at(0).at("name"), "arm7/pick/mo2");
+  EXPECT_GT(rows.at(0).at("rmse_Nm"), 0.1) << "the model does not know 2 % of the last link";
+  const Outcome record =
+      run("tauext-record --robot " + kArm7 + " --scenarios own.json --scenario pick --out x.csv");
+  ASSERT_EQ(record.code, 0) << record.text;
+  std::istringstream rows_of_csv(content("x.csv"));
+  std::string line;
+  std::map<int, std::vector<double>> at;  // by millisecond
+  for (int n = 0; std::getline(rows_of_csv, line);) {
+    if (line.empty() || (std::isdigit(line[0]) == 0 && line[0] != '-')) continue;
+    std::istringstream numbers(line);
+    for (std::string x; std::getline(numbers, x, ',');) at[n].push_back(std::stod(x));
+    ++n;
+  }
+  // t, 7 q, 7 qd, 7 tau, 7 tau_ext, contact
+  ASSERT_EQ(at.size(), 10000U);
+  EXPECT_NEAR(at[3500][2], 0.6, 0.01) << "q2 at the second way point";
+  EXPECT_NEAR(at[3500][7], 0.1 * std::sin(2 * 3.5), 0.01) << "q7 on its sine";
+  EXPECT_EQ(at[5000][23], 5) << "tau_ext 2 by (3)";
+  EXPECT_EQ(at[3999][23], 0);
+  EXPECT_NEAR(at[7000][25], std::sin(3 * 7.), 1e-12);
+  EXPECT_EQ(at[8005].back(), 1);
+  EXPECT_EQ(at[8025].back(), 0);
+}
+
+TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
+  const auto refuses = [&](const std::string& from, const std::string& to, const std::string& why) {
+    std::string text = own_scenario();
+    text.replace(text.find(from), from.size(), to);
+    write("own.json", text);
+    const Outcome o =
+        run("tauext-record --robot " + kArm7 + " --scenarios own.json --scenario pick --out x.csv");
+    EXPECT_EQ(o.code, 2) << to;
+    EXPECT_TRUE(o.says("own.json: ") && o.says(why)) << to << "\n" << o.text;
+    EXPECT_FALSE(exists("x.csv"));
+  };
+  refuses("\"duration\": 10", "\"duration\": -1", "\"duration\" is -1, and must be 0.1 to 3600");
+  refuses("\"joint\": 7", "\"joint\": 8",
+          "scenarios 1: sines 1: \"joint\" is 8, and must be 1 to 7");
+  refuses("\"torque\": 5", "\"torqe\": 5", "unknown key \"torqe\"; known: joint, torque");
+  refuses("\"blow\"", "\"kick\"", "unknown kind of touch 'kick'; known: blow, push, clamp");
+  refuses("\"asks\": \"detection\"", "\"asks\": \"all\"", "known: error, step, lag");
+  refuses("[0, 0, 40]", "[0, 40]", "\"force\" is [0,40], and must be 3 numbers");
+  refuses("\"t\": 3,", "\"t\": 0,", "must be later than the one before");
+  refuses("\"pick\"", "\"step\"", "'step'");
+  refuses("\"pick\"", "\"a/b\"", "must be a word");
+  refuses("\"velocity_noise\"", "\"noise\"", "velocity_noise");
+  refuses("\"name\"", "name", "parse error");
 }
 
 TEST_F(FilePrograms, SayWhatIsWrongWithIt) {

@@ -68,8 +68,19 @@ const Scenario& scenario(std::string_view robot, std::string_view name) {
   return find_known(scenarios(robot), "scenario", name, name_of, robot);
 }
 
+Sensors sensors_for(const Scenario& s, const Sensors& asked) {
+  if (!asked.ideal()) return asked;
+  Sensors own = s.sensors;
+  own.seed = asked.seed;
+  return own;
+}
+
+ModelError error_for(const Scenario& s, const ModelError& asked) {
+  return asked.none() ? s.model_error : asked;
+}
+
 Model load_for(std::string_view robot, const Scenario& s, const ModelError& error) {
-  const Model m = with_errors(load_robot(robot, s.scene), error);
+  const Model m = with_errors(load_robot(robot, s.scene), error_for(s, error));
   return s.load ? with_scaled_body(m, "load", s.load->mass) : m;  // it weighs 1 kg in the scene
 }
 

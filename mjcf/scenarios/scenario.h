@@ -29,6 +29,11 @@ const Scenario& scenario(std::string_view robot, std::string_view name);
 /// @throws std::invalid_argument if the name is empty or taken
 void register_scenario(const std::string& robot, const Scenario& scenario);
 
+/// The sensors that were asked for, or, if these are ideal, the scenario's with their seed.
+Sensors sensors_for(const Scenario& scenario, const Sensors& asked);
+/// The error that was asked for, or, if it is none, the scenario's.
+ModelError error_for(const Scenario& scenario, const ModelError& asked);
+
 /// The robot as the scenario needs it: with its scene, and the load as heavy as it says; and with
 /// errors that its estimators do not know of.
 /// @throws std::invalid_argument for an error out of range

@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "mjcf/plant/model_error.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/scenarios/motion.h"
+#include "mjcf/trace/sensors.h"
 
 namespace tauext {
 
@@ -62,6 +64,8 @@ struct Scenario {
   std::string scene;            ///< what stands around the arm: a name of mjcf/scene_*.xml, or ""
   std::optional<Load> load;     ///< with the scene "load"
   bool reaches_limits = false;  ///< of joints, whose torque is tau_ext then; else they end the run
+  Sensors sensors;              ///< of this scenario, where nobody asks for others
+  ModelError model_error;       ///< what the estimators do not know in it, likewise
   bool reacts = false;          ///< whether a detector's mark stops the motor: a closed loop
 
   /// Whether something stands in the arm's way: the names of such scenes end in "obstacle".

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/scenario_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/score/degradation.h"
+#include "mjcf/scenarios/touch.h"
+#include "mjcf/trace/input_file.h"
+#include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> words, Args&&... args) {
+  throw std::invalid_argument(fmt::format(words, std::forward<Args>(args)...));
+}
+
+// an object of the file, of which every key is known
+class Object {
+ public:
+  Object(const Json& json, std::string where, std::initializer_list<const char*> known)
+      : json_(json), where_(std::move(where)) {
+    if (!json.is_object()) fail("{} is {}, no object", where_, json.dump());
+    for (const auto& [key, value] : json.items()) {
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        fail("{}: unknown key \"{}\"; known: {}", where_, key, fmt::join(known, ", "));
+    }
+  }
+
+  const std::string& where() const { return where_; }
+  bool has(const char* key) const { return json_.contains(key); }
+  const Json& at(const char* key) const {
+    if (!has(key)) fail("{} has no \"{}\"", where_, key);
+    return json_.at(key);
+  }
+  double number(const char* key, double least, double most) const {
+    const Json& j = at(key);
+    const double x = j.is_number() ? j.get<double>() : std::nan("");
+    if (x >= least && x <= most) return x;
+    fail("{}: \"{}\" is {}, and must be {:g} to {:g}", where_, key, j.dump(), least, most);
+  }
+  double number_or(const char* key, double otherwise, double least, double most) const {
+    return has(key) ? number(key, least, most) : otherwise;
+  }
+  Eigen::VectorXd vector(const char* key, int n) const {
+    const Json& j = at(key);
+    Eigen::VectorXd v(n);
+    bool good = j.is_array() && static_cast<int>(j.size()) == n;
+    for (int i = 0; good && i < n; ++i) {
+      good = j[static_cast<std::size_t>(i)].is_number();
+      if (good) v[i] = j[static_cast<std::size_t>(i)].get<double>();
+    }
+    if (!good || !(v.cwiseAbs().maxCoeff() <= kMost))
+      fail("{}: \"{}\" is {}, and must be {} numbers", where_, key, j.dump(), n);
+    return v;
+  }
+  std::string text(const char* key, const std::string& otherwise) const {
+    if (!has(key)) return otherwise;
+    if (!at(key).is_string()) fail("{}: \"{}\" is {}, no text", where_, key, at(key).dump());
+    return at(key).get<std::string>();
+  }
+  bool flag(const char* key) const {
+    if (!has(key)) return false;
+    if (!at(key).is_boolean())
+      fail("{}: \"{}\" is {}, no true or false", where_, key, at(key).dump());
+    return at(key).get<bool>();
+  }
+  // look(item, where it is) for each of a list
+  template <class Look>
+  void each(const char* key, Look&& look) const {
+    if (!has(key)) return;
+    const Json& list = at(key);
+    if (!list.is_array()) fail("{}: \"{}\" is {}, no list", where_, key, list.dump());
+    for (std::size_t i = 0; i < list.size(); ++i)
+      look(list[i], fmt::format("{}: {} {}", where_, key, i + 1));
+  }
+
+  static constexpr double kMost = 1e9;
+
+ private:
+  const Json& json_;
+  std::string where_;
+};
+
+struct Wave {
+  int joint;
+  double size, w, phase, from, to;
+};
+
+constexpr double kForEver = std::numeric_limits<double>::infinity();
+
+int joint_of(const Object& o, int dof) {
+  const double j = o.number("joint", 1, dof);
+  if (j != std::floor(j)) fail("{}: \"joint\" is {}, no whole number", o.where(), j);
+  return static_cast<int>(j) - 1;
+}
+
+// of every joint, its moves from way point to way point
+std::vector<Moves<MinimumJerk>> moves_of(const Object& o, const Eigen::VectorXd& home) {
+  std::vector<double> times;
+  std::vector<Eigen::VectorXd> points;
+  o.each("way_points", [&](const Json& j, const std::string& where) {
+    const Object point(j, where, {"t", "q"});
+    const double t = point.number("t", 0, Object::kMost);
+    if (!times.empty() && t <= times.back())
+      fail("{}: \"t\" is {:g}, and must be later than the one before", where, t);
+    times.push_back(t);
+    points.push_back(point.vector("q", static_cast<int>(home.size())));
+  });
+  if (points.empty()) {
+    times = {0};
+    points = {home};
+  }
+  std::vector<Moves<MinimumJerk>> all;
+  for (Eigen::Index i = 0; i < home.size(); ++i) {
+    std::vector<MinimumJerk> moves{{.begin = times[0], .from = points[0][i], .to = points[0][i]}};
+    for (std::size_t k = 1; k < times.size(); ++k) {
+      moves.push_back({.begin = times[k - 1],
+                       .duration = times[k] - times[k - 1],
+                       .from = points[k - 1][i],
+                       .to = points[k][i]});
+    }
+    all.emplace_back(std::move(moves));
+  }
+  return all;
+}
+
+std::vector<Wave> sines_of(const Object& o, int dof) {
+  std::vector<Wave> all;
+  o.each("sines", [&](const Json& j, const std::string& where) {
+    const Object sine(j, where, {"joint", "amplitude", "w", "phase"});
+    all.push_back({joint_of(sine, dof), sine.number("amplitude", -100, 100),
+                   sine.number("w", 1e-6, 1e4), sine.number_or("phase", 0, -100, 100), 0,
+                   kForEver});
+  });
+  return all;
+}
+
+// constant ones are cosines of no frequency
+std::vector<Wave> loads_of(const Object& o, int dof) {
+  constexpr double kHalfPi = 1.57079632679489662;
+  std::vector<Wave> all;
+  o.each("loads", [&](const Json& j, const std::string& where) {
+    const Object load(j, where, {"joint", "torque", "from", "to", "w", "phase"});
+    const double w = load.number_or("w", 0, 0, 1e4);
+    all.push_back({joint_of(load, dof), load.number("torque", -1e6, 1e6), w,
+                   load.number_or("phase", w == 0 ? kHalfPi : 0, -100, 100),
+                   load.number_or("from", 0, 0, Object::kMost),
+                   load.number_or("to", kForEver, 0, Object::kMost)});
+  });
+  return all;
+}
+
+std::vector<Touch> touches_of(const Object& o) {
+  constexpr std::pair<const char*, TouchKind> kKinds[] = {
+      {"blow", TouchKind::kBlow}, {"push", TouchKind::kSlowPush}, {"clamp", TouchKind::kClamp}};
+  std::vector<Touch> all;
+  o.each("touches", [&](const Json& j, const std::string& where) {
+    const Object touch(j, where, {"kind", "t", "rise", "hold", "fall", "force"});
+    const std::string kind = touch.text("kind", "blow");
+    Touch t;
+    t.kind = find_known(kKinds, "kind of touch", kind, [](const auto& k) {
+               return std::string(k.first);
+             }).second;
+    t.begin = touch.number("t", 0, Object::kMost);
+    t.rise = touch.number("rise", 1e-3, 1e3);
+    t.hold = touch.number_or("hold", 0, 0, Object::kMost);
+    t.fall = touch.number_or("fall", t.kind == TouchKind::kBlow ? 0 : t.rise, 0, 1e3);
+    t.force = touch.vector("force", 3);
+    all.push_back(t);
+  });
+  return all;
+}
+
+Response response_of(const std::string& asks) {
+  constexpr std::pair<const char*, Response> kAll[] = {{"error", Response::kNone},
+                                                       {"step", Response::kStep},
+                                                       {"lag", Response::kLag},
+                                                       {"detection", Response::kDetection},
+                                                       {"bandwidth", Response::kBandwidth}};
+  return find_known(kAll, "\"asks\"", asks, [](const auto& r) { return std::string(r.first); })
+      .second;
+}
+
+Scenario scenario_of(const Json& json, const std::string& where, const Robot& robot) {
+  const Object of(json, where,
+                  {"name", "description", "duration", "score_from", "asks", "way_points", "sines",
+                   "loads", "touches", "degrade", "reaches_limits"});
+  Scenario s = quiet();
+  s.name = of.text("name", "");
+  if (s.name.empty() || s.name.find_first_of("/+@ \t\n") != s.name.npos)
+    fail("{}: \"name\" is '{}', and must be a word without / + @", where, s.name);
+  s.description = of.text("description", "of a file");
+  s.duration = of.number("duration", 0.1, 3600);
+  s.score_from = of.number_or("score_from", 0, 0, s.duration);
+  s.response = response_of(of.text("asks", "error"));
+  s.reaches_limits = of.flag("reaches_limits");
+  s.start_on_reference = true;
+  s.reference = [moves = moves_of(of, robot.home()), sines = sines_of(of, robot.dof())](double t,
+                                                                                        int i) {
+    Reference sum = moves[static_cast<std::size_t>(i)](t);
+    for (const Wave& x : sines) {
+      if (x.joint != i) continue;
+      const Reference r = sine_motion(x.size, x.w, t + x.phase / x.w);
+      sum = {sum.q + r.q, sum.qd + r.qd, sum.qdd + r.qdd};
+    }
+    return sum;
+  };
+  s.tau_ext = [loads = loads_of(of, robot.dof())](double t, int i) {
+    double sum = 0;
+    for (const Wave& x : loads) {
+      if (x.joint == i && t >= x.from && t < x.to) sum += x.size * std::sin(x.w * t + x.phase);
+    }
+    return sum;
+  };
+  if (of.has("degrade")) {
+    Degradation d;
+    set_degradation(of.at("degrade").dump(), d);
+    s.sensors = d.sensors;
+    s.model_error = d.model_error;
+  }
+  return with_touches(s, touches_of(of));
+}
+
+}  // namespace
+
+std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot) {
+  const std::string text = read_json_text(path);
+  try {
+    const Json json = Json::parse(text);
+    const Object file(json, "the file", {"scenarios"});
+    std::vector<Scenario> all;
+    file.at("scenarios");
+    file.each("scenarios", [&](const Json& j, const std::string& where) {
+      all.push_back(scenario_of(j, where, robot));
+    });
+    if (all.empty()) fail("there is no scenario in it");
+    return all;
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
+  }
+}
+
+void add_scenarios(const std::string& path, const Robot& robot) {
+  for (const Scenario& s : read_scenarios(path, robot)) {
+    try {
+      register_scenario_of(robot, s);
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
+    }
+  }
+}
+
+}  // namespace tauext
