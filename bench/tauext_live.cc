@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
       "--kd.");
   return run_program(app, argc, argv, [&]() -> int {
     if (list) {
-      fmt::print("{}", list_known());
+      fmt::print("{}", list_known(with_lock(o.robot, o.lock)));
       return kGood;
     }
     o.stream = app.count("--lcm") > 0;

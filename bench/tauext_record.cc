@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   app.add_flag("--list", list, "list robots and scenarios, and stop");
   return run_program(app, argc, argv, [&] {
     if (list) {
-      fmt::print("{}", list_known());
+      fmt::print("{}", list_known(with_lock(robot_name, lock)));
       return kGood;
     }
     if (robot_name.empty() || scenario_name.empty() || out.empty()) {

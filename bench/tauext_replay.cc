@@ -247,7 +247,7 @@ int main(int argc, char** argv) {
   add_flags(app, flags);
   return run_program(app, argc, argv, [&]() -> int {
     if (!flags.list) return replay(flags);
-    fmt::print("{}", list_known());
+    fmt::print("{}", list_known(with_lock(flags.robot, flags.lock)));
     return kGood;
   });
 }

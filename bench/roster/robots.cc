@@ -12,6 +12,7 @@
 
 #include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
+#include "mjcf/scenarios/generic.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/table_writer.h"
 
@@ -43,6 +44,32 @@ const Robot& robot_of_file(const std::string& name) {
 const auto& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
                        std::string_view name) {
   return find_known(all, "robot", name, [](const auto& r) { return r->name(); });
+}
+
+std::string list_of(const Robot& r) {
+  TableWriter table({{"  scenario", "", true}, {"what happens", "", true}});
+  for (const Scenario& s : r.scenarios()) table.add({"  " + s.name, s.description});
+  return fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n{}", r.name(),
+                     r.dof(), fmt::join(r.estimators(), ", "), fmt::join(r.detectors(), ", "),
+                     table.format());
+}
+
+// what its scenarios and detectors are scaled by
+std::string list_scale(const Robot& r) {
+  const ArmScale scale = scale_of(r.load_for(quiet()));
+  TableWriter table({{"  joint", ""},
+                     {"home", "rad, m"},
+                     {"amplitude", "rad, m"},
+                     {"load", "N m, N"},
+                     {"used to", "N m, N"}});
+  for (int i = 0; i < r.dof(); ++i) {
+    table.add({fmt::format("{}", i + 1), fmt::format("{:.3f}", scale.home[i]),
+               fmt::format("{:.3f}", scale.amplitude[i]), fmt::format("{:.3g}", scale.torque[i]),
+               fmt::format("{:.3g}", scale.usual_torque[i])});
+  }
+  return fmt::format(
+      "{}  its end effector weighs {:.3g} kg where it gives way, and is hit by {:.3g} N\n",
+      table.format(), scale.mass, scale.force);
 }
 
 }  // namespace
@@ -108,15 +135,11 @@ bool study_only(std::string_view detector) {
   return found;
 }
 
-std::string list_known() {
+std::string list_known(const std::string& name) {
+  if (is_robot_file(name))
+    return list_of(robot(name)) + list_scale(robot(name)) + "\n" + list_fields();
   std::string out;
-  for (const auto& r : robots()) {
-    out += fmt::format("robot {}, {} joints\n  estimators  {}\n  detectors   {}\n", r->name(),
-                       r->dof(), fmt::join(r->estimators(), ", "), fmt::join(r->detectors(), ", "));
-    TableWriter table({{"  scenario", "", true}, {"what happens", "", true}});
-    for (const Scenario& s : r->scenarios()) table.add({"  " + s.name, s.description});
-    out += table.format();
-  }
+  for (const auto& r : robots()) out += list_of(*r);
   return out + "\nrobot FILE.xml or FILE.urdf: any arm of 1 to 8 joints, hinges and slides\n\n" +
          list_fields();
 }

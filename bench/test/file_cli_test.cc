@@ -65,6 +65,9 @@ TEST_F(FilePrograms, TheSuiteRunsOnIt) {
 }
 
 TEST_F(FilePrograms, RecordsAndReplaysIt) {
+  const Outcome list = run("tauext-record --list --robot " + kArm6);
+  EXPECT_TRUE(list.says("blow       half sines of ") && list.says("used to")) << list.text;
+  EXPECT_FALSE(list.says("wallmobot3"));
   const Outcome record = run("tauext-record --robot " + kArm6 + " --scenario sine --out x.csv");
   EXPECT_EQ(record.code, 0) << record.text;
   const Outcome replay =
