@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A plug-in of your own estimators and detectors for tauext-gate, which compares two commits of
-/// it:
+/// A plug-in of your own estimators and detectors, of which tauext-gate compares two commits:
 ///
 ///     \#include <bench/kit/kernels.h>
 ///     TAUEXT_PLUGIN(kernels) {
@@ -28,14 +27,10 @@
 /// What it was compiled with; tauext_add_plugin says it.
 #define TAUEXT_PLUGIN_FLAGS "unknown"
 #endif
-/// @cond
-#define TAUEXT_STRING_(x) #x
-#define TAUEXT_STRING(x) TAUEXT_STRING_(x)
-/// @endcond
 /// Like "3.4.0".
-#define TAUEXT_EIGEN_VERSION         \
-  TAUEXT_STRING(EIGEN_WORLD_VERSION) \
-  "." TAUEXT_STRING(EIGEN_MAJOR_VERSION) "." TAUEXT_STRING(EIGEN_MINOR_VERSION)
+#define TAUEXT_EIGEN_VERSION            \
+  EIGEN_MAKESTRING(EIGEN_WORLD_VERSION) \
+  "." EIGEN_MAKESTRING(EIGEN_MAJOR_VERSION) "." EIGEN_MAKESTRING(EIGEN_MINOR_VERSION)
 
 namespace tauext {
 
@@ -109,11 +104,16 @@ class alignas(kPage) Instance final : public KernelInstance {
   }
 
   int state(int most, void* bytes) const noexcept override {
-    Subject copy = subject_;
-#if __has_builtin(__builtin_clear_padding)
-    __builtin_clear_padding(&copy);
-#endif
-    if (most > 0) std::memcpy(bytes, &copy, std::min(sizeof(Subject), std::size_t(most)));
+    // what no copy writes holds what lay there before: on two grounds it differs, and is left out
+    alignas(Subject) unsigned char copies[2][sizeof(Subject)];
+    for (auto& copy : copies) {
+      std::memset(copy, &copy == copies ? 0 : 255, sizeof copy);
+      detail::keep(copy);  // else the compiler knows that a constructor ends what was there
+      std::destroy_at(new (copy) Subject(subject_));
+    }
+    auto* const out = static_cast<unsigned char*>(bytes);
+    for (int i = 0; i < std::min<int>(most, sizeof(Subject)); ++i)
+      out[i] = copies[0][i] & (copies[0][i] == copies[1][i] ? 255 : 0);
     return static_cast<int>(sizeof(Subject));
   }
 
@@ -212,11 +212,11 @@ class Kernels {
   /// The terms of the arm's model, as `ROBOT/model.TERM`.
   template <RobotModel M>
   void add_model(const std::string& robot, const M& arm) {
-    const auto term = [&](const char* name, auto step) {
-      add(
-          robot + "/model." + name, arm, arm, [](M&) {}, step);
-    };
     using S = Sample<M>;
+    const auto none = [](M&) {};
+    const auto term = [&](const char* name, auto step) {
+      add(robot + "/model." + name, arm, arm, none, step);
+    };
     term("inertia", [](M& m, const S& s) { detail::keep(Mat<M::kDof>(m.inertia(s.y.q))); });
     term("gravity", [](M& m, const S& s) { detail::keep(Vec<M::kDof>(m.gravity(s.y.q))); });
     term("bias", [](M& m, const S& s) { detail::keep(Vec<M::kDof>(m.bias(s.y.q, s.y.qd))); });

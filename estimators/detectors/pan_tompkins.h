@@ -53,7 +53,9 @@ class PanTompkins {
 
   /// @throws std::invalid_argument for parameters out of range
   explicit PanTompkins(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
+      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {
+    tau_ext_.fill(Vec<N>::Zero());
+  }
 
   void reset() noexcept {
     marking_.reset();
@@ -110,7 +112,7 @@ class PanTompkins {
   Parameters p_;
   Marking marking_;
   std::array<double, kHistory> t_{};
-  std::array<Vec<N>, kHistory> tau_ext_{};
+  std::array<Vec<N>, kHistory> tau_ext_;
   long count_ = 0;
   Vec<N> held_ = Vec<N>::Zero();
   Vec<N> held_at_ = Vec<N>::Zero();

@@ -19,6 +19,14 @@ TEST_F(Time, TheSameCodeIsIdenticalAndNotTimed) {
   EXPECT_TRUE(says("1 kernels identical")) << text_;
 }
 
+TEST_F(Time, EveryKernelOfTheRosterIsIdenticalToItself) {
+  const std::string roster = kBin + "/tauext_plugin.so";
+  EXPECT_EQ(run({"time", "--base", roster, "--head", roster}), kGood) << text_;
+  EXPECT_TRUE(says("kernels identical")) << text_;
+  EXPECT_FALSE(says(" ok")) << "one was timed: what its state says depends on the process: "
+                            << text_;
+}
+
 TEST_F(Time, ACopyBesideItselfPasses) {
   EXPECT_EQ(
       run({"time", "--base", plugin("base"), "--head", plugin("base"), "--even-if-identical"}),
