@@ -10,12 +10,15 @@
 /// All of it before the robots are first asked for, else std::logic_error.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
 
+#include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
 #include "bench/roster/robots.h"
+#include "estimators/tree/tree_model.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/scenarios/scenario.h"
 
@@ -43,6 +46,25 @@ void register_detector() {
   detail::require_unused();
   detail::registered_detectors<D::kDof>().push_back(
       [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
+}
+
+/// An estimator for every robot from a file, whatever its number of joints: make takes any
+/// TreeModel<N>.
+template <class Make>
+void register_file_estimator(Make make) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (register_estimator<TreeModel<I + 1>>(make), ...);
+  }
+  (std::make_index_sequence<kMaxFileJoints>());
+}
+
+/// A detector for robots of any number of joints, from files and known ones.
+template <template <int> class D>
+void register_detectors() {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (register_detector<D<I + 1>>(), ...);
+  }
+  (std::make_index_sequence<kMaxFileJoints>());
 }
 
 /// A specification as an estimator of that robot: a row `mo2:bandwidth=50` beside `mo2`. One that

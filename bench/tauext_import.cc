@@ -53,9 +53,8 @@ std::string rows(const Eigen::MatrixXd& m) {
 // the arm as a function that returns its model
 std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOptions& options,
                    const std::string& out) {
-  std::string name = std::filesystem::path(out).stem().string();
+  std::string name = "make_" + std::filesystem::path(out).stem().string();
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  if (std::isdigit(static_cast<unsigned char>(name[0]))) name.insert(0, "arm_");
   const std::string type = fmt::format("tauext::TreeModel<{}>", arm.joints.size());
   std::string text = fmt::format(
       "// Made by tauext-import from {}{}.\n#pragma once\n\n#include "
@@ -70,10 +69,10 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
         "    j.axis = {};\n    j.rotation << {};\n    j.position = {};\n    j.zero = {:.17g};\n"
         "    j.mass = {:.17g};\n    j.center = {};\n    j.inertia << {};\n    j.armature = "
         "{:.17g};\n"
-        "    j.viscous = {:.17g};\n    j.dry = {:.17g};\n  }}\n",
+        "    j.viscous = {:.17g};\n    j.dry = {:.17g};\n    j.v_s = {:.17g};\n  }}\n",
         i, j.parent, j.kind == TreeJoint::Kind::kSlide ? "kSlide" : "kHinge", listed(j.axis),
         rows(j.rotation), listed(j.position), j.zero, j.mass, listed(j.center), rows(j.inertia),
-        j.armature, j.viscous, j.dry);
+        j.armature, j.viscous, j.dry, j.v_s);
   }
   return text + fmt::format(
                     "  p.gravity = {};\n  p.coordinates << {};\n  p.offset << {};\n  return "
@@ -95,6 +94,9 @@ int import(const std::string& file, const ImportOptions& options, const std::str
   to.commit();
   say(fmt::format("{}: {} joints, {} of them slides, that move {:.4g} kg", out, arm.joints.size(),
                   slides, mass));
+  if (arm.joints.size() > 8) say("note: estimators take 1 to 8 joints; --lock fixes others");
+  if (const std::string stiff = too_stiff(load_mjcf(file, options)); !stiff.empty())
+    say("note: it cannot be simulated: " + stiff);
   if (!text.changed.empty()) say(fmt::format("changed: {}", counted(text.changed)));
   if (!text.dropped.empty()) say(fmt::format("left out: {}", counted(text.dropped)));
   return kGood;

@@ -26,6 +26,6 @@ struct Jump {
 };
 
 int main(int argc, char** argv) {
-  tauext::register_detector<Jump<3>>();
+  tauext::register_detectors<Jump>();
   return tauext::bench_main(argc, argv);
 }

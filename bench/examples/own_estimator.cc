@@ -39,6 +39,8 @@ struct Twice {
 };
 
 int main(int argc, char** argv) {
-  register_estimator<WallMoBot3>([](const auto& arm) { return Twice(arm); });
+  const auto twice = [](const auto& arm) { return Twice(arm); };
+  register_estimator<WallMoBot3>(twice);
+  register_file_estimator(twice);
   return bench_main(argc, argv);
 }

@@ -2,7 +2,10 @@
 #include "bench/roster/robot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -22,17 +25,42 @@ std::vector<Scenario>& registered_for(const std::string& robot) {
   return all[robot];
 }
 
+// FNV-1a of what an estimator knows of it, to nine digits
+std::string fingerprint_of(const ArmTree& arm) {
+  std::string text =
+      fmt::format("{:.9g}", fmt::join(arm.gravity.data(), arm.gravity.data() + 3, " "));
+  for (const TreeJoint& j : arm.joints) {
+    text += fmt::format(" {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", j.parent,
+                        static_cast<int>(j.kind), j.zero, j.mass, j.armature, j.viscous, j.dry);
+    for (const Vec<3>& v : {j.axis, j.position, j.center})
+      text += fmt::format(" {:.9g}", fmt::join(v.data(), v.data() + v.size(), " "));
+    for (const Mat<3>& m : {j.rotation, j.inertia})
+      text += fmt::format(" {:.9g}", fmt::join(m.data(), m.data() + m.size(), " "));
+  }
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return fmt::format("{:016x}", hash);
+}
+
 }  // namespace
 
 Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
   if (!file) return;
   file_ = simulated(file);
+  unfit_ = too_stiff(file_);
   usual_torque_ = scale_of(file_).usual_torque;
+  const ArmTree arm = tree_of(file_);
+  fingerprint_ = fingerprint_of(arm);
+  slides_ = std::any_of(arm.joints.begin(), arm.joints.end(),
+                        [](const TreeJoint& j) { return j.kind == TreeJoint::Kind::kSlide; });
 }
 
 std::string Robot::label() const {
   if (!file_) return name_;
-  return std::filesystem::path(name_.substr(0, name_.find(kLock))).stem().string();
+  const std::filesystem::path path = name_.substr(0, name_.find(kLock));
+  const std::vector<std::string> known = robot_names();
+  const bool taken = std::count(known.begin(), known.end(), path.stem().string()) > 0;
+  return (taken ? path.filename() : path.stem()).string();
 }
 
 Eigen::VectorXd Robot::small_torque() const {
@@ -41,6 +69,7 @@ Eigen::VectorXd Robot::small_torque() const {
 
 const std::vector<Scenario>& Robot::scenarios() const {
   if (!file_) return tauext::scenarios(name_);
+  require_fit();
   std::call_once(listed_, [&] {
     scenarios_ = generic_scenarios(file_);
     for (const Scenario& s : registered_for(name_)) scenarios_.push_back(s);
@@ -49,7 +78,13 @@ const std::vector<Scenario>& Robot::scenarios() const {
 }
 
 Model Robot::load_for(const Scenario& s, const ModelError& error) const {
-  return file_ ? with_errors(file_, error_for(s, error)) : tauext::load_for(name_, s, error);
+  if (!file_) return tauext::load_for(name_, s, error);
+  require_fit();
+  return with_errors(file_, error_for(s, error));
+}
+
+void Robot::require_fit() const {
+  if (!unfit_.empty()) throw std::invalid_argument(fmt::format("{}: {}", name_, unfit_));
 }
 
 Eigen::VectorXd Robot::home() const {

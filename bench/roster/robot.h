@@ -43,7 +43,8 @@ class Robot {
   virtual ~Robot() = default;
 
   const std::string& name() const { return name_; }  ///< by which robot() finds it
-  std::string label() const;        ///< its name, or its file's without folder and ending
+  /// Its name, or its file's without folder and, unless another robot is called so, ending.
+  std::string label() const;
   int dof() const { return dof_; }  ///< joints
 
   /// [N m] that matters little, of each joint: 5, or of a file's robot 1/240 of
@@ -53,13 +54,18 @@ class Robot {
   double hidden_friction() const { return small_torque().minCoeff(); }
 
   bool is_from_file() const { return file_ != nullptr; }  ///< and none of those that are known
+  /// Whether a joint of a file's robot slides: N and m stand for N m and rad.
+  bool slides() const { return slides_; }
+  /// Of a file's robot a number, as text, that tells two arms apart; else "".
+  const std::string& fingerprint() const { return fingerprint_; }
   /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.
   Eigen::VectorXd home() const;
 
   /// What happens to it; the generic ones (mjcf/scenarios/generic.h) if it is from a file.
+  /// @throws std::invalid_argument if it is from a file and too_stiff() to be simulated
   const std::vector<Scenario>& scenarios() const;
   /// The simulated robot as the scenario needs it, with errors that its estimators do not know of.
-  /// @throws std::invalid_argument for an error out of range
+  /// @throws std::invalid_argument for an error out of range, and as scenarios() does
   Model load_for(const Scenario& scenario, const ModelError& error = {}) const;
 
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
@@ -129,9 +135,14 @@ class Robot {
   const Eigen::VectorXd& usual_torque() const { return usual_torque_; }
 
  private:
+  void require_fit() const;
+
   std::string name_;
   int dof_;
-  Model file_;  // to be simulated
+  Model file_;         // to be simulated
+  std::string unfit_;  // why it cannot be
+  std::string fingerprint_;
+  bool slides_ = false;
   Eigen::VectorXd usual_torque_;
   mutable std::once_flag listed_;
   mutable std::vector<Scenario> scenarios_;  // of a file's robot

@@ -60,6 +60,13 @@ ThresholdSet set_of(const Json& j) {
   set.robot = j.at("robot").get<std::string>();
   set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
   const Robot& r = robot(set.robot);
+  set.fingerprint = j.value("arm", "");
+  if (set.fingerprint != r.fingerprint()) {
+    throw std::runtime_error(
+        fmt::format("they are of another arm than {} is now; make them again with tauext-detect "
+                    "--calibrate",
+                    set.robot));
+  }
   for (const auto& [estimator, detectors] : j.at("thresholds").items()) {
     for (const auto& [detector, values] : detectors.items()) {
       r.check(estimator, detector);
@@ -95,6 +102,7 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
   for (const ThresholdSet& s : t.sets) {
     Json set;
     set["robot"] = s.robot;
+    if (!s.fingerprint.empty()) set["arm"] = s.fingerprint;
     set["velocity_noise_rad_s"] = s.velocity_noise;
     for (const auto& [estimator, detectors] : s.by_estimator) {
       for (const auto& [detector, values] : detectors) {

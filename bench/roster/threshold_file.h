@@ -15,8 +15,9 @@ namespace tauext {
 void write_thresholds(const Thresholds& t, const std::string& path);
 
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing
-/// key, no set, a margin or a threshold that is not positive, a wrong number of joints, an unknown
-/// robot, estimator or detector (a metric that is none is refused where the detector is built)
+/// key, no set, an arm whose file has changed since, a margin or a threshold that is not positive,
+/// a wrong number of joints, an unknown robot, estimator or detector (a metric that is none is
+/// refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 
 /// What training says of a detector behind an estimator, both by specification, as DetectorSettings

@@ -22,6 +22,7 @@ using DetectorThresholds = std::map<std::string, Trained>;
 /// Thresholds of one robot behind sensors of one quality, by estimator.
 struct ThresholdSet {
   std::string robot;                                       ///< its name
+  std::string fingerprint;                                 ///< Robot::fingerprint()
   double velocity_noise = 0;                               ///< [rad/s] of the training traces
   std::map<std::string, DetectorThresholds> by_estimator;  ///< by specification
 };

@@ -159,6 +159,9 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
   constexpr double kLeast = 0.7, kMost = 280;  // [rad/s]
   constexpr double kStep = 1.1;                // from one frequency to the next
   constexpr int kLines = 5;                    // of a band
+  // a sweep has far more than this everywhere; a step at 280 rad/s, some hundred times as much
+  const double duration = t.back() - t.front();
+  const double least_power = 1e-9 * truth.squaredNorm() * h * duration;
   double w_before = kLeast, gain_before = 1;
   for (double w = kLeast; w <= kMost; w *= kStep) {
     std::complex<double> cross = 0;
@@ -169,8 +172,7 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
       cross += spectrum(estimate, line, h) * std::conj(x);
       power += std::norm(x);
     }
-    // a sweep of some N m over some seconds has more than this everywhere; a step at 280 rad/s, too
-    if (!(power > 1e-6)) return kNoValue;
+    if (!(power > least_power)) return kNoValue;
     const double gain = std::abs(cross) / power;
     if (gain < std::numbers::sqrt2 / 2 && w == kLeast) return kNoValue;
     if (gain < std::numbers::sqrt2 / 2) {

@@ -19,6 +19,13 @@ double rounded(double value, int digits) {
   return std::round(value * scale) / scale;
 }
 
+// more where an arm's torques are smaller than a wall robot's 1200 N m
+int digits_of(const Row& r, const MetricRow& m) {
+  if (!m.unit.starts_with("N")) return m.digits;
+  const double smaller = 5 / r.entry.robot().small_torque().maxCoeff();
+  return m.digits + std::clamp(static_cast<int>(std::lround(std::log10(smaller))), 0, 6);
+}
+
 bool competes(const Row& r, const MetricRow& m) {
   const bool untouched = m.is(MetricRow::kZeroIsNoMerit) && r.score.get(m.metric) == 0;
   return !is_baseline(r.entry.estimator()) && r.score.error.empty() && !untouched;
@@ -38,7 +45,7 @@ std::optional<double> best(const std::vector<Row>& rows, const Row& row, const M
     const auto value = r.score.get(m.metric);
     if (!value || !rivals(r, row) || !competes(r, m)) continue;
     never = never || std::isnan(*value);
-    if (!std::isnan(*value)) values.push_back(rounded(*value, m.digits));
+    if (!std::isnan(*value)) values.push_back(rounded(*value, digits_of(r, m)));
   }
   if (values.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -50,9 +57,9 @@ std::string cell(const std::vector<Row>& rows, const Row& row, const MetricRow& 
   const auto value = row.score.get(m.metric);
   if (!value || !row.score.error.empty()) return "-";
   if (std::isnan(*value)) return "never";
-  const bool mark = competes(row, m) && rounded(*value, m.digits) == best(rows, row, m);
-  return fmt::format("{:.{}f}", *value, m.digits) +
-         (mark ? std::string(1, TableWriter::kMark) : "");
+  const int digits = digits_of(row, m);
+  const bool mark = competes(row, m) && rounded(*value, digits) == best(rows, row, m);
+  return fmt::format("{:.{}f}", *value, digits) + (mark ? std::string(1, TableWriter::kMark) : "");
 }
 
 bool failed(const Row& r) {
@@ -137,6 +144,8 @@ std::string table_legend(const std::vector<Row>& rows) {
   std::string out =
       "Each row shows its worst joint. * is the best of a group; zero, truth and delayed_truth do "
       "not compete.\n";
+  if (std::any_of(rows.begin(), rows.end(), [](const Row& r) { return r.entry.robot().slides(); }))
+    out += "Where a joint slides, N m is N and rad is m.\n";
   for (const MetricRow* m : columns_of(rows)) {
     out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
   }

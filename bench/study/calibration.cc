@@ -66,7 +66,9 @@ class Training {
                     runs_.robot, fmt::join(names_, ", "), o.runs, kTrainingSeed);
     // all places exist before threads write to them
     for (const double velocity_noise : {1e-4, 1e-3}) {
-      ThresholdSet set{.robot = runs_.robot, .velocity_noise = velocity_noise};
+      ThresholdSet set{.robot = runs_.robot,
+                       .fingerprint = robot(runs_.robot).fingerprint(),
+                       .velocity_noise = velocity_noise};
       for (const std::string& e : estimators) {
         for (const std::string& d : detectors) set.by_estimator[e][d];
       }

@@ -23,10 +23,10 @@ recall: share of the blows that were marked until {:g} s after their end. p50, p
 of these marks come within this time from the blow's begin. stray: other marks in the same runs.
 alarms: marks in free motion and slow pushes, where nothing is hit; with 95 % confidence there are
 fewer of them per hour than `fewer than`. on: share of that time in which the detector is in
-alarm. called: marks there that are called a collision. brisk: share of the pushes of 100 N in
-0.1 s that were marked. clamping: share of the soft clampings that were marked while they held.
-named: share that was also called a clamping. failed: runs in which an estimate was missing; they
-count like the others.
+alarm. called: marks there that are called a collision. brisk: share of the pushes of a third of
+the largest blow, in 0.1 s, that were marked. clamping: share of the soft clampings that
+were marked while they held. named: share that was also called a clamping. failed: runs in which
+an estimate was missing; they count like the others.
 )";
 
 std::string percent(double part, double of) {

@@ -48,6 +48,17 @@ TEST_F(Programs, OwnDetectorMarksTheCollisionBehindEveryEstimator) {
   }
 }
 
+TEST_F(Programs, OwnEstimatorsAndDetectorsRunOnARobotFromAFile) {
+  const std::string arm = " --robot " TAUEXT_EXAMPLES "/two_arms.urdf";
+  const Outcome e = run("examples/own_estimator" + arm + " --benchmark_filter=step/twice" + kQuick);
+  EXPECT_EQ(e.code, 0) << e.text;
+  EXPECT_GT(row(e, "two_arms/step/twice").size(), 7u) << e.text;
+  const Outcome d =
+      run("examples/own_detector" + arm + " --benchmark_filter=blow/mo2.jump" + kQuick);
+  EXPECT_EQ(d.code, 0) << d.text;
+  EXPECT_GT(row(d, "two_arms/blow/mo2+jump").size(), 5u) << d.text;
+}
+
 TEST_F(Programs, OwnRobotRunsEveryCommonEstimator) {
   const Outcome o = run(std::string("examples/own_robot --benchmark_filter=pendulum/") + kQuick);
   ASSERT_EQ(o.code, 0) << o.text;

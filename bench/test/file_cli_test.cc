@@ -24,7 +24,7 @@ const std::string kTwoArms = TAUEXT_EXAMPLES "/two_arms.urdf";
 
 // what the header has, beside MuJoCo on the file
 TEST(ImportedArm, AsCppIsTheArmOfTheFile) {
-  const TreeModel<7> arm = arm7();
+  const TreeModel<7> arm = make_arm7();
   Plant plant(simulated(load_mjcf(TAUEXT_EXAMPLES "/arm7.xml", {"finger.*"})));
   for (int k = 0; k < 20; ++k) {
     Vec<7> q, qd;
@@ -94,6 +94,21 @@ TEST_F(FilePrograms, CalibratesAndStudiesIt) {
           few);
   EXPECT_EQ(study.code, 0) << study.text;
   EXPECT_TRUE(study.says("known,mo2+pan_tompkins,100.0,")) << study.text;
+}
+
+TEST_F(FilePrograms, ThresholdsAreOfTheArmThatTheyWereTrainedOn) {
+  std::ifstream file(kTwoArms);
+  std::string arm{std::istreambuf_iterator<char>(file), {}};
+  const std::string few = "--robot own.urdf --estimator mo2 --detector high_pass";
+  write("own.urdf", arm);
+  const Outcome made = run("tauext-detect --calibrate t.json --runs 1 " + few);
+  ASSERT_EQ(made.code, 0) << made.text;
+  const auto mass = arm.find("<mass value=\"") + 13;
+  ASSERT_GT(mass, 13u);
+  write("own.urdf", arm.insert(mass, "1"));  // 112 kg instead of 12
+  const Outcome study = run("tauext-detect --thresholds t.json " + few);
+  EXPECT_EQ(study.code, 2);
+  EXPECT_TRUE(study.says("they are of another arm than ")) << study.text;
 }
 
 // that of bench/run/README.md

@@ -142,6 +142,13 @@ class TreeModel {
     return f;
   }
 
+  /// Where a point [m] in the frame of a joint's body is, in the axes of the base, whose origin is
+  /// that of the first joint's parent.
+  /// @param joint from 0
+  Vec<3, Scalar> position(const VecN& q, int joint, const Vec<3>& point) const noexcept {
+    return passes_.at_base(passes_.pose(to_rho(q)), joint, point);
+  }
+
   /// Geometric Jacobian (m; rad) by q of a point [m] in the frame of a joint's body: its velocity
   /// in the first three rows, the angular velocity in the others, in the axes of the base. tau_ext
   /// = -J^T (f; n) for a force f [N] and a moment n [N m] that act on the arm there.

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -22,9 +25,28 @@ namespace fs = std::filesystem;
 using detail::each, detail::drop, detail::inside, detail::name_of, detail::parent_name,
     detail::text;
 using tinyxml2::XMLDocument, tinyxml2::XMLElement, tinyxml2::XMLNode;
+
 class Import {
  public:
   Import(const std::string& path, const ImportOptions& options) : path_(path), options_(options) {}
+
+  std::string root() { return load(doc_, path_).Name(); }
+
+  void refuse_nan() {
+    each(load(doc_, path_), [&](XMLElement& e) {
+      for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
+        const std::string_view attribute = a->Name();
+        if (attribute.ends_with("name") || attribute.ends_with("class")) continue;
+        std::istringstream words(a->Value());
+        for (std::string word; words >> word;) {
+          std::transform(word.begin(), word.end(), word.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+          if (word == "nan") fail("line {}: {} of <{}> is {}", e, attribute, name_of(e), word);
+        }
+      }
+      return true;
+    });
+  }
 
   ImportedText run() {
     load(doc_, path_);
@@ -59,16 +81,18 @@ class Import {
   }
 
   XMLElement& load(XMLDocument& doc, const fs::path& file) {
+    // who asks names the file itself
+    const std::string where = file == path_ ? "" : file.string() + ": ";
     if (!fs::is_regular_file(file))
-      throw std::runtime_error(fmt::format("{}: no such file", file.string()));
+      throw std::runtime_error(one_line(where + (fs::is_directory(file) ? "it is a folder"
+                                                 : fs::exists(file)     ? "it is no regular file"
+                                                                        : "no such file")));
     if (fs::file_size(file) > kMostBytes)
       throw std::runtime_error(
-          fmt::format("{}: larger than {} MB", file.string(), kMostBytes >> 20));
+          one_line(fmt::format("{}larger than {} MB", where, kMostBytes >> 20)));
     doc.LoadFile(file.c_str());
-    if (doc.Error() || doc.RootElement() == nullptr) {
-      throw std::runtime_error(
-          one_line(fmt::format("{}: no XML: {}", file.filename().string(), doc.ErrorStr())));
-    }
+    if (doc.Error() || doc.RootElement() == nullptr)
+      throw std::runtime_error(one_line(fmt::format("{}no XML: {}", where, doc.ErrorStr())));
     return *doc.RootElement();
   }
 
@@ -142,7 +166,12 @@ class Import {
     std::set<std::string> meshes;
     each(root, [&](XMLElement& e) {
       const std::string_view attributes = attributes_of(e);
-      if (attributes.empty()) return drop(e, std::string(name_of(e)), out_.dropped);
+      if (attributes.empty()) {
+        const std::string element = fmt::format(" {} ", name_of(e));
+        if (detail::kLeftOutElements.find(element) == detail::kLeftOutElements.npos)
+          fail("line {}: this import knows no <{}>; take it out", e, name_of(e));
+        return drop(e, std::string(name_of(e)), out_.dropped);
+      }
       if (name_of(e) == "geom" && e.Attribute("mesh") != nullptr && !inside(e, "default")) {
         if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
         meshes.insert(text(e, "mesh"));
@@ -228,6 +257,14 @@ class Import {
 };
 
 }  // namespace
+
+bool is_urdf(const std::string& path) {
+  return Import(path, {}).root() == "robot";
+}
+
+void refuse_nan(const std::string& path) {
+  Import(path, {}).refuse_nan();
+}
 
 ImportedText import_mjcf(const std::string& path, const ImportOptions& options) {
   return Import(path, options).run();

@@ -22,10 +22,19 @@ struct ImportedText {
   std::map<std::string, int> changed;  ///< what is different, like "joint locked"
 };
 
+/// Whether the file is URDF, and none that MuJoCo should be shown.
+/// @throws std::runtime_error as import_mjcf does, for a file that cannot be read or is no XML
+bool is_urdf(const std::string& path);
+
+/// MuJoCo takes a mass of nan for one that is not given.
+/// @throws std::runtime_error in one line, naming the element of the file that says so
+void refuse_nan(const std::string& path);
+
 /// Of the file, with all that it includes, the bodies, joints, masses and springs: what dynamics
 /// needs, and MuJoCo 2.2.2 knows. Its actuators are dropped; each joint gets a motor of unit gain.
 /// Meshes are left out but where a mass depends on them. Ranges are limits, as in newer MuJoCo.
-/// @throws std::runtime_error in one line, naming the file, the element and the remedy
+/// @throws std::runtime_error in one line, naming the element and the remedy, and the file if it is
+/// an included one
 ImportedText import_mjcf(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace tauext

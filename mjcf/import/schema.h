@@ -73,6 +73,14 @@ inline constexpr Kept kLeftOut[] = {
     {"fixed", " group user width rgba actuatorfrcrange actuatorfrclimited "},
 };
 
+/// Elements that show things, are about contacts, actuators or sensors, or have no part in the
+/// dynamics that we take: left out with all that is in them. Any other one is an error.
+inline constexpr std::string_view kLeftOutElements =
+    " visual statistic size custom sensor keyframe actuator deformable extension flag lengthrange "
+    "camera light pair material texture hfield skin model spatial distance flex flexvert "
+    "flexstrain "
+    "general motor position velocity intvelocity damper cylinder muscle adhesion dcmotor plugin ";
+
 /// Newer elements that would change the arm if they were left out.
 inline constexpr std::string_view kUnknown[] = {"frame", "replicate", "attach", "composite",
                                                 "flexcomp"};

@@ -65,7 +65,7 @@ void set(XMLElement& e, const char* attribute, std::initializer_list<double> val
 class Urdf {
  public:
   Urdf(const XMLElement& robot, XMLElement& mujoco, std::map<std::string, int>& dropped)
-      : mujoco_(mujoco) {
+      : mujoco_(mujoco), dropped_(dropped) {
     for (const XMLElement* e = robot.FirstChildElement(); e != nullptr;
          e = e->NextSiblingElement()) {
       const std::string_view kind = name_of(*e);
@@ -96,6 +96,7 @@ class Urdf {
       ++roots;
       add_body(*link, nullptr, world, 0);
     }
+    if (roots == 0) fail(robot, "every link is a joint's child: the joints go round in a ring");
     if (roots != 1)
       fail(robot, "{} links are no child of a joint, and one must be: the base", roots);
     for (const auto& [name, link] : links_)
@@ -167,7 +168,14 @@ class Urdf {
     set(out, "axis", {axis[0], axis[1], axis[2]});
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = number(limit, "lower", 0), upper = number(limit, "upper", 0);
-    if (type != "continuous" && lower < upper) set(out, "range", {lower, upper});
+    const bool has_range = type != "continuous" && (lower != 0 || upper != 0);
+    if (has_range && !(lower < upper))
+      fail(joint,
+           "joint '{}' has no way to go from {} to {}: exchange lower and upper, or make it "
+           "fixed",
+           name, lower, upper);
+    if (has_range) set(out, "range", {lower, upper});
+    if (!has_range && type != "continuous") ++dropped_["limit without a range"];
     const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
     set(out, "damping", {number(dynamics, "damping", 0)});
     set(out, "frictionloss", {number(dynamics, "friction", 0)});
@@ -182,6 +190,7 @@ class Urdf {
   }
 
   XMLElement& mujoco_;
+  std::map<std::string, int>& dropped_;
   std::map<std::string, const XMLElement*> links_, joint_of_child_;
   std::map<std::string, std::vector<const XMLElement*>> children_;
   std::vector<const XMLElement*> joints_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mjcf/plant/model.h"
@@ -27,6 +28,16 @@ struct Layout {
   int load_dof = -1;          ///< first of the load's three; -1: no load
   int tether = -1;            ///< its actuator
 };
+
+/// A point that a body carries.
+struct BodyPoint {
+  int body = 0;                                  ///< its number in the model
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< [m] in its frame
+};
+
+/// The site `end_effector`, else `attachment_site`, else the centre of mass of the body behind the
+/// last of the arm's degrees of freedom.
+BodyPoint end_effector_of(const mjModel& m, int last);
 
 /// @param d at any state of m, after mj_forward
 /// @throws std::invalid_argument if the model is not laid out like that, naming what is not

@@ -151,17 +151,30 @@ bool has_motors(const mjModel& m) {
   return m.nu > 0 && m.nu >= m.nv;
 }
 
+// mjMINVAL is no word of a user's
+std::string without_jargon(const std::string& message) {
+  constexpr std::string_view kName = "Object name = ";
+  const std::size_t name = message.find(kName);
+  if (message.find("mjMINVAL") == message.npos || name == message.npos) return message;
+  const std::size_t from = name + kName.size();
+  return fmt::format("body '{}' moves and weighs nothing; give it an <inertial> with a mass",
+                     message.substr(from, message.find(", id", from) - from));
+}
+
 // the file as it is, or, if it has to be, imported
 std::shared_ptr<const mjModel> loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
-  Owned m(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()), mj_deleteModel);
+  Owned m(nullptr, mj_deleteModel);
+  const bool urdf = is_urdf(path);
+  if (!urdf) m.reset(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
   if (m && options.lock.empty() && has_motors(*m)) return m;
   const std::string first = one_line(error.data());
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});
   } catch (const std::runtime_error& e) {
     // the same in the words that name the file's own line
-    if (!m && without_line(first) == without_line(e.what())) throw std::runtime_error(first);
+    if (!m && !urdf && without_line(first) == without_line(e.what()))
+      throw std::runtime_error(first);
     throw;
   }
 }
@@ -169,6 +182,7 @@ std::shared_ptr<const mjModel> loaded(const std::string& path, const ImportOptio
 std::string compiled(const std::string& path, const ImportOptions& options) {
   const std::shared_ptr<const mjModel> m = loaded(path, options);
   check_physical(*m);
+  refuse_nan(path);
   try_step(*m);
   std::string bytes(static_cast<std::size_t>(mj_sizeModel(m.get())), '\0');
   mj_saveModel(m.get(), nullptr, bytes.data(), static_cast<int>(bytes.size()));
@@ -219,7 +233,7 @@ std::string compiled_mjcf(const std::string& path, const Limits& limits,
                     "where every body has an <inertial>; each <include> must name a file",
                     path, e.what()));
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
+    throw std::runtime_error(fmt::format("{}: {}", path, without_jargon(e.what())));
   }
 }
 

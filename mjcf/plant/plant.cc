@@ -37,7 +37,7 @@ Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model
   St_lu_.compute(layout_.S.transpose());
   q0_ = view(data_->actuator_length, dof()) - layout_.S * view(data_->qpos, m.nq)(layout_.arm);
   if (layout_.load_dof >= 0) load_ = LoadState::kHeld;
-  end_effector_ = carried_end_effector();
+  end_effector_ = end_effector_of(m, layout_.arm.back());
 }
 
 VectorXd Plant::of_arm(const double* force) const {
@@ -198,37 +198,29 @@ double Plant::contact_force() const {
   return sum;
 }
 
-Plant::Carried Plant::carried_site(const std::string& name) const {
+BodyPoint Plant::carried_site(const std::string& name) const {
   const int id = mj_name2id(model_.get(), mjOBJ_SITE, name.c_str());
   if (id < 0) throw std::invalid_argument(fmt::format("the robot has no site '{}'", name));
   return {model_->site_bodyid[id], Vector3d::Map(model_->site_pos + 3 * id)};
 }
 
-Plant::Carried Plant::carried_end_effector() const {
-  for (const char* site : {"end_effector", "attachment_site"}) {
-    if (mj_name2id(model_.get(), mjOBJ_SITE, site) >= 0) return carried_site(site);
-  }
-  const int body = model_->dof_bodyid[layout_.arm.back()];
-  return {body, Vector3d::Map(model_->body_ipos + 3 * body)};
-}
-
-Vector3d Plant::position(const Carried& c) const {
+Vector3d Plant::position(const BodyPoint& c) const {
   return Vector3d::Map(data_->xpos + 3 * c.body) +
          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data_->xmat + 9 * c.body) *
              c.at;
 }
 
-MatrixXd Plant::jacobian(const Carried& c) const {
+MatrixXd Plant::jacobian(const BodyPoint& c) const {
   RowMajor J(3, model_->nv);
   mj_jac(model_.get(), data_.get(), J.data(), nullptr, position(c).data(), c.body);
   return J;
 }
 
-Point Plant::moving(const Carried& c) const {
+Point Plant::moving(const BodyPoint& c) const {
   return {position(c), jacobian(c) * view(data_->qvel, model_->nv)};
 }
 
-VectorXd Plant::tau_ext_at(const Carried& c, const Vector3d& f) const {
+VectorXd Plant::tau_ext_at(const BodyPoint& c, const Vector3d& f) const {
   const VectorXd force = jacobian(c).transpose() * f;
   return -of_arm(force.data());
 }

@@ -95,19 +95,12 @@ class Plant {
  private:
   enum class LoadState { kNone, kHeld, kHung, kDropped };
 
-  // a point that a body carries
-  struct Carried {
-    int body = 0;
-    Eigen::Vector3d at = Eigen::Vector3d::Zero();  // [m] in its frame
-  };
-
   void apply_to_load();
-  Carried carried_site(const std::string& name) const;
-  Carried carried_end_effector() const;
-  Eigen::Vector3d position(const Carried& c) const;
-  Eigen::MatrixXd jacobian(const Carried& c) const;  // by MuJoCo's degrees of freedom
-  Point moving(const Carried& c) const;
-  Eigen::VectorXd tau_ext_at(const Carried& c, const Eigen::Vector3d& f) const;
+  BodyPoint carried_site(const std::string& name) const;
+  Eigen::Vector3d position(const BodyPoint& c) const;
+  Eigen::MatrixXd jacobian(const BodyPoint& c) const;  // by MuJoCo's degrees of freedom
+  Point moving(const BodyPoint& c) const;
+  Eigen::VectorXd tau_ext_at(const BodyPoint& c, const Eigen::Vector3d& f) const;
   Eigen::VectorXd of_arm(const double* force) const;  // a generalised force, in joint coordinates
   template <class Counts>
   Eigen::VectorXd constraint_force(Counts&& counts) const;
@@ -118,7 +111,7 @@ class Plant {
   Eigen::PartialPivLU<Eigen::MatrixXd> S_lu_;   // of S
   Eigen::PartialPivLU<Eigen::MatrixXd> St_lu_;  // of S^T
   Eigen::VectorXd q0_;
-  Carried end_effector_;
+  BodyPoint end_effector_;
   Eigen::VectorXd tau_ext_;  // of set_input
   LoadState load_ = LoadState::kNone;
   Eigen::Vector3d push_ = Eigen::Vector3d::Zero();

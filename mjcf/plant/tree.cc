@@ -15,6 +15,8 @@
 
 #include "estimators/friction.h"
 #include "mjcf/plant/layout.h"
+#include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -22,15 +24,22 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kQuickest = 500;         // [1/s] of friction: 40 % of a speed are gone in a sample
 constexpr int kSmoothFriction = 1 << 30;  // of disableflags: a bit that MuJoCo does not know
 
-// to the passive forces, for MuJoCo
+// to MuJoCo's passive forces; v_s stands where its own friction, switched off, has a constant
 void add_smooth_friction(const mjModel* m, mjData* d) {
   if ((m->opt.disableflags & kSmoothFriction) == 0) return;
   for (int i = 0; i < m->nv; ++i) {
-    const CoulombFriction dry{m->dof_frictionloss[i], TreeJoint().v_s};
+    const CoulombFriction dry{m->dof_frictionloss[i], m->dof_solref[mjNREF * i]};
     d->qfrc_passive[i] -= dry.torque(d->qvel[i]);
   }
+}
+
+std::string named_joint(const mjModel& m, int i) {
+  const char* const name = mj_id2name(&m, mjOBJ_JOINT, i);
+  const bool named = name != nullptr && *name != '\0';
+  return fmt::format("joint {}{}", i + 1, named ? " '" + printable_name(name) + "'" : "");
 }
 
 void check(const mjModel& m) {
@@ -38,9 +47,15 @@ void check(const mjModel& m) {
     if (present)
       throw std::invalid_argument(std::string("the model has ") + what + ": not supported");
   };
-  if (m.nq != m.nv || m.nv == 0) {
+  for (int i = 0; i < m.njnt; ++i) {
+    if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
     throw std::invalid_argument(
-        "an arm of hinges and slides is wanted: the model has free or ball joints, or none");
+        fmt::format("{} is {}: an arm of hinges and slides on a fixed base is wanted; take it out",
+                    named_joint(m, i), m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
+  }
+  if (m.nv == 0) {
+    throw std::invalid_argument(
+        "no joint is left that moves: an arm of hinges and slides is wanted");
   }
   refuse(m.neq > 0, "joints tied together by <equality> (--lock REGEX fixes them)");
   refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
@@ -93,13 +108,13 @@ void set_ranges(const mjModel& m, ArmTree& tree) {
 }
 
 // over poses that fill the range evenly: multiples of square roots of primes, modulo 1
-void set_usual_torque(const mjModel& m, ArmTree& tree) {
+void set_usual(const mjModel& m, ArmTree& tree) {
   constexpr int kPoses = 200;
   constexpr double kAcceleration = 10;  // [rad/s^2] or [m/s^2]
   constexpr double kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19};
   const State d = initial_state(m);
   MatrixXd M(m.nv, m.nv);
-  tree.usual_torque = VectorXd::Zero(m.nv);
+  tree.usual_torque = tree.mobility = VectorXd::Zero(m.nv);
   const auto to_q = tree.coordinates.transpose().partialPivLu();
   for (int k = 0; k < kPoses; ++k) {
     for (int i = 0; i < m.nv; ++i) {
@@ -118,6 +133,7 @@ void set_usual_torque(const mjModel& m, ArmTree& tree) {
     const VectorXd inertia = to_q.solve(half.transpose()).diagonal();
     tree.usual_torque = tree.usual_torque.cwiseMax(gravity.cwiseAbs());
     tree.usual_torque = tree.usual_torque.cwiseMax(kAcceleration * inertia);
+    tree.mobility = tree.mobility.cwiseMax(M.inverse().diagonal());
   }
 }
 
@@ -163,12 +179,34 @@ void add_joints(const mjModel& m, int body, Place& at, ArmTree& tree) {
     j.armature = m.dof_armature[dof];
     j.viscous = m.dof_damping[dof];
     j.dry = m.dof_frictionloss[dof];
+    j.v_s = std::max(j.v_s, j.dry * tree.mobility[dof] / kQuickest);
     tree.joints.push_back(j);
     at = {i, Mat<3>::Identity(), -anchor};
   }
 }
 
+// in the frames of their joints
+void set_points(const mjModel& m, const std::vector<Place>& places, ArmTree& tree) {
+  const auto add = [&](mjtObj type, int id, int body, const Vec<3>& at) {
+    const Place& place = places[static_cast<std::size_t>(body)];
+    const char* const name = mj_id2name(&m, type, id);
+    if (place.joint < 0 || name == nullptr || *name == '\0') return;
+    tree.points.insert({name, {place.joint, place.p + place.R * at}});
+  };
+  for (int i = 0; i < m.nsite; ++i)
+    add(mjOBJ_SITE, i, m.site_bodyid[i], vector(m.site_pos + 3 * i));
+  for (int i = 1; i < m.nbody; ++i) add(mjOBJ_BODY, i, i, Vec<3>::Zero());
+  const BodyPoint end = end_effector_of(m, m.nv - 1);
+  const Place& place = places[static_cast<std::size_t>(end.body)];
+  tree.end_effector = {place.joint, place.p + place.R * end.at};
+}
+
 }  // namespace
+
+const ArmPoint& ArmTree::point(const std::string& name) const {
+  if (name.empty()) return end_effector;
+  return find_known(points, "site", name, [](const auto& p) { return p.first; }).second;
+}
 
 void detail::require_equal_joints(std::size_t have, int want) {
   if (have == static_cast<std::size_t>(want)) return;
@@ -178,7 +216,10 @@ void detail::require_equal_joints(std::size_t have, int want) {
 Model simulated(const Model& model) {
   static std::once_flag once;
   std::call_once(once, [] { mjcb_passive = add_smooth_friction; });
-  return changed(model, [](mjModel& m) {
+  const ArmTree tree = tree_of(model);
+  return changed(model, [&](mjModel& m) {
+    for (int i = 0; i < m.nv; ++i)
+      m.dof_solref[mjNREF * i] = tree.joints[static_cast<std::size_t>(i)].v_s;
     m.opt.integrator = mjINT_RK4;
     m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | kSmoothFriction;
     const bool on_joints = std::all_of(m.actuator_trntype, m.actuator_trntype + m.nu,
@@ -192,6 +233,21 @@ Model simulated(const Model& model) {
   });
 }
 
+std::string too_stiff(const Model& model) {
+  const ArmTree tree = tree_of(model);
+  for (int i = 0; i < model->nv; ++i) {
+    const double damping = tree.joints[static_cast<std::size_t>(i)].viscous;
+    const double rate = damping * tree.mobility[i];  // [1/s]
+    if (rate <= kQuickest) continue;
+    return fmt::format(
+        "{}: a damping of {:.3g} stops its inertia of {:.2g} within {:.2g} ms, faster than samples "
+        "of 1 ms show; add its motor's inertia behind the gear, armature=\"{:.2g}\" or more",
+        named_joint(*model, i), damping, 1 / tree.mobility[i], 1000 / rate,
+        1.05 * (damping / kQuickest - 1 / tree.mobility[i]));
+  }
+  return "";
+}
+
 ArmTree tree_of(const Model& model) {
   const mjModel& m = *model;
   check(m);
@@ -199,7 +255,7 @@ ArmTree tree_of(const Model& model) {
   tree.gravity = vector(m.opt.gravity);
   set_coordinates(m, tree);
   set_ranges(m, tree);
-  set_usual_torque(m, tree);
+  set_usual(m, tree);
   std::vector<Place> places(static_cast<std::size_t>(m.nbody));
   std::vector<Mass> masses(static_cast<std::size_t>(m.nv));
   for (int body = 1; body < m.nbody; ++body) {
@@ -218,15 +274,16 @@ ArmTree tree_of(const Model& model) {
     all.inertia += axes * vector(m.body_inertia + 3 * body).asDiagonal() * axes.transpose() +
                    mass * inertia_at(center);
   }
-  const Vec<3> base = tree.joints.front().position;  // sums about a point nearby lose no digits
+  tree.base = tree.joints.front().position;  // sums about a point nearby lose no digits
   for (std::size_t i = 0; i < masses.size(); ++i) {
     TreeJoint& j = tree.joints[i];
-    if (j.parent < 0) j.position -= base;
+    if (j.parent < 0) j.position -= tree.base;
     j.mass = masses[i].m;
     if (j.mass > 0) j.center = masses[i].h / j.mass;
     const Mat<3> inertia = masses[i].inertia - j.mass * inertia_at(j.center);
     j.inertia = 0.5 * (inertia + inertia.transpose());
   }
+  set_points(m, places, tree);
   return tree;
 }
 

@@ -5,8 +5,11 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
+#include "estimators/force/site_force.h"
 #include "estimators/tree/tree_model.h"
 #include "mjcf/plant/model.h"
 
@@ -17,8 +20,9 @@ namespace tauext {
 /// Coordinates: MuJoCo's own, one for each hinge or slide in the file's order, whatever gears its
 /// actuators have; but where motors on fixed tendons say what the joint coordinates are
 /// (mjcf/plant/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of
-/// joints, the latter smooth over 0.01 rad/s (estimators/friction.h says why). Bodies without a
-/// joint belong to the body that carries them.
+/// joints, the latter smooth over 0.01 rad/s (estimators/friction.h says why), or over more where
+/// its slope would stop the joint faster than 500 1/s. Bodies without a joint belong to the body
+/// that carries them.
 struct ArmTree {
   std::vector<TreeJoint> joints;    ///< in the file's order
   Vec<3> gravity = Vec<3>::Zero();  ///< [m/s^2]
@@ -29,11 +33,26 @@ struct ArmTree {
   /// [N m] or [N] what each joint is used to: the larger of its gravity torque, over poses in all
   /// of its range, and of 10 rad/s^2 of its own inertia.
   Eigen::VectorXd usual_torque;
+  /// [1/(kg m^2)] or [1/kg] how easily each of MuJoCo's joints moves: the largest diagonal of the
+  /// inverse of its inertia, over these poses.
+  Eigen::VectorXd mobility;
+  Vec<3> base = Vec<3>::Zero();  ///< [m] the tree's origin in the world, whose axes it has
+  std::map<std::string, ArmPoint> points;  ///< sites, and origins of bodies, that joints move
+  ArmPoint end_effector;                   ///< as Plant::end_effector() says
+
+  /// A point by its name; "" is the end effector.
+  /// @throws std::invalid_argument listing the known ones
+  const ArmPoint& point(const std::string& name) const;
 };
 
 /// @throws std::invalid_argument for what it would have to ignore: free or ball joints, springs,
 /// equality constraints, forces of tendons, a fluid; and for motors on tendons with gears
 ArmTree tree_of(const Model& model);
+
+/// Whether the damping of some joint is too quick for samples of 1 ms, and for RK4: stops the joint
+/// faster than 500 1/s. Then why, and what helps; else "".
+/// @throws std::invalid_argument as tree_of does
+std::string too_stiff(const Model& model);
 
 /// The arm to be simulated as its ArmTree has it: by RK4, ideal motors of gain 1 on the joints, in
 /// their order, and the same smooth dry friction, so that nothing is left to the estimators but

@@ -235,6 +235,7 @@ TEST(Bandwidth, OfAFirstOrderLowPassIsItsPole) {
   for (const double K : {2., 10., 30., 100., 200.}) {
     const Swept s(K);
     EXPECT_NEAR(bandwidth(s.t, s.truth, s.estimate), K, 0.02 * K);
+    EXPECT_NEAR(bandwidth(s.t, 1e-6 * s.truth, 1e-6 * s.estimate), K, 0.02 * K) << "of a wrist";
   }
 }
 

@@ -16,20 +16,20 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kSlip = 0.01;  // [rad/s] of CoulombFriction's tanh
-
 }  // namespace
 
 // rho are MuJoCo's coordinates, q = S rho + q0; forces of q are S^-T those of rho
 struct ArmDynamics::Workspace {
   explicit Workspace(Model m) : model(std::move(m)), data(initial_state(*model)) {
-    const ArmTree tree = tree_of(model);  // of which it takes the coordinates alone
+    const ArmTree tree = tree_of(model);  // of which it takes the coordinates and v_s alone
     const int n = model->nv;
     S = tree.coordinates;
     S_inv = S.inverse();  // once: steps below multiply, which allocates nothing
     q0 = tree.offset;
     damping = VectorXd::Map(model->dof_damping, n);
     dry = VectorXd::Map(model->dof_frictionloss, n);
+    v_s = VectorXd::NullaryExpr(
+        n, [&](auto i) { return tree.joints[static_cast<std::size_t>(i)].v_s; });
     for (VectorXd* v : {&rho, &force, &at, &moved}) *v = VectorXd::Zero(n);
     M = B_ahead = RowMajor::Zero(n, n);
     half = MatrixXd::Zero(n, n);
@@ -71,7 +71,7 @@ struct ArmDynamics::Workspace {
   State data;
   MatrixXd S, S_inv, half;
   RowMajor M, B_ahead;
-  VectorXd q0, damping, dry, rho, force, at, moved;
+  VectorXd q0, v_s, damping, dry, rho, force, at, moved;
 };
 
 ArmDynamics::ArmDynamics(Model model) : work_(std::make_unique<Workspace>(std::move(model))) {}
@@ -120,7 +120,7 @@ void ArmDynamics::friction(const double* qd, double* out) const noexcept {
   const int n = dof();
   s.rho.noalias() = s.S_inv * VectorXd::Map(qd, n);
   for (int j = 0; j < n; ++j) {
-    s.force[j] = s.damping[j] * s.rho[j] + s.dry[j] * std::tanh(s.rho[j] / kSlip);
+    s.force[j] = s.damping[j] * s.rho[j] + s.dry[j] * std::tanh(s.rho[j] / s.v_s[j]);
   }
   VectorXd::Map(out, n).noalias() = s.S_inv.transpose() * s.force;
 }

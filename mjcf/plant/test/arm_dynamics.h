@@ -17,7 +17,7 @@ namespace tauext {
 /// Coordinates: MuJoCo's own, one for each hinge or slide in the file's order, whatever gears its
 /// actuators have; but where motors on fixed tendons say what the joint coordinates are
 /// (mjcf/plant/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of
-/// joints, the latter smooth over 0.01 rad/s (estimators/friction.h says why).
+/// joints, the latter smooth as ArmTree says.
 class ArmDynamics {
  public:
   /// @throws std::invalid_argument for what it would have to ignore: free or ball joints, springs,

@@ -175,6 +175,33 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
   has(error("<link name='c'/><joint name='y' type='fixed'><parent link='tool'/><child link='c'/>"
             "<origin xyz='0 0'/></joint>"),
       "xyz of <origin> is '0 0', and must be 3 numbers");
+  const auto limited = [](const std::string& type, const std::string& limit) {
+    return "<link name='c'/><joint name='y' type='" + type +
+           "'><parent link='tool'/><child link='c'/><limit " + limit + "/></joint>";
+  };
+  has(error(limited("revolut", "lower='-1' upper='1'")), "joint 'y' is revolut");
+  has(error(limited("revolute", "lower='2' upper='-2'")), "no way to go from 2 to -2");
+  has(error(limited("revolute", "lower='-1' upper='1'")), "body 'c' moves and weighs nothing");
+}
+
+TEST_F(Import, FrictionThatIsTooQuickForSamplesIsNamedWithItsRemedy) {
+  const auto rod = [&](const std::string& friction) {
+    return load_mjcf(
+        body("<body><joint name='a' axis='0 1 0' " + friction +
+             "/><geom type='capsule' size='.01' fromto='0 0 0 0 0 .05' mass='.1'/></body>"));
+  };
+  EXPECT_EQ(too_stiff(rod("damping='.02'")), "");
+  const std::string why = too_stiff(rod("damping='2'"));
+  const std::size_t at = why.find("armature=\"");
+  ASSERT_NE(at, why.npos) << why;
+  EXPECT_NE(why.find("joint 1 'a'"), why.npos) << why;
+  const std::string enough = why.substr(at + 10, why.find('"', at + 10) - at - 10);
+  EXPECT_EQ(too_stiff(rod("damping='2' armature='" + enough + "'")), "") << "what it advises helps";
+  // 500 1/s of dry friction, too: smooth over so much that its slope is that
+  const TreeJoint dry = tree_of(rod("frictionloss='1'")).joints[0];
+  const double inertia = tree_model<1>(rod("")).inertia(Vec<1>(0.3))(0, 0);
+  EXPECT_NEAR(dry.dry / dry.v_s, 500 * inertia, 1e-9 * inertia);
+  EXPECT_EQ(tree_of(rod("frictionloss='1e-4'")).joints[0].v_s, 0.01);
 }
 
 TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
@@ -197,6 +224,13 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
   has(error(body("<body><joint name='a' dampening='1'/></body>")), "'dampening'");
   has(error(body("<body><joint name='a' gravcomp='1'/></body>")), "'gravcomp'");
   has(error(put("")), "robot.xml");
+  has(error(body("<body><joint name='a'/><sight name='s'/></body>")), "knows no <sight>");
+  has(error(body("<body><joint name='a'/><geom size='.1' mass='nan'/></body>")),
+      "mass of <geom> is nan");
+  has(error(body("<body><freejoint name='loose'/><geom size='.1'/></body>")),
+      "joint 1 'loose' is free");
+  has(error(body("<body><geom size='.1'/></body>")), "no joint is left that moves");
+  has(error(fs::temp_directory_path().string()), "it is a folder");
   // the mass is the mesh's
   has(error(put("<mujoco><asset><mesh name='m' file='gone.stl'/></asset><worldbody><body><joint "
                 "name='j'/><geom type='mesh' mesh='m'/></body></worldbody></mujoco>")),

@@ -117,12 +117,13 @@ TEST(Tree, HasMuJoCosTermsOfRandomTrees) {
   }
 }
 
-// the Jacobian of a point of each body, by mj_jac
+// a point of each body, and its Jacobian by mj_jac
 template <int N>
 void expect_mujocos_jacobians(const Model& model, unsigned seed) {
   const mjModel& m = *model;
   const State d(mj_makeData(&m));
   const TreeModel<N> tree = tree_model<N>(model);
+  const Vec<3> base = tree_of(model).base;
   Random random(seed);
   const Vec<N> q = random.vector<N>(3);
   Vec<N>::Map(d->qpos) = q;
@@ -140,6 +141,7 @@ void expect_mujocos_jacobians(const Model& model, unsigned seed) {
     const Eigen::Matrix<double, 6, N> J = tree.jacobian(q, joint, point - anchor);
     ASSERT_LT((J.template topRows<3>() - linear).norm(), 1e-12);
     ASSERT_LT((J.template bottomRows<3>() - angular).norm(), 1e-12);
+    ASSERT_LT((base + tree.position(q, joint, point - anchor) - at).norm(), 1e-12);
   }
 }
 

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Where an arm is touched: the link, and the line along which the force acts.
+///
+/// A force on a link turns the joints on its way from the base and no joint behind it, so the last
+/// joint with a torque carries the link that is touched (De Luca and Mattone 2005; Haddadin,
+/// De Luca and Albu-Schaeffer 2017, "isolation"). A force whose line meets that joint's axis, or
+/// runs along it, is taken for one on the link before. Where six joints or more stand before the
+/// link, force f and moment n about its origin follow from (i) of site_force.h, and with them the
+/// line
+///     p(s) = p0 + f x n / |f|^2 + s f.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+
+#include "estimators/force/site_force.h"
+
+namespace tauext {
+
+/// A line in the axes of the base.
+struct ForceLine {
+  Vec<3> point = Vec<3>::Zero();      ///< [m] the one that is nearest to the link's origin
+  Vec<3> direction = Vec<3>::Zero();  ///< [1] of the force on the arm
+  double pitch = 0;                   ///< [m] moment along it, over the force: 0 for one touch
+};
+
+/// Where the arm is touched.
+struct TouchPlace {
+  int link = -1;          ///< the joint, from 0, that carries it; -1: no torque is beyond its limit
+  bool has_line = false;  ///< whether the arm has the joints, in a pose that sees all of force and
+                          ///< moment
+  ForceLine line;         ///< else 0
+  double force = 0;       ///< [N] along it
+};
+
+/// Finds the place, sample by sample; keeps nothing of the past.
+template <int N>
+class TouchFinder {
+ public:
+  /// @param limits [N m], per joint, that the error of tau_ext does not exceed
+  /// @throws std::invalid_argument for limits that are not positive
+  TouchFinder(const TreeModel<N>& arm, const Vec<N>& limits) : arm_(arm), limits_(limits) {
+    if (!(limits.minCoeff() > 0) || !limits.allFinite())
+      throw std::invalid_argument("limits of torques must be positive");
+  }
+
+  /// Of the arm at q [rad] with tau_ext [N m, sign of (3)].
+  TouchPlace operator()(const Vec<N>& q, const Vec<N>& tau_ext) const noexcept {
+    const Vec<N> size = tau_ext.cwiseAbs().cwiseQuotient(limits_);
+    int surest = 0;
+    TouchPlace out;
+    if (!(size.maxCoeff(&surest) > 1)) return out;
+    out.link = surest;
+    for (int i = surest + 1; i < N; ++i) {
+      if (size[i] > 1 && carries(out.link, i)) out.link = i;
+    }
+    add_line(q, tau_ext, out);
+    return out;
+  }
+
+ private:
+  // whether joint i stands on the way from the base to joint j
+  bool carries(int i, int j) const noexcept {
+    while (j > i) j = arm_.parameters().joints[static_cast<std::size_t>(j)].parent;
+    return j == i;
+  }
+
+  void add_line(const Vec<N>& q, const Vec<N>& tau_ext, TouchPlace& out) const noexcept {
+    if constexpr (N >= 6) {
+      int before = 0;  // joints that turn the link
+      for (int i = 0; i <= out.link; ++i) before += carries(i, out.link);
+      if (before < 6) return;
+      const SiteForce w = detail::force_at<6>(arm_, {out.link, Vec<3>::Zero()}, {}, q, tau_ext);
+      const double square = w.force.squaredNorm();
+      if (!(w.seen.minCoeff() > 1 - 1e-9) || !(square > 0)) return;
+      out.has_line = true;
+      out.force = std::sqrt(square);
+      out.line.direction = w.force / out.force;
+      out.line.pitch = w.force.dot(w.moment) / square;
+      out.line.point =
+          arm_.position(q, out.link, Vec<3>::Zero()) + w.force.cross(w.moment) / square;
+    }
+  }
+
+  TreeModel<N> arm_;
+  Vec<N> limits_;
+};
+
+}  // namespace tauext
