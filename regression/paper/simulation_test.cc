@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cstdio>
 
 #include "bench/score/metrics.h"
 #include "estimators/test/random_states.h"
@@ -82,6 +83,48 @@ TEST(SimulationClaims, TheNdobSettlesLaterThanTheEkfOnTheWorstJoint) {
     return worst;
   };
   EXPECT_GT(settling("ndob"), 1.5 * settling("ekf"));
+}
+
+// (31): the larger X is, the sooner the estimate is there, and the more noise it passes
+TEST(SimulationClaims, ALargerXIsFasterAndNoisier) {
+  const Trace t = record_of("wallmobot3", "step");
+  const Trace noisy = measure(t, {.velocity_noise = 1e-3});
+  double rise_before = 1e9, noise_before = 0;
+  for (const double times : {0.5, 1., 2.}) {
+    auto p = Ndob<WallMoBot3>::Parameters::paper();
+    p.X *= times;
+    const Ndob<WallMoBot3> ndob{WallMoBot3(), p};
+    const Output out = run_of(ndob, t), rough = run_of(ndob, noisy);
+    double rise = 0, sum = 0;
+    for (int j = 0; j < 3; ++j) {
+      rise = std::max(rise, step_response(t.t, t.tau_ext.row(j), out.tau_ext.row(j)).rise_0_90);
+      sum = std::max(sum, noise(t.t, out.tau_ext.row(j), rough.tau_ext.row(j), 5));
+    }
+    std::printf("%.1f X: 0-90 %% in %.3f s, %.2f N m of noise\n", times, rise, sum);
+    EXPECT_LT(rise, 0.7 * rise_before);
+    EXPECT_GT(sum, 1.6 * noise_before);
+    rise_before = rise;
+    noise_before = sum;
+  }
+}
+
+// 3.1's remark on P_0: it matters at the start alone
+TEST(SimulationClaims, P0IsForgotten) {
+  const Trace t = record_of("wallmobot3", "sine");
+  using EkfOfArm = Ekf<WallMoBot3>;
+  const auto estimates = [&](double times) {
+    auto p = EkfOfArm::Parameters::paper();
+    p.P0 *= times;
+    return run_of(EkfOfArm(WallMoBot3(), p), t).tau_ext;
+  };
+  const Eigen::MatrixXd printed = estimates(1);
+  for (const double times : {1e-4, 1e4}) {
+    const Eigen::MatrixXd difference = (estimates(times) - printed).cwiseAbs();
+    const double at_first = difference.leftCols(100).maxCoeff();
+    const double later = difference.rightCols(t.size() - 2000).maxCoeff();
+    std::printf("%g P0: %.3g N m in the first 0.1 s, %.3g N m after 2 s\n", times, at_first, later);
+    EXPECT_LT(later, 0.01);
+  }
 }
 
 // (26) takes sigma_min(X) |d|^2 for a lower bound of d^T B X B^-1 d. It is none: the symmetric part

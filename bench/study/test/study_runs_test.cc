@@ -60,7 +60,7 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
                                     {"wallmobot3", "mo1:bandwidth=60", "high_pass"},
                                     {"wallmobot3", "mo1", "cusum"},
                                     {"testbed1", "mo1", "high_pass"}}) {
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_of([&, robot = robot, e = e, d = d] {
                 of(robot, e, d);
               }).find("it has those of wallmobot3/mo1+high_pass|high_pass:w=60"),
               std::string::npos)
