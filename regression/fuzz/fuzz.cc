@@ -137,8 +137,8 @@ void wire(Bytes input) {
     demand(r.n >= 1 && r.n <= kMaxJoints && r.utime >= 0, "a reading is in range");
   }
   demand(is_good<sample_t>(input) + is_good<estimate_t>(input) + is_good<detection_t>(input) +
-                 is_good<summary_t>(input) + is_good<iiwa_status_t>(input) +
-                 is_good<panda_status_t>(input) <=
+                 is_good<force_t>(input) + is_good<summary_t>(input) +
+                 is_good<iiwa_status_t>(input) + is_good<panda_status_t>(input) <=
              1,
          "a message is of one type");
 }
