@@ -48,6 +48,17 @@ void register_detector() {
       [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
 }
 
+#if TAUEXT_FILE_JOINTS == 8
+namespace detail {
+// compiled in the library, as those of 1 to 3 joints are
+extern template class RobotOf<4>;
+extern template class RobotOf<5>;
+extern template class RobotOf<6>;
+extern template class RobotOf<7>;
+extern template class RobotOf<8>;
+}  // namespace detail
+#endif
+
 /// An estimator for every robot from a file, whatever its number of joints: make takes any
 /// TreeModel<N>.
 template <class Make>

@@ -44,6 +44,9 @@ void add_run_flags(CLI::App& app, live::Options& o) {
   app.add_option("--thresholds", o.thresholds,
                  "the detectors' thresholds, from tauext-detect --calibrate")
       ->type_name("FILE");
+  app.add_option("--wrench", o.wrench,
+                 "the force at this site or body (end_effector), and the link touched")
+      ->type_name("SITE");
   app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
       ->type_name("[URL]")
       ->expected(0, 1);
@@ -64,9 +67,8 @@ void add_run_flags(CLI::App& app, live::Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Estimates in real time from a scenario, a log or a robot on LCM, or shows a stream. Opens "
-      "no\n"
-      "socket without --lcm, --subscribe or --listen.\n"
+      "Estimates in real time, or shows a stream. Opens no socket without --lcm, --subscribe or "
+      "--listen.\n"
       "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
       "tauext-live");
   live::Options o;

@@ -13,54 +13,14 @@
 #include "bench/logs/read_log.h"
 #include "bench/logs/torque_sampling.h"
 #include "bench/program/program.h"
+#include "bench/replay/replayed.h"
 #include "bench/roster/robots.h"
-#include "bench/score/detection_metrics.h"
-#include "bench/score/metrics.h"
-#include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/table_writer.h"
 
 namespace {
 
 using namespace tauext;
-
-struct Column {
-  std::string estimator, detector;
-  Output output;
-};
-
-std::string marks_name(const Column& c, bool several) {
-  return several ? fmt::format("{}_{}_mark", c.estimator, c.detector)
-                 : fmt::format("{}_mark", c.detector);
-}
-
-void write_estimates(const Trace& trace, const std::vector<Column>& columns,
-                     const std::string& path) {
-  // with one estimator, <detector>_mark is unambiguous; with more, the estimator's name comes first
-  const bool several = columns.size() > 1;
-  fmt::memory_buffer out;
-  const auto to = std::back_inserter(out);
-  fmt::format_to(to, "t");
-  for (const Column& c : columns) {
-    for (int j = 1; j <= trace.dof(); ++j) fmt::format_to(to, ",{}_tau_ext{}", c.estimator, j);
-    fmt::format_to(to, ",{}_status", c.estimator);
-    if (!c.output.marks.empty()) fmt::format_to(to, ",{}", marks_name(c, several));
-  }
-  fmt::format_to(to, "\n");
-  for (int k = 0; k < trace.size(); ++k) {
-    fmt::format_to(to, "{:.17g}", trace.t[k]);
-    for (const Column& c : columns) {
-      for (int j = 0; j < trace.dof(); ++j) fmt::format_to(to, ",{:.17g}", c.output.tau_ext(j, k));
-      fmt::format_to(to, ",{}", static_cast<int>(c.output.status[k]));
-      if (!c.output.marks.empty()) fmt::format_to(to, ",{}", int{c.output.marks[k]});
-    }
-    fmt::format_to(to, "\n");
-  }
-  AtomicFile file(path);  // not before all is ready: an interrupt leaves nothing behind
-  file.write({out.data(), out.size()});
-  file.commit();
-}
 
 // what the unit of t seems to be, if arms are sampled at 50 Hz to 10 kHz
 std::string looks_like(double step) {
@@ -72,7 +32,7 @@ std::string looks_like(double step) {
 
 // statuses that an engineer has to know of; false if most samples could not be used, with those
 // that the reader has skipped
-bool report_status(const Trace& trace, const Column& c, std::int64_t skipped) {
+bool report_status(const Trace& trace, const Replayed& c, std::int64_t skipped) {
   const StatusCounts& counts = c.output.counts;
   if (!counts.text().empty()) {
     say(fmt::format("{}: of {} samples {}", c.estimator, counts.samples(), counts.sentence()));
@@ -121,43 +81,8 @@ void warn_of_torque(const Robot& r, const Trace& trace, bool assumed_instant) {
                   assumed_instant ? "held from each" : "read at each", w->weight, w->sure));
 }
 
-// what a detector was worth; nothing where the log does not say what happened
-std::string verdict(const Score& s) {
-  const auto alarms = s.get(Metric::kFalseAlarms);
-  if (!alarms) return "";
-  const auto delay = s.get(Metric::kDelay);
-  return fmt::format("{} false alarms, {}", *alarms,
-                     !delay               ? "no collision in the log"
-                     : std::isnan(*delay) ? "no collision detected"
-                                          : fmt::format("recall {}, largest delay {:.3f} s",
-                                                        *s.get(Metric::kRecall), *delay));
-}
-
-void print_metrics(const Trace& trace, const std::vector<Column>& columns, double score_from,
-                   std::FILE* to) {
-  constexpr Metric kShown[] = {Metric::kRmse, Metric::kBias, Metric::kMax};
-  std::vector<TableWriter::Column> titles = {{.title = "estimator", .left = true},
-                                             {.title = "joint"}};
-  for (const Metric m : kShown) {
-    titles.push_back({title_of(m), std::string(row_of(m).unit)});
-  }
-  TableWriter table(std::move(titles));
-  for (const Column& c : columns) {
-    Score s;
-    if (trace.has_truth()) add_error_metrics(trace, c.output, score_from, s);
-    add_detection_metrics(trace, c.output, s);
-    for (int j = 0; trace.has_truth() && j < trace.dof(); ++j) {
-      std::vector<std::string> cells = {j == 0 ? c.estimator : "", std::to_string(j + 1)};
-      for (const Metric m : kShown) cells.push_back(fmt::format("{:.6g}", s.joint(m, j)));
-      table.add(std::move(cells));
-    }
-    if (const std::string v = verdict(s); !v.empty()) table.add_note("  " + c.detector + ": " + v);
-  }
-  if (!table.empty()) fmt::print(to, "{}", table.format());
-}
-
 struct Flags {
-  std::string log, channel, robot, lock, detector, torque, out;
+  std::string log, channel, robot, lock, detector, torque, wrench, out;
   std::vector<std::string> estimators;
   double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
@@ -178,6 +103,9 @@ void add_flags(CLI::App& app, Flags& f) {
                  "when tau acted: held from t on, or at t; else as the log says")
       ->type_name("held|instant")
       ->check(CLI::IsMember({"held", "instant"}));
+  app.add_option("--wrench", f.wrench,
+                 "the force at this site or body (end_effector), and the link touched")
+      ->type_name("SITE");
   app.add_option("--out", f.out, "file to write; - is standard output");
   app.add_option("--score_from", f.score_from,
                  "errors count from this time on [s]; else from the begin")
@@ -203,21 +131,24 @@ int replay(Flags& f) {
     }
     e = with_key(e, "torque", f.torque, r.estimator_fields(name_of_specification(e)));
   }
+  const auto forces =
+      f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
   const RecordedLog recorded = read_log_or_csv(f.log, f.channel);
   const Trace& trace = recorded.trace;
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));
   }
-  std::vector<Column> columns;
+  std::vector<Replayed> columns;
   for (const std::string& e : f.estimators) {
-    columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run()});
+    columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run(), {}});
+    if (forces) columns.back().acting = acting(*forces, trace, columns.back().output);
   }
   const std::string by_log = trace.torque_at_instants ? "instant" : "held";
   bool good = recorded.usable();
-  for (const Column& c : columns) good = report_status(trace, c, recorded.skipped) && good;
+  for (const Replayed& c : columns) good = report_status(trace, c, recorded.skipped) && good;
   for (const bool instant : {false, true}) {
-    if (std::any_of(columns.begin(), columns.end(), [&](const Column& c) {
+    if (std::any_of(columns.begin(), columns.end(), [&](const Replayed& c) {
           const auto fields = r.estimator_fields(name_of_specification(c.estimator));
           const bool has = std::any_of(fields.begin(), fields.end(),
                                        [](const FieldHelp& h) { return h.key == "torque"; });
@@ -227,7 +158,9 @@ int replay(Flags& f) {
     }
   }
   write_estimates(trace, columns, f.out);
-  if (good) print_metrics(trace, columns, f.score_from, f.out == "-" ? stderr : stdout);
+  std::FILE* const to = f.out == "-" ? stderr : stdout;
+  if (good) print_metrics(trace, columns, f.score_from, to);
+  if (good) print_forces(trace, columns, to);
   return good ? kGood : kAnswerIsNo;
 }
 

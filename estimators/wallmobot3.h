@@ -15,6 +15,9 @@
 ///     B = A^T M A,   C qd = A^T (C wd),   A = [1 0 0; 0 1 0; 0 1 1].                      (iii)
 #pragma once
 
+#include <cmath>
+#include <stdexcept>
+
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
 #include "estimators/math/sin_cos.h"
@@ -22,7 +25,8 @@
 namespace tauext {
 
 /// Dynamics of wallmobot3. Scalar is double in use; the tests put in complex and long numbers.
-template <class Scalar = double>
+/// kDry: with dry friction, which costs every step some 5 % even where it is 0.
+template <class Scalar = double, bool kDry = false>
 class BasicWallMoBot3 {
  public:
   static constexpr int kDof = 3;
@@ -41,7 +45,9 @@ class BasicWallMoBot3 {
     double com4_x = 0.440, com4_y = -0.008;  ///< [m] in frame 4
     double m5 = 177, Izz5 = 69.79;           ///< [kg], [kg m^2] last link with the 150 kg panel
     double com5_x = 0.089, com5_y = -0.317;  ///< [m] in frame 5
-    Vec<3> viscous = Vec<3>::Zero();         ///< [N m s/rad] F = viscous qd; the paper gives none
+    Vec<3> viscous = Vec<3>::Zero();         ///< [N m s/rad] of (3)'s F; the paper gives none
+    Vec<3> coulomb = Vec<3>::Zero();         ///< [N m] likewise, coulomb tanh(qd / v_s): friction.h
+    double v_s = 0.01;                       ///< [rad/s]
 
     /// The arm with another panel [kg]: m5 changes and Izz5 with it, in proportion.
     static Parameters with_panel(double panel) {
@@ -54,7 +60,10 @@ class BasicWallMoBot3 {
   };
 
   /// The arm with these masses and lengths.
+  /// @throws std::invalid_argument for dry friction without kDry
   explicit BasicWallMoBot3(const Parameters& p = {}) : p_(p) {
+    if (!kDry && !p.coulomb.isZero(0))
+      throw std::invalid_argument("coulomb of wallmobot3: that is DryWallMoBot3");
     const double h4x = p.m4 * p.com4_x + p.m5 * p.a4;  // first moment carried by link 4
     const double h4y = p.m4 * p.com4_y;
     const double h5x = p.m5 * p.com5_x, h5y = p.m5 * p.com5_y;
@@ -112,7 +121,9 @@ class BasicWallMoBot3 {
 
   /// F(qd) [N m].
   Vec3 friction(const Vec3& qd) const noexcept {
-    return p_.viscous.template cast<Scalar>().cwiseProduct(qd);
+    Vec3 F = p_.viscous.template cast<Scalar>().cwiseProduct(qd);
+    if constexpr (kDry) F += p_.coulomb.template cast<Scalar>().cwiseProduct(slip(qd));
+    return F;
   }
 
   /// inertia and bias, sharing the sines.
@@ -152,8 +163,14 @@ class BasicWallMoBot3 {
         2 * c.d24 * wd[0], 0, -2 * c.d45 * wd[2],        //
         2 * c.d25 * wd[0], 2 * c.d45 * wd[1], 0;
     f.dqdd_dq = f.dqdd_dtau_ext * to_joints(by_q);
-    f.dqdd_dqd = f.dqdd_dtau_ext *
-                 (to_joints(by_qd) + Mat3(p_.viscous.template cast<Scalar>().asDiagonal()));
+    Vec3 slope = p_.viscous.template cast<Scalar>();
+    if constexpr (kDry) {
+      const Vec3 s = slip(qd);
+      slope += (p_.coulomb / p_.v_s)
+                   .template cast<Scalar>()
+                   .cwiseProduct(Vec3::Ones() - s.cwiseProduct(s));
+    }
+    f.dqdd_dqd = f.dqdd_dtau_ext * (to_joints(by_qd) + Mat3(slope.asDiagonal()));
     return f;
   }
 
@@ -172,6 +189,12 @@ class BasicWallMoBot3 {
   }
 
  private:
+  // the share of dry friction that acts
+  Vec3 slip(const Vec3& qd) const noexcept {
+    using std::tanh;
+    return qd.unaryExpr([v_s = p_.v_s](const Scalar& v) { return Scalar(tanh(v / v_s)); });
+  }
+
   // sines of phi_2, phi_4, phi_5; f = M_ab and d = M_ab' of (i)
   struct Coupling {
     Vec3 sin, cos;
@@ -231,6 +254,8 @@ class BasicWallMoBot3 {
 
 /// The closed form in double, as everybody but the derivatives uses it.
 using WallMoBot3 = BasicWallMoBot3<double>;
+/// The same with the dry friction of (3).
+using DryWallMoBot3 = BasicWallMoBot3<double, true>;
 static_assert(DifferentiableModel<WallMoBot3>);
 
 }  // namespace tauext

@@ -66,7 +66,10 @@ Emitter::Emitter(const std::vector<Stream>& streams, double rate, Sink sink)
     }
     c.detection.estimator = s.estimator;
     c.detection.detector = s.detector;
-    largest = std::max<std::size_t>(largest, c.detection.getEncodedSize());
+    c.force.estimator = s.estimator;
+    c.force.site = s.site;
+    for (const int size : {c.detection.getEncodedSize(), c.force.getEncodedSize()})
+      largest = std::max(largest, static_cast<std::size_t>(size));
     channels_.push_back(std::move(c));
   }
   buffer_.resize(largest);
@@ -103,6 +106,7 @@ void Emitter::begin(Channel& c, int n) {
   begin_extremes(n, e.tau_ext_true_min, e.tau_ext_true_max);
   d.mark = d.contact = d.contact_true = 0;
   d.mark_utime = 0;
+  c.force.force_max = 0;
 }
 
 void Emitter::hold(Channel& c, const LiveSample& s) {
@@ -123,6 +127,7 @@ void Emitter::hold(Channel& c, const LiveSample& s) {
   hold_extremes(s.tau_ext_hat, r.n, e.tau_ext_hat_min, e.tau_ext_hat_max);
   hold_extremes(r.tau_ext, r.n, e.tau_ext_true_min, e.tau_ext_true_max);
   hold(c.detection, s);
+  hold(c.force, s);
 }
 
 void Emitter::hold(detection_t& d, const LiveSample& s) {
@@ -136,22 +141,40 @@ void Emitter::hold(detection_t& d, const LiveSample& s) {
   }
 }
 
+void Emitter::hold(force_t& f, const LiveSample& s) {
+  f.utime = s.reading.utime;
+  f.t = s.reading.t;
+  const auto keep = [](const auto& from, double* to) { std::copy(from.begin(), from.end(), to); };
+  keep(s.force.force, f.force);
+  keep(s.force.moment, f.moment);
+  keep(s.force.seen, f.seen);
+  keep(s.force.point, f.point);
+  keep(s.force.direction, f.direction);
+  f.left_over = s.force.left_over;
+  f.link = s.force.link;
+  const double size = std::hypot(f.force[0], f.force[1], f.force[2]);
+  if (size > f.force_max) f.force_max = size;  // not where it is no number
+}
+
 void Emitter::emit(Channel& c) {
   estimate_t& e = c.estimate;
   end_extremes(e.n, e.tau_ext_hat_min, e.tau_ext_hat_max);
   end_extremes(e.n, e.tau_ext_true_min, e.tau_ext_true_max);
-  c.detection.samples = e.samples;
-  send(c, c.name.c_str(), e);
-  if (!c.detection.detector.empty()) send(c, kDetectionChannel, c.detection);
+  c.detection.samples = c.force.samples = e.samples;
+  const auto count = [&c](bool sent) { ++(sent ? c.counts.sent : c.counts.failed); };
+  count(send(c.name.c_str(), e));
+  if (!c.detection.detector.empty()) count(send(kDetectionChannel, c.detection));
+  if (!c.force.site.empty()) send(kForceChannel, c.force);
   e.samples = 0;
 }
 
 template <class Message>
-void Emitter::send(Channel& c, const char* name, Message& m) {
+bool Emitter::send(const char* name, Message& m) {
   const std::size_t size = encode(m, buffer_);
   ++m.seq;
   const bool sent = size > 0 && sink_(name, m.utime, {buffer_.data(), size});
-  for (Counts* counts : {&c.counts, &counts_}) ++(sent ? counts->sent : counts->failed);
+  ++(sent ? counts_.sent : counts_.failed);
+  return sent;
 }
 
 }  // namespace tauext

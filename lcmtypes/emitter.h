@@ -3,6 +3,7 @@
 /// From samples to messages: fewer messages than samples, with every peak held.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,6 +16,17 @@
 
 namespace tauext {
 
+/// What an estimate means as a force on the arm, each as force_t has it.
+struct LiveForce {
+  std::array<double, 3> force{};      ///< [N]
+  std::array<double, 3> moment{};     ///< [N m]
+  std::array<double, 6> seen{};       ///< [1]
+  double left_over = 0;               ///< [N m]
+  int link = 0;                       ///< from 1; 0: none
+  std::array<double, 3> point{};      ///< [m]
+  std::array<double, 3> direction{};  ///< [1]
+};
+
 /// What an estimator, and the detector behind it, said of one sample. Plain: it crosses threads.
 struct LiveSample {
   Reading reading;          ///< what was measured
@@ -25,16 +37,19 @@ struct LiveSample {
   std::int8_t status = 0;   ///< of estimate_t
   std::int8_t contact = 0;  ///< of detection_t
   bool mark = false;        ///< whether the detector marks this sample
+  LiveForce force;          ///< if the stream has a site
 };
 
 /// An estimator's messages: estimate_t on TAUEXT_ESTIMATE_<estimator>, and detection_t on
-/// TAUEXT_DETECTION if there is a detector.
+/// TAUEXT_DETECTION if there is a detector, and force_t on TAUEXT_FORCE if there is a site.
 struct Stream {
   std::string estimator;  ///< its name, or specification
   std::string detector;   ///< "" for none
+  std::string site{};     ///< "" for none
 };
 
 inline constexpr const char* kDetectionChannel = "TAUEXT_DETECTION";  ///< of detection_t
+inline constexpr const char* kForceChannel = "TAUEXT_FORCE";          ///< of force_t
 inline constexpr const char* kSummaryChannel = "TAUEXT_SUMMARY";      ///< of summary_t
 inline constexpr const char* kSampleChannel = "TAUEXT_SAMPLE";        ///< of sample_t
 inline constexpr const char* kEstimateChannel = "TAUEXT_ESTIMATE_";   ///< and the estimator's name
@@ -69,7 +84,7 @@ class Emitter {
 
   /// Of all streams.
   Counts counts() const { return counts_; }
-  /// Of one stream, its detections included.
+  /// Of one stream, its detections included, its forces not: there is one for each estimate.
   const Counts& counts(int stream) const { return channels_[stream].counts; }
 
  private:
@@ -77,6 +92,7 @@ class Emitter {
     std::string name;
     estimate_t estimate{};
     detection_t detection{};
+    force_t force{};
     std::int64_t slot = 0;  // of the last message
     bool started = false;
     Counts counts;
@@ -85,9 +101,10 @@ class Emitter {
   static void begin(Channel& c, int n);
   static void hold(Channel& c, const LiveSample& s);
   static void hold(detection_t& d, const LiveSample& s);
+  static void hold(force_t& f, const LiveSample& s);
   void emit(Channel& c);
   template <class Message>
-  void send(Channel& c, const char* name, Message& m);
+  bool send(const char* name, Message& m);
 
   double rate_;
   Sink sink_;

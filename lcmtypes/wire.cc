@@ -91,6 +91,17 @@ void walk(Cursor& c, const estimate_t&) {
   c.skip(4 + 2 + (9 * kMaxJoints + 1) * 8);
 }
 
+void walk(Cursor& c, const force_t&) {
+  const std::int64_t utime = c.time();
+  c.time();  // seq
+  c.same_time_in_seconds(utime);
+  c.skip(4 + (3 + 3 + 6 + 1 + 1) * 8);
+  c.count(0, kMaxJoints);  // link
+  c.skip((3 + 3) * 8);
+  c.text();
+  c.text();
+}
+
 void walk(Cursor& c, const detection_t&) {
   c.time();
   c.time();  // seq
@@ -147,7 +158,7 @@ std::int64_t hash_of(Bytes message) noexcept {
 Stamp stamp_of(Bytes message) noexcept {
   const std::int64_t hash = hash_of(message);
   const bool numbered = hash == sample_t::getHash() || hash == estimate_t::getHash() ||
-                        hash == detection_t::getHash();
+                        hash == detection_t::getHash() || hash == force_t::getHash();
   const bool timed =
       numbered || hash == iiwa_status_t::getHash() || hash == panda_status_t::getHash();
   const std::size_t size = numbered ? 24 : 16;
@@ -209,12 +220,14 @@ const std::int8_t panda_status_t::kTorque;
 
 template Reject decode(Bytes, sample_t&);
 template Reject decode(Bytes, estimate_t&);
+template Reject decode(Bytes, force_t&);
 template Reject decode(Bytes, detection_t&);
 template Reject decode(Bytes, summary_t&);
 template Reject decode(Bytes, iiwa_status_t&);
 template Reject decode(Bytes, panda_status_t&);
 template std::size_t encode(const sample_t&, std::span<std::byte>) noexcept;
 template std::size_t encode(const estimate_t&, std::span<std::byte>) noexcept;
+template std::size_t encode(const force_t&, std::span<std::byte>) noexcept;
 template std::size_t encode(const detection_t&, std::span<std::byte>) noexcept;
 template std::size_t encode(const summary_t&, std::span<std::byte>) noexcept;
 template std::size_t encode(const iiwa_status_t&, std::span<std::byte>) noexcept;

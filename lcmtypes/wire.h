@@ -13,6 +13,7 @@
 
 #include "lcmtypes/detection_t.hpp"
 #include "lcmtypes/estimate_t.hpp"
+#include "lcmtypes/force_t.hpp"
 #include "lcmtypes/iiwa_status_t.hpp"
 #include "lcmtypes/panda_status_t.hpp"
 #include "lcmtypes/sample_t.hpp"
@@ -58,12 +59,12 @@ struct Stamp {
 /// The stamp of a message whose rest may be no good.
 Stamp stamp_of(Bytes message) noexcept;
 
-/// Decodes one of the six types. `out` is untouched unless kNone comes back; numbers may still be
+/// Decodes one of the types. `out` is untouched unless kNone comes back; numbers may still be
 /// NaN.
 template <class Message>
 Reject decode(Bytes message, Message& out);
 
-/// Encodes one of the six types, whose vectors must be as long as their counts say; allocates
+/// Encodes one of the types, whose vectors must be as long as their counts say; allocates
 /// nothing.
 /// @returns its size [bytes]; 0 if it does not fit
 template <class Message>

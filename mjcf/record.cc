@@ -52,6 +52,7 @@ Trace empty_trace(int n, int samples) {
   for (auto* m : {&trace.q, &trace.qd, &trace.tau, &trace.tau_ext, &trace.qdd, &trace.friction}) {
     m->resize(n, samples);
   }
+  trace.force.resize(3, samples);
   return trace;
 }
 
@@ -98,6 +99,7 @@ class Run {
       if (supervisor && !stopped_) ask(supervisor, k);
       step();
     }
+    if (!only_force_ || trace_.force.isZero(0)) trace_.force.resize(3, 0);
     return std::move(trace_);
   }
 
@@ -124,6 +126,7 @@ class Run {
     for (int i = 0; i < dof(); ++i) tau_ext[i] = s_.tau_ext(t, i);
     tip_ = plant_.end_effector();
     force_ = s_.force(t, tip_);
+    only_force_ = only_force_ && tau_ext.isZero(0) && !s_.load;
     if (!force_.isZero(0)) tau_ext += plant_.tau_ext_of(force_);
     if (s_.floats && !stopped_) {
       plant_.set_input(plant_.bias(), tau_ext);
@@ -137,11 +140,15 @@ class Run {
     trace_.q.col(k) = plant_.q();
     trace_.qd.col(k) = plant_.qd();
     trace_.tau.col(k) = plant_.tau();
-    trace_.tau_ext.col(k) = plant_.tau_ext() + limits(k);
+    const VectorXd stops = limits(k);
+    trace_.tau_ext.col(k) = plant_.tau_ext() + stops;
+    trace_.force.col(k) = force_;
     trace_.qdd.col(k) = plant_.qdd();
     trace_.friction.col(k) = plant_.friction();
     const bool touched = s_.contact(trace_.t[k], tip_);
-    trace_.contact_force[k] = plant_.contact_force() + (touched ? force_.norm() : 0);
+    const double by_contacts = plant_.contact_force();
+    only_force_ = only_force_ && stops.isZero(0) && by_contacts == 0;
+    trace_.contact_force[k] = by_contacts + (touched ? force_.norm() : 0);
     trace_.contact[k] = touched || trace_.contact_force[k] > 0;
   }
 
@@ -182,6 +189,7 @@ class Run {
   Trace trace_;
   Point tip_{};                      // the end effector
   Vector3d force_;                   // [N] of the scenario, there
+  bool only_force_ = true;           // makes tau_ext
   std::optional<VectorXd> stopped_;  // where a mark stopped the arm
 };
 

@@ -73,16 +73,16 @@ double LiveFigures::rmse() const noexcept {
 }
 
 std::vector<Stream> streams_of(const std::vector<std::string>& estimators,
-                               const std::string& detector) {
+                               const std::string& detector, const std::string& site) {
   std::vector<Stream> streams;
-  for (const std::string& e : estimators) streams.push_back({e, detector});
+  for (const std::string& e : estimators) streams.push_back({e, detector, site});
   return streams;
 }
 
 LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
                                const std::string& detector, const DetectorsOf& thresholds_of,
-                               const Trace& trace, LiveStream* stream)
-    : stream_(stream) {
+                               const Trace& trace, LiveStream* stream, const ArmForces* forces)
+    : stream_(stream), forces_(forces) {
   if (robot.dof() > kMaxJoints) {
     throw std::invalid_argument(
         fmt::format("{} has {} joints: a message holds {}", robot.name(), robot.dof(), kMaxJoints));
@@ -113,6 +113,7 @@ void LiveEstimation::take(const Reading& r) noexcept {
     e.figures.counts.add(s.status, s.joints);
     if (s.detection.mark) add<std::int64_t>(e.figures.marks, 1);
     if (r.reference != ReferenceKind::kNone) compare(r, sample_.tau_ext_hat, e.figures);
+    if (forces_ != nullptr) find_force(r, e.figures);
     if (stream_ == nullptr) continue;
     sample_.stream = i;
     sample_.step_us = static_cast<double>(step) * 1e-3;
@@ -123,6 +124,23 @@ void LiveEstimation::take(const Reading& r) noexcept {
     stream_->push(sample_);
   }
   add<std::int64_t>(samples_, 1);
+}
+
+void LiveEstimation::find_force(const Reading& r, LiveFigures& f) noexcept {
+  const SiteForce s = forces_->at_site(r.q.data(), sample_.tau_ext_hat.data());
+  const TouchPlace touch = forces_->touch(r.q.data(), sample_.tau_ext_hat.data());
+  LiveForce& out = sample_.force;
+  const auto keep = [](auto& to, const auto& from) {
+    std::copy(from.begin(), from.end(), to.begin());
+  };
+  keep(out.force, s.force);
+  keep(out.moment, s.moment);
+  keep(out.seen, s.seen);
+  keep(out.point, touch.line.point);
+  keep(out.direction, touch.line.direction);
+  out.left_over = s.left_over;
+  out.link = touch.link + 1;
+  f.largest_force.store(std::max(f.largest_force.load(kRelaxed), s.force.norm()), kRelaxed);
 }
 
 void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept {

@@ -28,6 +28,7 @@ struct LiveFigures {
   std::atomic<std::int64_t> compared = 0;                 ///< samples with a reference
   std::array<std::atomic<double>, kMaxJoints> squares{};  ///< [N^2 m^2] of the error, summed
   std::atomic<double> largest_error = 0;                  ///< [N m] of any joint
+  std::atomic<double> largest_force = 0;  ///< [N] at the point where forces are looked for
 
   /// [N m] worst joint's root of the mean squared error; NaN without a reference.
   double rmse() const noexcept;
@@ -43,11 +44,12 @@ class LiveEstimation {
   /// @param trace what an estimator that copies the truth copies; else it may be empty
   /// @param thresholds_of what training says of the detector behind an estimator, by name
   /// @param stream may be null
+  /// @param forces what each estimate means, for the stream; may be null, and outlives this
   /// @throws std::invalid_argument for unknown names, an estimator named twice, or more than 8
   /// joints
   LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
                  const std::string& detector, const DetectorsOf& thresholds_of, const Trace& trace,
-                 LiveStream* stream);
+                 LiveStream* stream, const ArmForces* forces = nullptr);
 
   /// All estimators, on a reading of the robot's number of joints.
   void take(const Reading& reading) noexcept;
@@ -67,17 +69,20 @@ class LiveEstimation {
     LiveFigures figures;
     bool started = false;  // since the last reset
   };
+  void find_force(const Reading& r, LiveFigures& f) noexcept;
   static void compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept;
 
   std::vector<std::unique_ptr<Pair>> pairs_;
   LiveStream* stream_;
+  const ArmForces* forces_;
   LiveSample sample_;
   std::atomic<std::int64_t> samples_ = 0;
 };
 
 /// The streams of such a run, in its order.
+/// @param site where forces are looked for; "": nowhere
 std::vector<Stream> streams_of(const std::vector<std::string>& estimators,
-                               const std::string& detector);
+                               const std::string& detector, const std::string& site = "");
 
 /// How fast recorded samples are played.
 struct Pace {

@@ -11,7 +11,8 @@
 
 namespace tauext::live {
 
-Outlet::Outlet(const Options& o, double rate) : streams_(streams_of(o.estimators, o.detector)) {
+Outlet::Outlet(const Options& o, double rate)
+    : streams_(streams_of(o.estimators, o.detector, o.wrench)) {
   if (!o.stream) return;
   refuse_input_as_log(lcm_url(o.url));
   transport_ = std::make_shared<Transport>(o.url);

@@ -37,6 +37,11 @@ const Robot& checked_robot(const Options& o) {
   return r;
 }
 
+// null unless they are asked for
+std::unique_ptr<const ArmForces> forces_of(const Options& o, const Robot& r) {
+  return o.wrench.empty() ? nullptr : r.forces_at(o.wrench, r.dof() >= kJointsOfMoment);
+}
+
 DetectorsOf thresholds_of(const Options& o) {
   const Thresholds all = o.thresholds.empty() ? Thresholds() : read_thresholds(o.thresholds);
   return [&o, all](const std::string& estimator) {
@@ -134,7 +139,9 @@ int run_recorded(const Options& o) {
   std::unique_ptr<Realtime> first = realtime_of(o, 1);  // who sends comes behind the loop
   Outlet outlet(o, o.rate / o.pace.speed);              // a rate of the clock's seconds
   first.reset();
-  LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream());
+  const auto forces = forces_of(o, r);
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream(),
+                            forces.get());
   const Interrupt interrupt;
   say(fmt::format("playing {}{}; Ctrl-C ends", title_of(o), outlet.where()));
   const auto begin = Clock::now();
@@ -160,8 +167,9 @@ int run_recorded(const Options& o) {
 int run_subscribed(const Options& o) {
   const Robot& r = checked_robot(o);
   Outlet outlet(o, o.rate);
-  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(),
-                            outlet.stream());
+  const auto forces = forces_of(o, r);
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(), outlet.stream(),
+                            forces.get());
   LiveReport report;
   report.subscribed = true;
   Inlet inlet(o, r, estimation, report);

@@ -65,6 +65,9 @@ std::string format(const LiveReport& r, const LiveEstimation& e) {
                f.compared > 0 ? number_or_dash(f.largest_error) : "-", step_us(f.step_ns, 0.5),
                step_us(f.step_ns, 0.99), step_us(f.step_ns, 1), fmt::to_string(f.unusable.load()),
                fmt::to_string(f.marks.load())});
+    if (f.largest_force > 0)
+      table.add_note(
+          fmt::format("  {}: the largest force is {:.4g} N", e.name(i), f.largest_force.load()));
     if (const std::string said = f.counts.sentence(); !said.empty()) {
       table.add_note(fmt::format("  {}: {}", e.name(i), said));
     }

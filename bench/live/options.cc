@@ -25,7 +25,7 @@ void check(const Options& o, bool listen) {
   require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
   require(o.thresholds.empty() || !o.detector.empty(), "--thresholds goes with --detector");
   if (listen) {
-    require(o.robot.empty() && o.estimators.empty() && o.detector.empty(),
+    require(o.robot.empty() && o.estimators.empty() && o.detector.empty() && o.wrench.empty(),
             "--listen shows streams and estimates nothing");
     return;
   }

@@ -18,6 +18,7 @@ struct Options {
   std::string robot, lock, scenario, from, channel, subscribe, type = "tauext";
   std::vector<std::string> estimators;
   std::string detector, thresholds;
+  std::string wrench;   ///< the point at which forces are looked for; "": none
   bool stream = false;  ///< publish
   std::string url;      ///< "": the default
   double rate = 200;    ///< [1/s] messages of each channel; 0: every sample

@@ -29,6 +29,11 @@ const char* status_name(std::int8_t status) {
 
 }  // namespace
 
+std::int64_t StreamTable::Channel::rate(std::int64_t now) const {
+  return std::count_if(arrivals.begin(), arrivals.end(),
+                       [now](std::int64_t t) { return t > now - kSecond; });
+}
+
 template <class Message>
 bool StreamTable::decoded(Bytes message, const Envelope& e, Message& m) {
   const Reject reject = decode(message, m);
@@ -47,6 +52,8 @@ void StreamTable::take(std::string_view channel, Sender sender, std::int64_t arr
   Envelope envelope{std::string(channel.substr(0, kLongestChannel)), sender, arrived};
   if (hash == detection_t::getHash()) {
     if (detection_t d; decoded(message, envelope, d)) take_detection(d, envelope);
+  } else if (hash == force_t::getHash()) {
+    if (force_t f; decoded(message, envelope, f)) take_force(f, envelope);
   } else if (hash == summary_t::getHash()) {
     if (summary_t s; decoded(message, envelope, s)) take_summary(s, envelope);
   } else if (hash == sample_t::getHash()) {
@@ -108,7 +115,7 @@ StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std:
 Account StreamTable::account() const {
   Account sum{.used = summaries_, .rejected = beyond_};
   for (const auto& [reason, count] : rejects_) sum.rejected += count;
-  for (const Channels* all : {&channels_, &pairs_}) {
+  for (const Channels* all : {&channels_, &pairs_, &forces_}) {
     for (const auto& [name, c] : *all) {
       const Sequence::Counts& n = c.sequence.counts();
       sum.used += n.next;
@@ -126,6 +133,12 @@ void StreamTable::take_detection(const detection_t& d, const Envelope& e) {
   if (accept(pairs_, {pair, e.sender, e.arrived}, d.seq) == nullptr || d.mark == 0) return;
   events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
                                 pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
+}
+
+void StreamTable::take_force(const force_t& f, const Envelope& e) {
+  const std::string name = printable_name(f.estimator) + " at " + printable_name(f.site);
+  Channel* const c = accept(forces_, {name, e.sender, e.arrived}, f.seq);
+  if (c != nullptr) c->force = f;
 }
 
 void StreamTable::take_summary(const summary_t& s, const Envelope& e) {
@@ -152,6 +165,10 @@ void StreamTable::take_end(const summary_t& s, const Envelope& e) {
     const std::string estimator = name.substr(std::strlen(kEstimateChannel));
     if (const auto sent = messages_of(s, estimator)) end(c, *sent);
   }
+  for (auto& [name, c] : forces_) {
+    if (!c.senders.is_ours(e.sender)) continue;
+    if (const auto sent = messages_of(s, c.force.estimator)) end(c, *sent);
+  }
   for (auto& [pair, c] : pairs_) {
     if (!s.entry.ends_with("/" + pair) || !c.senders.is_ours(e.sender)) continue;
     const auto sent = messages_of(s, pair.substr(0, pair.find('+')));
@@ -177,8 +194,7 @@ std::string StreamTable::format(std::int64_t now) const {
   const auto torque = [](bool known, double x) { return known ? fmt::format("{:.3f}", x) : "-"; };
   for (const auto& [name, c] : channels_) {
     const estimate_t& e = c.newest;
-    const auto recent = std::count_if(c.arrivals.begin(), c.arrivals.end(),
-                                      [&](std::int64_t t) { return t > now - kSecond; });
+    const auto recent = c.rate(now);
     for (int j = 0; j < e.n; ++j) {
       const bool first = j == 0,
                  says = first && c.estimate;  // what holds for all joints stands once
@@ -190,6 +206,35 @@ std::string StreamTable::format(std::int64_t now) const {
                  says ? status_name(e.status) : "", says ? fmt::format("{:.1f}", e.step_us) : ""});
     }
   }
+  return table.format() + (forces_.empty() ? "" : "\n" + format_forces(now));
+}
+
+std::string StreamTable::format_forces(std::int64_t now) const {
+  TableWriter table({{"force", "", true, 28},
+                     {"rate", "1/s", false, 6},
+                     {"lost", "", false, 6},
+                     {"x", "N", false, 9},
+                     {"y", "N", false, 9},
+                     {"z", "N", false, 9},
+                     {"largest", "N", false, 9},
+                     {"about x", "N m", false, 9},
+                     {"y", "N m", false, 9},
+                     {"z", "N m", false, 9},
+                     {"link", "", false, 5}});
+  for (const auto& [name, c] : forces_) {
+    const force_t& f = c.force;
+    constexpr double kSeen = 0.5;  // less of a component is shown as -
+    const auto shown = [&f](double value, int component) {
+      return f.seen[component] < kSeen ? "-" : fmt::format("{:.3f}", value);
+    };
+    std::vector<std::string> cells = {name, fmt::to_string(c.rate(now)),
+                                      fmt::to_string(c.sequence.counts().lost)};
+    for (int i = 0; i < 3; ++i) cells.push_back(shown(f.force[i], i));
+    cells.push_back(fmt::format("{:.3f}", f.force_max));
+    for (int i = 0; i < 3; ++i) cells.push_back(shown(f.moment[i], 3 + i));
+    cells.push_back(f.link > 0 ? fmt::to_string(f.link) : "-");
+    table.add(std::move(cells));
+  }
   return table.format();
 }
 
@@ -197,7 +242,7 @@ std::string StreamTable::totals(const GroupSocket::Counts& refused) const {
   const Account all = account();
   std::string out = tauext::format(all, refused) + "\n";
   std::int64_t foreign = 0;
-  for (const Channels* channels : {&channels_, &pairs_}) {
+  for (const Channels* channels : {&channels_, &pairs_, &forces_}) {
     for (const auto& [name, c] : *channels) foreign += c.sequence.counts().foreign + c.others;
   }
   std::vector<std::string> why;

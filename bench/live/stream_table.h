@@ -37,10 +37,12 @@ class StreamTable {
   struct Channel {
     Sequence sequence;
     Senders senders;
-    std::int64_t others = 0;            // messages of a second sender
-    std::deque<std::int64_t> arrivals;  // [us] of the last second
-    estimate_t newest{};                // a sample_t's fields, too
-    bool estimate = false;              // else samples alone
+    std::int64_t others = 0;                    // messages of a second sender
+    std::deque<std::int64_t> arrivals;          // [us] of the last second
+    estimate_t newest{};                        // a sample_t's fields, too
+    bool estimate = false;                      // else samples alone
+    std::int64_t rate(std::int64_t now) const;  // [1/s]
+    force_t force{};                            // of a channel of forces
   };
 
   using Channels = std::map<std::string, Channel, std::less<>>;
@@ -54,12 +56,15 @@ class StreamTable {
   bool decoded(Bytes message, const Envelope& e, Message& m);
   Channel* accept(Channels& all, const Envelope& e, std::int64_t seq);
   void take_detection(const detection_t& d, const Envelope& e);
+  void take_force(const force_t& f, const Envelope& e);
+  std::string format_forces(std::int64_t now) const;
   void take_summary(const summary_t& s, const Envelope& e);
   void take_end(const summary_t& s, const Envelope& e);
   static void end(Channel& c, std::int64_t sent);
 
   Channels channels_;
-  Channels pairs_;  // detections, by estimator and detector
+  Channels pairs_;   // detections, by estimator and detector
+  Channels forces_;  // by estimator and site
   std::map<Reject, std::int64_t> rejects_;
   std::vector<std::string> events_;
   std::int64_t summaries_ = 0;

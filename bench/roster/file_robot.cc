@@ -25,7 +25,8 @@ std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, con
 std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::size_t lock = name.find(kLock);
   const std::string path = name.substr(0, lock);
-  const Model model = load_mjcf(path, {lock == name.npos ? "" : name.substr(lock + kLock.size())});
+  const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
+  const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}) : load_robot(name);
   try {
     return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), name, model);
   } catch (const std::invalid_argument& e) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A robot that nobody compiled in: estimators on the model of an MJCF file.
+/// A robot that nobody compiled in: estimators on the model of an MJCF file or text.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
 /// kMaxFileJoints hinges and slides (mjcf/plant/tree.h). Parameters of detectors in N m are those
 /// of an arm that is used to 1200 N m (ArmScale::usual_torque), and less or more here, joint by
 /// joint.
-/// @param name FILE[:lock=REGEX]
+/// @param name FILE[:lock=REGEX], or that of a robot of ours
 /// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong
 std::unique_ptr<const Robot> file_robot(const std::string& name);
 

@@ -44,6 +44,11 @@ std::string fingerprint_of(const ArmTree& arm) {
 
 }  // namespace
 
+bool is_robot_file(std::string_view name) {
+  const std::string_view path = name.substr(0, name.find(kLock));
+  return path.ends_with(".xml") || path.ends_with(".urdf");
+}
+
 Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
   if (!file) return;
   file_ = simulated(file);
@@ -56,7 +61,7 @@ Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(nam
 }
 
 std::string Robot::label() const {
-  if (!file_) return name_;
+  if (!is_robot_file(name_)) return name_;
   const std::filesystem::path path = name_.substr(0, name_.find(kLock));
   const std::vector<std::string> known = robot_names();
   const bool taken = std::count(known.begin(), known.end(), path.stem().string()) > 0;
@@ -68,7 +73,7 @@ Eigen::VectorXd Robot::small_torque() const {
 }
 
 const std::vector<Scenario>& Robot::scenarios() const {
-  if (!file_) return tauext::scenarios(name_);
+  if (!is_robot_file(name_)) return tauext::scenarios(name_);
   require_fit();
   std::call_once(listed_, [&] {
     scenarios_ = generic_scenarios(file_);
@@ -78,9 +83,14 @@ const std::vector<Scenario>& Robot::scenarios() const {
 }
 
 Model Robot::load_for(const Scenario& s, const ModelError& error) const {
-  if (!file_) return tauext::load_for(name_, s, error);
+  if (!is_robot_file(name_)) return tauext::load_for(name_, s, error);
   require_fit();
   return with_errors(file_, error_for(s, error));
+}
+
+std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool moment) const {
+  return arm_forces(file_ ? file_ : load_robot(name_),
+                    {.site = site, .moment = moment, .limits = small_torque()});
 }
 
 void Robot::require_fit() const {
@@ -92,7 +102,7 @@ Eigen::VectorXd Robot::home() const {
 }
 
 void register_scenario_of(const Robot& r, const Scenario& s) {
-  if (!r.is_from_file()) return register_scenario(r.name(), s);
+  if (!is_robot_file(r.name())) return register_scenario(r.name(), s);
   const auto refuse_taken = [&](const std::vector<Scenario>& all) {
     for (const Scenario& known : all) {
       if (known.name != s.name) continue;

@@ -14,12 +14,16 @@
 #include "bench/roster/specification.h"
 #include "bench/roster/stages.h"
 #include "bench/roster/thresholds.h"
+#include "mjcf/arm_forces.h"
 #include "mjcf/record.h"
 
 namespace tauext {
 
 /// Between the path of a robot's file and the joints that are fixed (ImportOptions), in its name.
 inline constexpr std::string_view kLock = ":lock=";
+
+/// Whether a robot of that name is a file, by its path, [:lock=REGEX] or not.
+bool is_robot_file(std::string_view name);
 
 /// How the detectors behind an estimator are set.
 struct DetectorSettings {
@@ -53,11 +57,16 @@ class Robot {
   /// [N m] of a dry friction that studies hide from its estimators: the least of these.
   double hidden_friction() const { return small_torque().minCoeff(); }
 
-  bool is_from_file() const { return file_ != nullptr; }  ///< and none of those that are known
+  /// Whether it is known by its MJCF alone: from a file, or of kRobotsByMjcf (roster.h).
+  bool is_from_file() const { return file_ != nullptr; }
   /// Whether a joint of a file's robot slides: N and m stand for N m and rad.
   bool slides() const { return slides_; }
   /// Of a file's robot a number, as text, that tells two arms apart; else "".
   const std::string& fingerprint() const { return fingerprint_; }
+  /// What acts on it where tau_ext is so: the force at a point of it, with the moment if asked, and
+  /// the link that is touched, where a torque exceeds small_torque().
+  /// @throws std::invalid_argument for an unknown point, listing the known ones, and as arm_forces
+  std::unique_ptr<const ArmForces> forces_at(const std::string& site, bool moment) const;
   /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.
   Eigen::VectorXd home() const;
 

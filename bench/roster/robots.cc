@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <set>
@@ -31,7 +32,11 @@ std::vector<detail::MakeRobot>& registered_robots() {
 
 bool in_use = false;  // whether the list of robots has been made
 
-// the robot of a file, read the first time that it is asked for
+bool is_by_mjcf(std::string_view name) {
+  return std::count(kRobotsByMjcf.begin(), kRobotsByMjcf.end(), name) > 0;
+}
+
+// the robot of a file, or of an MJCF of ours, read the first time that it is asked for
 const Robot& robot_of_file(const std::string& name) {
   static std::mutex mutex;
   static std::map<std::string, std::unique_ptr<const Robot>> all;
@@ -41,9 +46,18 @@ const Robot& robot_of_file(const std::string& name) {
   return *r;
 }
 
-const auto& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
-                       std::string_view name) {
-  return find_known(all, "robot", name, [](const auto& r) { return r->name(); });
+const Robot& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
+                        std::string_view name) {
+  for (const auto& r : all) {
+    if (r->name() == name) return *r;
+  }
+  std::vector<std::string> known;
+  for (const auto& r : all) known.push_back(r->name());
+  known.insert(known.end(), kRobotsByMjcf.begin(), kRobotsByMjcf.end());
+  const std::invalid_argument error = unknown("robot", name, known);
+  if (name.find_first_of("./") == name.npos) throw error;
+  throw std::invalid_argument(
+      fmt::format("{}; a robot's file is MJCF, .xml, or URDF, .urdf", error.what()));
 }
 
 std::string list_of(const Robot& r) {
@@ -95,16 +109,11 @@ const std::vector<std::unique_ptr<const Robot>>& robots() {
         [&](const char* name, const auto& model) { list.push_back(make_robot(name, model)); });
     for (const auto& make : registered_robots()) list.push_back(make());
     for (const auto& [robot, text] : detail::registered_specifications()) {
-      if (!is_robot_file(robot)) find_robot(list, robot);
+      if (!is_robot_file(robot) && !is_by_mjcf(robot)) find_robot(list, robot);
     }
     return list;
   }();
   return all;
-}
-
-bool is_robot_file(std::string_view name) {
-  const std::string_view path = name.substr(0, name.find(kLock));
-  return path.ends_with(".xml") || path.ends_with(".urdf");
 }
 
 std::string with_lock(const std::string& robot, const std::string& lock) {
@@ -115,7 +124,8 @@ std::string with_lock(const std::string& robot, const std::string& lock) {
 }
 
 const Robot& robot(std::string_view name) {
-  return is_robot_file(name) ? robot_of_file(std::string(name)) : *find_robot(robots(), name);
+  const bool by_mjcf = is_robot_file(name) || is_by_mjcf(name);
+  return by_mjcf ? robot_of_file(std::string(name)) : find_robot(robots(), name);
 }
 
 std::unique_ptr<const Robot> wallmobot3_believing(double panel) {
@@ -136,10 +146,12 @@ bool study_only(std::string_view detector) {
 }
 
 std::string list_known(const std::string& name) {
-  if (is_robot_file(name))
+  if (is_robot_file(name) || is_by_mjcf(name))
     return list_of(robot(name)) + list_scale(robot(name)) + "\n" + list_fields();
   std::string out;
   for (const auto& r : robots()) out += list_of(*r);
+  for (const std::string_view r : kRobotsByMjcf)
+    out += fmt::format("robot {}: --list --robot {} shows it\n", r, r);
   return out + "\nrobot FILE.xml or FILE.urdf: any arm of 1 to 8 joints, hinges and slides\n\n" +
          list_fields();
 }

@@ -24,9 +24,10 @@ void add_robot(MakeRobot make);
 /// Every robot of bench/roster/roster.h, and the registered ones.
 const std::vector<std::unique_ptr<const Robot>>& robots();
 
-/// A robot by its name, or FILE[:lock=REGEX], which then is its name, by the path of its MJCF or
-/// URDF file (.xml, .urdf) and the joints of it that are fixed: an arm of 1 to 8 hinges and slides
-/// with the estimators, detectors and scenarios that every arm has. A file is read once.
+/// A robot by its name, also of kRobotsByMjcf, or FILE[:lock=REGEX], which then is its name: the
+/// path of its MJCF or URDF file (.xml, .urdf) and the joints of it that are fixed, an arm of 1 to
+/// 8 hinges and slides with the estimators, detectors and scenarios that every arm has. A file is
+/// read once.
 /// @throws std::invalid_argument for an unknown name, listing the known ones; std::runtime_error or
 /// std::invalid_argument naming the path and what is wrong with it
 const Robot& robot(std::string_view name);
@@ -34,9 +35,6 @@ const Robot& robot(std::string_view name);
 /// That name of a robot from a file with joints that are fixed, or the name itself without.
 /// @throws std::invalid_argument if joints of another robot are to be fixed
 std::string with_lock(const std::string& robot, const std::string& lock);
-
-/// Whether robot(name) takes it for the path of a file.
-bool is_robot_file(std::string_view name);
 
 /// wallmobot3 whose estimators believe in a panel of so many kg; 150 is what robot("wallmobot3")
 /// believes.

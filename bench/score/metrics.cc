@@ -153,6 +153,21 @@ bool evenly_spaced(const Times& t, double h) {
 
 }  // namespace
 
+double force_rmse(const ArmForces& arm, const Trace& trace, const Eigen::MatrixXd& estimate,
+                  double from) {
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < trace.force.cols(); ++k) {
+    if (trace.t[k] < from) continue;
+    const Eigen::VectorXd q = trace.q.col(k), tau_ext = estimate.col(k);
+    const Eigen::VectorXd truth = arm.torque(q, trace.force.col(k));
+    const Vec<3> seen = arm.at_site(q.data(), truth.data()).force;
+    sum += (arm.at_site(q.data(), tau_ext.data()).force - seen).squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : kNoValue;
+}
+
 double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
   const double h = t.size() < 2 ? 0 : (t.back() - t.front()) / static_cast<double>(t.size() - 1);
   if (!(h > 0) || !evenly_spaced(t, h)) return kNoValue;

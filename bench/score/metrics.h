@@ -10,6 +10,7 @@
 
 #include "bench/roster/stages.h"
 #include "bench/score/score.h"
+#include "mjcf/arm_forces.h"
 #include "mjcf/scenarios/scenario.h"
 #include "mjcf/trace/trace.h"
 
@@ -55,6 +56,12 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 /// estimate(t) in the mean square over t >= from + 2 s. NaN for a constant truth or estimate, for a
 /// shorter run, and if no delay below 2 s fits best.
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
+
+/// [N] root of the mean squared error of the force at the end effector that estimates mean, over
+/// samples with t >= from: beside what the joints see of the true one (estimators/force/). NaN if
+/// the trace has no force.
+double force_rmse(const ArmForces& arm, const Trace& trace, const Eigen::MatrixXd& estimate,
+                  double from);
 
 /// [rad/s] -3 dB: the frequency at which the estimate's answer to a swept sine first falls below
 /// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "bench/kit/allocations.h"
@@ -87,7 +88,17 @@ const Suite::Estimates& Suite::estimates(const Entry& e) {
   const auto run = [&](const Trace& trace) {
     return e.robot().runner(e.estimator(), "", trace)->run();
   };
-  return estimates_.emplace(key, Estimates{run(t.ideal), run(t.noisy)}).first->second;
+  Estimates made{run(t.ideal), run(t.noisy), kNoValue};
+  made.force_rmse = force_rmse(e, is_ideal(e) ? made.ideal : made.noisy);
+  return estimates_.emplace(key, std::move(made)).first->second;
+}
+
+double Suite::force_rmse(const Entry& e, const Output& out) {
+  const Trace& trace = scored(e);
+  if (trace.force.cols() == 0) return kNoValue;
+  auto& arm = forces_[e.robot().name()];
+  if (!arm) arm = e.robot().forces_at(kEndEffector, false);
+  return metrics::force_rmse(*arm, trace, out.tau_ext, e.scenario().score_from);
 }
 
 bool Suite::is_ideal(const Entry& e) const {
@@ -129,7 +140,7 @@ std::string Suite::error(const Entry& e, const Output& ideal, const Output& nois
 Score Suite::score(const Entry& e) {
   const Scenario& s = e.scenario();
   const Traces& recorded = traces(e);
-  const auto& [ideal, noisy] = estimates(e);
+  const auto& [ideal, noisy, force_rmse] = estimates(e);
 
   Score score;
   score.error = error(e, ideal, noisy);
@@ -138,6 +149,7 @@ Score Suite::score(const Entry& e) {
   score.counts = out.counts;
   score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
   add_error_metrics(trace, out, s.score_from, score);
+  if (!std::isnan(force_rmse)) score.set(Metric::kForce, force_rmse);
   add_noise_metric(trace, ideal, noisy, s.score_from, score);
   add_response_metrics(trace, out, s, score);
   if (!e.detector().empty()) {

@@ -11,6 +11,7 @@
 #include "bench/roster/robot.h"
 #include "bench/score/entry.h"
 #include "bench/score/score.h"
+#include "mjcf/arm_forces.h"
 #include "mjcf/record.h"
 
 namespace tauext {
@@ -70,8 +71,10 @@ class Suite {
   // what an estimator makes of them, without a detector
   struct Estimates {
     Output ideal, noisy;
+    double force_rmse;  // [N] of the one that is scored; NaN where the trace has no force
   };
   const Estimates& estimates(const Entry& entry);
+  double force_rmse(const Entry& entry, const Output& output);
   bool is_ideal(const Entry& entry) const;
   const Trace& scored(const Entry& entry);
 
@@ -79,6 +82,7 @@ class Suite {
   std::map<std::string, Traces> traces_;        // by group; a closed loop's by name
   std::string estimated_;                       // the group of
   std::map<std::string, Estimates> estimates_;  // by trace and estimator
+  std::map<std::string, std::unique_ptr<const ArmForces>> forces_;  // by robot
 };
 
 }  // namespace tauext

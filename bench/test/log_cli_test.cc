@@ -29,61 +29,6 @@ TEST_F(Programs, RecordWritesTheSameBitsForTheSameSeed) {
   EXPECT_NE(content("a.csv"), content("c.csv"));
 }
 
-TEST_F(Programs, ReplayWritesOneRowPerSampleAndPrintsTheErrors) {
-  run("tauext-record --robot wallmobot3 --scenario collision --out log.csv");
-  const Outcome o =
-      run("tauext-replay log.csv --robot wallmobot3 --estimator ekf,truth --detector pan_tompkins "
-          "--out est.csv");
-  EXPECT_EQ(o.code, 0) << o.text;
-  EXPECT_TRUE(o.says("recall 1")) << o.text;
-  const std::string est = content("est.csv");
-  EXPECT_EQ(est.substr(0, est.find('\n')),
-            "t,ekf_tau_ext1,ekf_tau_ext2,ekf_tau_ext3,ekf_status,ekf_pan_tompkins_mark,"
-            "truth_tau_ext1,truth_tau_ext2,truth_tau_ext3,truth_status,truth_pan_tompkins_mark");
-  EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 30001);
-  const Outcome one = run(
-      "tauext-replay log.csv --robot wallmobot3 --estimator ndob --detector pan_tompkins --out -");
-  EXPECT_EQ(one.text.substr(0, one.text.find('\n')),
-            "t,ndob_tau_ext1,ndob_tau_ext2,ndob_tau_ext3,ndob_status,pan_tompkins_mark");
-}
-
-TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
-  write("log.csv",
-        "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\n"
-        "0,0,0,0,0,0,0,1,2,3\n"
-        "0.001,0,0,0,0,0,inf,1,2,3\n"
-        "0.002,0,0\n"
-        "0.003,0,0,0,0,0,0,1,2,3\n");
-  const Outcome o = run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out est.csv");
-  EXPECT_EQ(o.code, 0) << o.text;
-  EXPECT_TRUE(o.says("skipped 2 rows")) << o.text;
-  EXPECT_TRUE(o.says("line 3: a field is not finite")) << o.text;
-  const std::string est = content("est.csv");
-  EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 3);
-  const Outcome truth =
-      run("tauext-replay log.csv --robot wallmobot3 --estimator truth --out e2.csv");
-  EXPECT_EQ(truth.code, 2);
-  EXPECT_TRUE(truth.says("needs columns tau_ext1..")) << truth.text;
-  const Outcome twice =
-      run("tauext-replay log.csv --robot wallmobot3 --estimator ndob,ndob --out e2.csv");
-  EXPECT_EQ(twice.code, 2);
-  EXPECT_TRUE(twice.says("'ndob' is named twice")) << twice.text;
-}
-
-TEST_F(Programs, ReplayTakesTheTorqueAsTheLogsColumnsSay) {
-  run("tauext-record --robot testbed1 --scenario identify --out log.csv");
-  const std::string log = content("log.csv");
-  const std::string replay = "tauext-replay log.csv --robot testbed1 --out - --estimator mo2";
-  const auto rows = [](const Outcome& o) {  // without the names of estimators
-    return o.text.substr(0, o.text.find("\nestimator")).substr(o.text.find('\n'));
-  };
-  const Outcome held = run(replay), told = run(replay + " --torque instant");
-  write("log.csv", "t,q1,qd1,tau_instant1,tau_ext1,contact" + log.substr(log.find('\n')));
-  EXPECT_TRUE(rows(run(replay)) == rows(told));
-  EXPECT_TRUE(rows(run(replay + " --torque held")) == rows(held));
-  EXPECT_TRUE(rows(told) != rows(held));
-}
-
 TEST_F(Programs, NoneReplacesAFileThatItReads) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
   run("tauext-record --robot testbed1 --scenario model_check --out one.csv");
@@ -118,21 +63,6 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
   }
   const Outcome o = run_system("LCM_DEFAULT_URL='file://log.lcm?mode=w' " TAUEXT_BIN "/" + live);
   EXPECT_TRUE(o.says("log.lcm: is read by this program")) << o.text;
-}
-
-TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
-  run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
-  write("empty.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\nx\n");
-  write("two.csv", "t,q1,q2,qd1,qd2,tau1,tau2\n0,1,2,3,4,5,6\n");
-  const Outcome empty =
-      run("tauext-replay empty.csv --robot wallmobot3 --estimator ndob --out est.csv");
-  EXPECT_EQ(empty.code, 2);
-  EXPECT_TRUE(empty.says("empty.csv: no usable row (1 skipped")) << empty.text;
-  const Outcome two =
-      run("tauext-replay two.csv --robot wallmobot3 --estimator ndob --out est.csv");
-  EXPECT_EQ(two.code, 2);
-  EXPECT_TRUE(two.says("wallmobot3 has 3 joints, the samples have 2")) << two.text;
-  EXPECT_FALSE(exists("est.csv"));
 }
 
 TEST_F(Programs, IdentifyPrintsTheParametersAndWritesThem) {
@@ -170,29 +100,6 @@ TEST_F(Programs, RecordStopsTheMotorAtAMark) {
   EXPECT_TRUE(cell.says("loadcell: there is no key 'nois'; known: scale [1] 0 to 1000"))
       << cell.text;
   EXPECT_FALSE(exists("d.csv"));
-}
-
-TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
-  // milliseconds in place of seconds: every sample lies beyond the longest gap
-  std::string log = "\xEF\xBB\xBFt,q1,qd1,tau1\n";  // with a byte order mark
-  for (int k = 0; k < 100; ++k) log += std::to_string(k) + ",0.1,0,115\n";
-  write("ms.csv", log);
-  const Outcome o = run("tauext-replay --robot testbed1 --estimator ekf,ndob ms.csv --out est.csv");
-  EXPECT_EQ(o.code, 1) << o.text;
-  EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
-}
-
-TEST_F(Programs, ReplayScoresFromATimeWithinTheLog) {
-  ASSERT_EQ(run("tauext-record --robot testbed1 --scenario hold --out log.csv").code, 0);
-  const std::string replay =
-      "tauext-replay log.csv --robot testbed1 --estimator mo1 --out e.csv --score_from ";
-  for (const std::string from : {"1e9", "inf", "nan"}) {
-    const Outcome o = run(replay + from);
-    EXPECT_EQ(o.code, 2) << o.text;
-    EXPECT_TRUE(o.says("the log ends at")) << o.text;
-    EXPECT_FALSE(exists("e.csv"));
-  }
-  EXPECT_EQ(run(replay + "1").code, 0);
 }
 
 TEST_F(Programs, WritingToALinkWritesItsTarget) {

@@ -24,6 +24,9 @@
 
 namespace tauext {
 
+/// So many joints a moment at a point wants, and the line of a force.
+inline constexpr int kJointsOfMoment = 6;
+
 /// A point that moves with a joint's body.
 struct ArmPoint {
   int joint = 0;                  ///< whose body, from 0; -1: it never moves
@@ -49,28 +52,45 @@ struct SiteForceParameters {
 
 namespace detail {
 
-// (i) for the force alone, Rows = 3, or with the moment, 6
+// (i) and what it says of itself, for the force alone, Rows = 3, or with the moment, 6
+template <int Rows>
+struct LeverSolution {
+  Vec<Rows> f = Vec<Rows>::Zero();
+  Vec<Rows> seen = Vec<Rows>::Zero();
+  double condition = 0;
+};
+
+// given J J^T and J tau_ext: compiled once for all numbers of joints
+template <int Rows>
+LeverSolution<Rows> solve_by_lever(const Mat<Rows>& JJt, const Vec<Rows>& J_tau_ext,
+                                   double least_lever) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Mat<Rows>> by_lever(JJt);
+  const Mat<Rows>& u = by_lever.eigenvectors();
+  const Vec<Rows> squares = by_lever.eigenvalues().cwiseMax(0);  // growing
+  const double least = least_lever * least_lever * squares[Rows - 1];
+  LeverSolution<Rows> out;
+  if (!(least > 0)) return out;
+  const Vec<Rows> damped = squares.cwiseMax(least);
+  out.f = -u * (u.transpose() * J_tau_ext).cwiseQuotient(damped);
+  out.seen = u.cwiseAbs2() * squares.cwiseQuotient(damped);
+  double shortest = squares[Rows - 1];
+  for (int i = Rows - 1; i >= 0 && squares[i] >= least; --i) shortest = squares[i];
+  out.condition = std::sqrt(squares[Rows - 1] / shortest);
+  return out;
+}
+
 template <int Rows, int N>
 SiteForce force_at(const TreeModel<N>& arm, const ArmPoint& at, const SiteForceParameters& p,
                    const Vec<N>& q, const Vec<N>& tau_ext) noexcept {
   Eigen::Matrix<double, Rows, N> J = arm.jacobian(q, at.joint, at.place).template topRows<Rows>();
   if constexpr (Rows == 6) J.template bottomRows<3>() *= p.length;
-  const Eigen::SelfAdjointEigenSolver<Mat<Rows>> by_lever(Mat<Rows>(J * J.transpose()));
-  const Mat<Rows>& u = by_lever.eigenvectors();
-  const Vec<Rows> squares = by_lever.eigenvalues().cwiseMax(0);  // growing
-  const double least = p.least_lever * p.least_lever * squares[Rows - 1];
+  const auto found = solve_by_lever<Rows>(J * J.transpose(), J * tau_ext, p.least_lever);
   SiteForce out;
-  out.left_over = tau_ext.norm();
-  if (!(least > 0)) return out;
-  const Vec<Rows> damped = squares.cwiseMax(least);
-  const Vec<Rows> f = -u * (u.transpose() * (J * tau_ext)).cwiseQuotient(damped);
-  out.seen.template head<Rows>() = u.cwiseAbs2() * squares.cwiseQuotient(damped);
-  double shortest = squares[Rows - 1];
-  for (int i = Rows - 1; i >= 0 && squares[i] >= least; --i) shortest = squares[i];
-  out.condition = std::sqrt(squares[Rows - 1] / shortest);
-  out.left_over = (tau_ext + J.transpose() * f).norm();
-  out.force = f.template head<3>();
-  if constexpr (Rows == 6) out.moment = p.length * f.template tail<3>();
+  out.seen.template head<Rows>() = found.seen;
+  out.condition = found.condition;
+  out.left_over = (tau_ext + J.transpose() * found.f).norm();
+  out.force = found.f.template head<3>();
+  if constexpr (Rows == 6) out.moment = p.length * found.f.template tail<3>();
   return out;
 }
 
@@ -86,7 +106,7 @@ class ForceAtSite {
       : arm_(arm), at_(at), p_(p) {
     if (at.joint < 0 || at.joint >= N || !at.place.allFinite())
       throw std::invalid_argument("a force is looked for at a point that no joint moves");
-    if (p.moment && N < 6)
+    if (p.moment && N < kJointsOfMoment)
       throw std::invalid_argument("force and moment at a point want 6 joints or more");
     if (!(p.length > 0 && p.least_lever > 0 && p.least_lever < 1))
       throw std::invalid_argument("length must be positive, least_lever between 0 and 1");

@@ -67,10 +67,10 @@ class TouchFinder {
   }
 
   void add_line(const Vec<N>& q, const Vec<N>& tau_ext, TouchPlace& out) const noexcept {
-    if constexpr (N >= 6) {
+    if constexpr (N >= kJointsOfMoment) {
       int before = 0;  // joints that turn the link
       for (int i = 0; i <= out.link; ++i) before += carries(i, out.link);
-      if (before < 6) return;
+      if (before < kJointsOfMoment) return;
       const SiteForce w = detail::force_at<6>(arm_, {out.link, Vec<3>::Zero()}, {}, q, tau_ext);
       const double square = w.force.squaredNorm();
       if (!(w.seen.minCoeff() > 1 - 1e-9) || !(square > 0)) return;

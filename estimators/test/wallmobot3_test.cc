@@ -57,31 +57,52 @@ TEST_F(WallMoBot3Test, InertiaIsPositiveDefiniteForEveryPanelOfThePaper) {
 
 TEST_F(WallMoBot3Test, JacobiansAgreeWith100DigitDifferences) {
   use_100_digits();
-  const WallMoBot3 arm;
-  const BasicWallMoBot3<Precise> precise;
   const Precise h("1e-30");  // a forward difference is then good to 30 digits
-  for (int i = 0; i < 50; ++i) {
-    const Vec<3> q = vector(2), qd = vector(2), u = vector(500);
-    const ForwardDynamics<3> f = arm.forward_dynamics(q, qd, u);
-    ASSERT_TRUE(f.ok);
-    using V = Vec<3, Precise>;
-    const V pq = q.cast<Precise>(), pqd = qd.cast<Precise>(), pu = u.cast<Precise>();
-    const V qdd = precise.forward_dynamics(pq, pqd, pu).qdd;
-    EXPECT_LT((qdd.cast<double>() - f.qdd).norm(), 1e-12 * f.qdd.norm());
-    for (int j = 0; j < 3; ++j) {
-      V e = V::Zero();
-      e[j] = h;
-      const auto column = [&](const V& moved) -> Vec<3> {
-        return V((moved - qdd) / h).cast<double>();
-      };
-      const Vec<3> by_q = column(precise.forward_dynamics(pq + e, pqd, pu).qdd);
-      const Vec<3> by_qd = column(precise.forward_dynamics(pq, pqd + e, pu).qdd);
-      const Vec<3> by_u = column(precise.forward_dynamics(pq, pqd, pu + e).qdd);
-      EXPECT_LT((by_q - f.dqdd_dq.col(j)).norm(), 1e-11 * f.dqdd_dq.norm());
-      EXPECT_LT((by_qd - f.dqdd_dqd.col(j)).norm(), 1e-11 * (1 + f.dqdd_dqd.norm()));
-      EXPECT_LT((by_u + f.dqdd_dtau_ext.col(j)).norm(), 1e-11 * f.dqdd_dtau_ext.norm());
+  // with friction, too, in whose steepest part the speeds lie
+  const auto check = [&]<bool kDry>(std::bool_constant<kDry>) {
+    typename BasicWallMoBot3<double, kDry>::Parameters p;
+    typename BasicWallMoBot3<Precise, kDry>::Parameters same;
+    if constexpr (kDry) {
+      p.viscous = same.viscous = Vec<3>(3, 5, 7);
+      p.coulomb = same.coulomb = Vec<3>(20, 30, 10);
+      p.v_s = same.v_s = 1;
     }
-  }
+    const BasicWallMoBot3<double, kDry> arm(p);
+    const BasicWallMoBot3<Precise, kDry> precise(same);
+    for (int i = 0; i < 50; ++i) {
+      const Vec<3> q = vector(2), qd = vector(2), u = vector(500);
+      const ForwardDynamics<3> f = arm.forward_dynamics(q, qd, u);
+      ASSERT_TRUE(f.ok);
+      using V = Vec<3, Precise>;
+      const V pq = q.cast<Precise>(), pqd = qd.cast<Precise>(), pu = u.cast<Precise>();
+      const V qdd = precise.forward_dynamics(pq, pqd, pu).qdd;
+      EXPECT_LT((qdd.template cast<double>() - f.qdd).norm(), 1e-12 * f.qdd.norm());
+      for (int j = 0; j < 3; ++j) {
+        V e = V::Zero();
+        e[j] = h;
+        const auto column = [&](const V& moved) -> Vec<3> {
+          return V((moved - qdd) / h).template cast<double>();
+        };
+        const Vec<3> by_q = column(precise.forward_dynamics(pq + e, pqd, pu).qdd);
+        const Vec<3> by_qd = column(precise.forward_dynamics(pq, pqd + e, pu).qdd);
+        const Vec<3> by_u = column(precise.forward_dynamics(pq, pqd, pu + e).qdd);
+        EXPECT_LT((by_q - f.dqdd_dq.col(j)).norm(), 1e-11 * f.dqdd_dq.norm());
+        EXPECT_LT((by_qd - f.dqdd_dqd.col(j)).norm(), 1e-11 * (1 + f.dqdd_dqd.norm()));
+        EXPECT_LT((by_u + f.dqdd_dtau_ext.col(j)).norm(), 1e-11 * f.dqdd_dtau_ext.norm());
+      }
+    }
+  };
+  check(std::false_type());
+  check(std::true_type());
+}
+
+TEST_F(WallMoBot3Test, DryFrictionWantsTheDryArm) {
+  WallMoBot3::Parameters p;
+  p.coulomb << 1, 0, 0;
+  EXPECT_THROW(WallMoBot3{p}, std::invalid_argument);
+  DryWallMoBot3::Parameters dry;
+  dry.coulomb << 1, 2, 3;
+  EXPECT_LT((DryWallMoBot3(dry).friction(Vec<3>(1, -1, 0)) - Vec<3>(1, -2, 0)).norm(), 1e-12);
 }
 
 TEST_F(WallMoBot3Test, JacobiansIncludeViscousFriction) {

@@ -103,6 +103,37 @@ TEST(EmitterTest, MarksScoresAndStatusesAreHeldToo) {
   EXPECT_EQ(decoded<detection_t>(sent[7]).samples, 7);
 }
 
+TEST(EmitterTest, ForcesHaveTheNumberOfTheirEstimateAndHoldTheirPeak) {
+  std::vector<Sent> sent;
+  Emitter emitter({{"ekf", "pan_tompkins", "tool"}, {"mo2", ""}}, 100, collect(sent));
+  for (int k = 0; k <= 20; ++k) {
+    LiveSample s = live_sample(k);
+    s.force.force = {0, k == 13 ? -40. : 3., 4};
+    s.force.seen = {1, 1, 0, 0, 0, 0};
+    s.force.link = 2;
+    emitter.add(s);
+    s.stream = 1;
+    emitter.add(s);
+  }
+  std::vector<Sent> forces;
+  for (const Sent& m : sent) {
+    if (m.channel == "TAUEXT_FORCE") forces.push_back(m);
+  }
+  ASSERT_EQ(forces.size(), 3u);
+  const auto last = decoded<force_t>(forces[2]);
+  EXPECT_EQ(last.utime, 20000);
+  EXPECT_EQ(last.seq, 2);
+  EXPECT_EQ(last.samples, 10);
+  EXPECT_EQ(last.force[1], 3);
+  EXPECT_NEAR(last.force_max, std::sqrt(40. * 40 + 4 * 4), 1e-12);
+  EXPECT_EQ(last.seen[1], 1);
+  EXPECT_EQ(last.link, 2);
+  EXPECT_EQ(last.estimator, "ekf");
+  EXPECT_EQ(last.site, "tool");
+  EXPECT_EQ(emitter.counts(0).sent, 6) << "estimates and detections";
+  EXPECT_EQ(emitter.counts().sent, 12);
+}
+
 TEST(EmitterTest, WhatIsNoNumberDoesNotHideAPeak) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const int bad : {101, 102, 105}) {  // first, in the middle and last of their message

@@ -41,7 +41,7 @@ std::vector<std::byte> bytes_of(const Message& m) {
   return bytes;
 }
 
-// each of the six types with something in it
+// each of our types with something in it
 inline summary_t summary() {
   summary_t m{};
   m.program = "tauext-bench";
@@ -58,6 +58,17 @@ inline detection_t detection() {
   m.score = 2.5;
   m.estimator = "ekf";
   m.detector = "pan_tompkins";
+  return m;
+}
+inline force_t force() {
+  force_t m{};
+  m.utime = 7000;
+  m.t = 7e-3;
+  m.samples = 5;
+  m.force[2] = -30;
+  m.link = 4;
+  m.estimator = "mo2";
+  m.site = "end_effector";
   return m;
 }
 inline estimate_t estimate() {

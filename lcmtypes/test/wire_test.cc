@@ -19,6 +19,7 @@ TEST(Wire, HashesAreThoseThatLogsWereWrittenWith) {
   EXPECT_EQ(static_cast<std::uint64_t>(sample_t::getHash()), 0x4fbf6b47af6662abULL);
   EXPECT_EQ(static_cast<std::uint64_t>(estimate_t::getHash()), 0xfbbbd82d4b247158ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(detection_t::getHash()), 0x09b589357ed20fa0ULL);
+  EXPECT_EQ(static_cast<std::uint64_t>(force_t::getHash()), 0xbf3937e8371897e0ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(summary_t::getHash()), 0x2fb8b5fdaf154790ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(iiwa_status_t::getHash()), 0xf16fb804284abca3ULL);
   EXPECT_EQ(static_cast<std::uint64_t>(panda_status_t::getHash()), 0x19571cdf4d82fae6ULL);
@@ -27,8 +28,9 @@ TEST(Wire, HashesAreThoseThatLogsWereWrittenWith) {
 TEST(Wire, NoTwoTypesHaveTheSameMembers) {
   const std::set<std::int64_t> hashes = {sample_t::getHash(),      estimate_t::getHash(),
                                          detection_t::getHash(),   summary_t::getHash(),
-                                         iiwa_status_t::getHash(), panda_status_t::getHash()};
-  EXPECT_EQ(hashes.size(), 6u);
+                                         iiwa_status_t::getHash(), panda_status_t::getHash(),
+                                         force_t::getHash()};
+  EXPECT_EQ(hashes.size(), 7u);
 }
 
 TEST(Wire, WhatWasEncodedIsDecoded) {
@@ -44,6 +46,11 @@ TEST(Wire, WhatWasEncodedIsDecoded) {
   detection_t d{};
   ASSERT_EQ(decode(bytes_of(detection()), d), Reject::kNone);
   EXPECT_EQ(d.detector, "pan_tompkins");
+  force_t f{};
+  ASSERT_EQ(decode(bytes_of(force()), f), Reject::kNone);
+  EXPECT_EQ(f.force[2], -30);
+  EXPECT_EQ(f.link, 4);
+  EXPECT_EQ(f.site, "end_effector");
 }
 
 TEST(Wire, NotANumberAndInfinityTravel) {
@@ -85,6 +92,7 @@ TEST(Wire, EveryShorterAndEveryLongerMessageIsRejected) {
   };
   check(estimate());
   check(detection());
+  check(force());
   check(summary());
 }
 

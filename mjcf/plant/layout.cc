@@ -140,7 +140,7 @@ Layout layout_of(const mjModel& m, const mjData& d) {
 }
 
 BodyPoint end_effector_of(const mjModel& m, int last) {
-  for (const char* name : {"end_effector", "attachment_site"}) {
+  for (const char* name : {kEndEffector, "attachment_site"}) {
     const int site = mj_name2id(&m, mjOBJ_SITE, name);
     if (site >= 0) return {m.site_bodyid[site], Eigen::Vector3d::Map(m.site_pos + 3 * site)};
   }

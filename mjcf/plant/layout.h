@@ -35,6 +35,9 @@ struct BodyPoint {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< [m] in its frame
 };
 
+/// The name of the point that touches the outside, in every arm.
+inline constexpr const char* kEndEffector = "end_effector";
+
 /// The site `end_effector`, else `attachment_site`, else the centre of mass of the body behind the
 /// last of the arm's degrees of freedom.
 BodyPoint end_effector_of(const mjModel& m, int last);

@@ -198,13 +198,12 @@ void set_points(const mjModel& m, const std::vector<Place>& places, ArmTree& tre
   for (int i = 1; i < m.nbody; ++i) add(mjOBJ_BODY, i, i, Vec<3>::Zero());
   const BodyPoint end = end_effector_of(m, m.nv - 1);
   const Place& place = places[static_cast<std::size_t>(end.body)];
-  tree.end_effector = {place.joint, place.p + place.R * end.at};
+  tree.points.insert({kEndEffector, {place.joint, place.p + place.R * end.at}});
 }
 
 }  // namespace
 
 const ArmPoint& ArmTree::point(const std::string& name) const {
-  if (name.empty()) return end_effector;
   return find_known(points, "site", name, [](const auto& p) { return p.first; }).second;
 }
 

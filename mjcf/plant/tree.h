@@ -37,10 +37,10 @@ struct ArmTree {
   /// inverse of its inertia, over these poses.
   Eigen::VectorXd mobility;
   Vec<3> base = Vec<3>::Zero();  ///< [m] the tree's origin in the world, whose axes it has
-  std::map<std::string, ArmPoint> points;  ///< sites, and origins of bodies, that joints move
-  ArmPoint end_effector;                   ///< as Plant::end_effector() says
+  /// Sites, and origins of bodies, that joints move; and kEndEffector.
+  std::map<std::string, ArmPoint> points;
 
-  /// A point by its name; "" is the end effector.
+  /// A point by its name.
   /// @throws std::invalid_argument listing the known ones
   const ArmPoint& point(const std::string& name) const;
 };

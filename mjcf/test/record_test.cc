@@ -215,7 +215,7 @@ TEST(Scenarios, AnUnknownNameListsTheKnownOnes) {
             "unknown scenario 'dance' of wallmobot3; known: free, step, ramp, sine, collision, "
             "in_motion, push, brisk_push, clamp, payload, contact, chirp");
   EXPECT_EQ(error_of([] { scenario("r2d2", "dance"); }),
-            "unknown robot 'r2d2'; known: testbed1, wallmobot3");
+            "unknown robot 'r2d2'; known: testbed1, wallmobot3, wallmobot6");
 }
 
 TEST(Scenarios, OfOneSeedAreTheSameAndOfTwoAreNot) {

@@ -53,8 +53,9 @@ TEST(Live, ACycleAllocatesNothing) {
   const Robot& r = robot("wallmobot3");
   const std::vector<Reading> readings = readings_of(trace);
   const std::vector<std::string> estimators = {"ekf", "mo2", "ndob"};
-  LiveStream stream(nullptr, streams_of(estimators, "contact_classifier"), 200);
-  LiveEstimation estimation(r, estimators, "contact_classifier", {}, trace, &stream);
+  LiveStream stream(nullptr, streams_of(estimators, "contact_classifier", kEndEffector), 200);
+  const auto forces = r.forces_at(kEndEffector, false);
+  LiveEstimation estimation(r, estimators, "contact_classifier", {}, trace, &stream, forces.get());
   estimation.take(readings[0]);
   EXPECT_EQ(allocations_of([&] {
               for (std::size_t k = 1; k < readings.size(); ++k) estimation.take(readings[k]);

@@ -110,6 +110,31 @@ TEST(StreamTableTest, TheSummaryTellsWhatWasLostAtTheEnd) {
   EXPECT_EQ(table.account().sent(), 201);
 }
 
+TEST(StreamTableTest, ForcesAreARowEachAndNoneIsLostUnseen) {
+  StreamTable table;
+  estimate_t e = estimate();
+  force_t f = force();
+  f.seen[0] = f.seen[2] = 1;
+  f.force[0] = 12.5;
+  f.force_max = 40;
+  for (int k = 0; k < 90; ++k) {
+    e.seq = f.seq = k;
+    table.take("TAUEXT_ESTIMATE_mo2", 0, 0, bytes_of(e));
+    if (k != 50) table.take("TAUEXT_FORCE", 0, 0, bytes_of(f));
+  }
+  EXPECT_EQ(table.account().lost, 1);
+  const std::string text = table.format(0);
+  EXPECT_TRUE(has(text, "mo2 at end_effector")) << text;
+  for (const char* cell : {" 12.500 ", " - ", " -30.000 ", " 40.000 "}) {
+    EXPECT_TRUE(has(text, cell)) << cell << " in\n" << text;
+  }
+  summary_t s = summary();
+  s.entry = "arm/step/mo2";
+  s.published = 100;  // estimates, and as many forces
+  table.take("TAUEXT_SUMMARY", 0, 0, bytes_of(s));
+  EXPECT_EQ(table.account().lost, 1 + 2 * 10);
+}
+
 TEST(StreamTableTest, MarksAndSummariesAreEvents) {
   StreamTable table;
   detection_t d = detection();

@@ -137,7 +137,8 @@ TEST_F(Registry, RefusesASpecificationThatIsUnknownOrTakenOrOutOfRange) {
 // the last one: after it nothing can be registered
 TEST_F(Registry, FailsWhenTheRobotsAreFirstAskedForAndSaysWhy) {
   register_specification("r2d2", "mo2:bandwidth=50");
-  EXPECT_EQ(error_of([] { robots(); }), "unknown robot 'r2d2'; known: wallmobot3, testbed1");
+  EXPECT_EQ(error_of([] { robots(); }),
+            "unknown robot 'r2d2'; known: wallmobot3, testbed1, wallmobot6");
   detail::registered_specifications() = {{"wallmobot3", "mo2"}};
   // as tauext-bench does: exit code 2 and a line
   CLI::App app("", "own-bench");
@@ -165,7 +166,7 @@ TEST(RegistryDeathTest, AScenarioOfARobotThatDoesNotExistIsRefused) {
     std::exit(0);
   };
   EXPECT_EXIT(misspelt(), testing::ExitedWithCode(0),
-              "unknown robot 'wallmobto3'; known: testbed1, wallmobot3");
+              "unknown robot 'wallmobto3'; known: testbed1, wallmobot3, wallmobot6");
 }
 
 }  // namespace

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+#include <cmath>
+
 #include "bench/roster/robots.h"
 #include "estimators/wallmobot3.h"
+#include "mjcf/plant/plant.h"
 
 namespace tauext::test {
 namespace {
@@ -25,6 +29,32 @@ TEST(Suite, TheTruthScoresExactlyZeroOnEveryScenario) {
       EXPECT_EQ(score.get(Metric::kFinal).value_or(0), 0);
     }
   }
+}
+
+// mo2's: what its torque error means through MuJoCo's Jacobian
+TEST(Suite, TheForceIsExactForTheTruthAndAsGoodAsTheTorqueElse) {
+  const Score truth = suite().score({"wallmobot3", "push", "truth", ""});
+  ASSERT_TRUE(truth.get(Metric::kForce));
+  EXPECT_LT(*truth.get(Metric::kForce), 1e-9);
+  EXPECT_FALSE(suite().score({"wallmobot3", "step", "truth", ""}).get(Metric::kForce));
+  const Entry entry("wallmobot3", "push", "mo2", "");
+  const Suite::Run run = suite().run(entry);
+  Plant plant(entry.robot().load_for(entry.scenario()));
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < run.trace.size(); ++k) {
+    if (run.trace.t[k] < entry.scenario().score_from) continue;
+    plant.set_state(run.trace.q.col(k), run.trace.qd.col(k));
+    const Eigen::VectorXd error = run.output.tau_ext.col(k) - run.trace.tau_ext.col(k);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> by_force;
+    by_force.setThreshold(1e-9);  // of a plane arm nothing is seen across
+    by_force.compute(plant.end_effector_jacobian().transpose());
+    sum += by_force.solve(error).squaredNorm();
+    ++count;
+  }
+  const double expected = std::sqrt(sum / count);
+  EXPECT_GT(expected, 0.01);
+  EXPECT_NEAR(*suite().score(entry).get(Metric::kForce), expected, 0.1 * expected);
 }
 
 TEST(Suite, TheDelayedTruthScoresExactlyItsDelay) {

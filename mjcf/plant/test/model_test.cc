@@ -11,7 +11,7 @@ namespace {
 
 TEST(LoadRobot, AnUnknownNameListsTheKnownOnes) {
   EXPECT_EQ(error_of([] { load_robot("wallmobot9"); }),
-            "unknown robot 'wallmobot9'; known: testbed1, wallmobot3");
+            "unknown robot 'wallmobot9'; known: testbed1, wallmobot3, wallmobot6");
   EXPECT_EQ(error_of([] { load_robot("wallmobot3", "garden"); }),
             "unknown scene 'garden'; known: load, obstacle, panel_obstacle");
 }

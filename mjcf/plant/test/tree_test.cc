@@ -7,12 +7,14 @@
 #include <mujoco/mujoco.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <stdexcept>
 
 #include "estimators/wallmobot3.h"
+#include "mjcf/plant/plant.h"
 #include "mjcf/plant/test/arm_dynamics.h"
 
 namespace tauext::test {
@@ -104,6 +106,7 @@ void expect_mujocos_terms(const Model& model, int states, unsigned seed) {
 TEST(Tree, HasMuJoCosTermsOfEveryRobotOfOurs) {
   expect_mujocos_terms<3>(load_robot("wallmobot3"), 1000, 1);
   expect_mujocos_terms<1>(load_robot("testbed1"), 1000, 2);
+  expect_mujocos_terms<6>(load_robot("wallmobot6"), 1000, 3);
 }
 
 TEST(Tree, HasMuJoCosTermsOfRandomTrees) {
@@ -166,6 +169,48 @@ TEST(Tree, IsTheClosedFormOfWallMoBot3) {
     ASSERT_LT((a.dqdd_dq - b.dqdd_dq).norm(), 1e-9 * (1 + b.dqdd_dq.norm()));
     ASSERT_LT((a.dqdd_dqd - b.dqdd_dqd).norm(), 1e-9 * (1 + b.dqdd_dqd.norm()));
     ASSERT_LT((a.dqdd_dtau_ext - b.dqdd_dtau_ext).norm(), 1e-9 * b.dqdd_dtau_ext.norm());
+  }
+}
+
+TEST(Tree, OfWallMoBot6IsWallMoBot3WhereTheOtherJointsRest) {
+  const TreeModel<6> whole = tree_model<6>(load_robot("wallmobot6"));
+  const WallMoBot3 planar;
+  Random random(4);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec<3> q = random.vector<3>(3), qd = random.vector<3>(2);
+    const auto wide = [](const Vec<3>& v) { return Vec<6>(0, v[0], v[1], v[2], 0, 0); };
+    const Mat<3> B = planar.inertia(q);
+    const Vec<3> n = planar.bias(q, qd);
+    const Mat<3> B6 = whole.inertia(wide(q)).block<3, 3>(1, 1);
+    const Vec<3> n6 = whole.bias(wide(q), wide(qd)).segment<3>(1);
+    ASSERT_LT((B6 - B).norm(), 1e-10 * B.norm());
+    ASSERT_LT((n6 - n).norm(), 1e-10 * (1 + n.norm()));
+  }
+}
+
+// Table I as it is printed, with a_i-1 and alpha_i-1 before theta_i and d_i; 0.9 m of platform
+// below it, and delta_x = 0.2025 m beyond frame 7
+TEST(Tree, OfWallMoBot6EndsWhereTableIPutsIt) {
+  constexpr double kHalf = 1.5707963267948966, kGamma = 0.3458;
+  const Model model = load_robot("wallmobot6");
+  Plant plant(model);
+  Random random(5);
+  for (int k = 0; k < 100; ++k) {
+    const Vec<6> q = random.vector<6>(2);
+    const double table[7][4] = {{0, 0, q[0], 0},
+                                {0.06, 0, q[1] - kHalf, -kHalf},
+                                {0.5, 0, -q[1] + kGamma, 0},
+                                {0.195, 0, q[2] + kHalf - kGamma, 0},
+                                {0.85, 0, q[3] + kHalf, 0},
+                                {0.93, 0.109, q[4] + kHalf, kHalf},
+                                {0, 0, q[5] - kHalf, -kHalf}};
+    Eigen::Isometry3d T(Eigen::Translation3d(0, 0, 0.9));
+    for (const auto& [a, d, theta, alpha] : table) {
+      T = T * Eigen::AngleAxisd(alpha, Vec<3>::UnitX()) * Eigen::Translation3d(a, 0, 0) *
+          Eigen::AngleAxisd(theta, Vec<3>::UnitZ()) * Eigen::Translation3d(0, 0, d);
+    }
+    plant.set_state(q, Vec<6>::Zero());
+    ASSERT_LT((plant.end_effector().position - T * Vec<3>(0.2025, 0, 0)).norm(), 1e-12);
   }
 }
 

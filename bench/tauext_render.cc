@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-render: a picture of a robot.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bench/program/program.h"
+#include "bench/roster/robots.h"
+#include "mjcf/picture/picture.h"
+
+namespace {
+
+using namespace tauext;
+
+struct Flags {
+  std::string robot, lock, out, size = "1200x900";
+  std::vector<double> q;
+  View view;
+};
+
+void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("--robot", f.robot, "robot, or a file of MJCF or URDF")
+      ->type_name("NAME|FILE")
+      ->required();
+  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX");
+  app.add_option("--q", f.q, "pose, a number for each joint [rad, m]; else 0, of a file its home")
+      ->delimiter(',')
+      ->type_name("Q1,Q2..");
+  app.add_option("--camera", f.view.camera, "camera of the robot's file, like side or front");
+  app.add_option("--azimuth", f.view.azimuth, "without a camera: look from x to y [degrees]")
+      ->capture_default_str();
+  app.add_option("--elevation", f.view.elevation, "and up [degrees]")->capture_default_str();
+  app.add_option("--size", f.size, "[pixels]")->type_name("WxH")->capture_default_str();
+  app.add_option("--out", f.out, "PNG to write; - is standard output")->required();
+}
+
+int render(Flags& f) {
+  int end = 0;
+  if (std::sscanf(f.size.c_str(), "%dx%d%n", &f.view.width, &f.view.height, &end) != 2 ||
+      f.size.c_str()[end] != '\0') {
+    throw std::invalid_argument(fmt::format("--size {}: width x height, like 1200x900", f.size));
+  }
+  const Robot& r = robot(with_lock(f.robot, f.lock));
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(r.dof());
+  if (r.is_from_file()) q = r.home();
+  if (!f.q.empty()) q = Eigen::VectorXd::Map(f.q.data(), static_cast<Eigen::Index>(f.q.size()));
+  write_picture(r.load_for(quiet()), q, f.view, f.out);
+  return kGood;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Draws a robot in a pose and writes a PNG.\n\n"
+      "  tauext-render --robot wallmobot3 --camera front --out wallmobot3.png\n",
+      "tauext-render");
+  Flags flags;
+  add_flags(app, flags);
+  return run_program(app, argc, argv, [&] { return render(flags); });
+}

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-replay.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bench/test/programs.h"
+
+namespace tauext::test {
+namespace {
+
+TEST_F(Programs, ReplayWritesOneRowPerSampleAndPrintsTheErrors) {
+  run("tauext-record --robot wallmobot3 --scenario collision --out log.csv");
+  const Outcome o =
+      run("tauext-replay log.csv --robot wallmobot3 --estimator ekf,truth --detector pan_tompkins "
+          "--out est.csv");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("recall 1")) << o.text;
+  const std::string est = content("est.csv");
+  EXPECT_EQ(est.substr(0, est.find('\n')),
+            "t,ekf_tau_ext1,ekf_tau_ext2,ekf_tau_ext3,ekf_status,ekf_pan_tompkins_mark,"
+            "truth_tau_ext1,truth_tau_ext2,truth_tau_ext3,truth_status,truth_pan_tompkins_mark");
+  EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 30001);
+  const Outcome one = run(
+      "tauext-replay log.csv --robot wallmobot3 --estimator ndob --detector pan_tompkins --out -");
+  EXPECT_EQ(one.text.substr(0, one.text.find('\n')),
+            "t,ndob_tau_ext1,ndob_tau_ext2,ndob_tau_ext3,ndob_status,pan_tompkins_mark");
+}
+
+// by the truth of a touch without a moment, at the end effector of an arm that sees all of it
+TEST_F(Programs, ReplayFindsTheForceAndTheLink) {
+  const std::string arm = " --robot " TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
+  run("tauext-record" + arm + " --scenario blow --out log.csv");
+  const Outcome o = run("tauext-replay log.csv" + arm +
+                        " --estimator truth --wrench end_effector "
+                        "--out est.csv");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("truth: the largest force is ")) << o.text;
+  EXPECT_TRUE(o.says("joint 7 carries") || o.says("joint 6 carries")) << o.text;
+  std::istringstream est(content("est.csv"));
+  std::string line, title;
+  std::getline(est, line);
+  std::map<std::string, int> column;
+  for (std::istringstream titles(line); std::getline(titles, title, ',');) {
+    const int at = static_cast<int>(column.size());
+    column[title] = at;
+  }
+  int touched = 0;
+  double largest = 0;
+  while (std::getline(est, line)) {
+    std::vector<double> x;
+    for (std::istringstream cells(line); std::getline(cells, title, ',');)
+      x.push_back(title.empty() ? 0 : std::stod(title));
+    x.resize(column.size());
+    const auto of = [&](const char* name) {
+      return x[static_cast<std::size_t>(column.at(std::string("truth_") + name))];
+    };
+    largest = std::max(largest, std::hypot(of("fx"), of("fy"), of("fz")));
+    touched += of("link") > 0;
+    ASSERT_LT(of("left_over"), 1e-9) << line;
+    ASSERT_LT(std::hypot(of("mx"), of("my"), of("mz")), 1e-8) << line;
+    ASSERT_GT(of("seen_mz"), 1 - 1e-9);
+  }
+  EXPECT_GT(largest, 5) << "N";
+  EXPECT_GT(touched, 5);
+  EXPECT_EQ(run("tauext-replay log.csv" + arm + " --estimator mo2 --wrench nose --out x.csv").code,
+            2);
+  EXPECT_FALSE(exists("x.csv"));
+}
+
+TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
+  write("log.csv",
+        "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\n"
+        "0,0,0,0,0,0,0,1,2,3\n"
+        "0.001,0,0,0,0,0,inf,1,2,3\n"
+        "0.002,0,0\n"
+        "0.003,0,0,0,0,0,0,1,2,3\n");
+  const Outcome o = run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out est.csv");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("skipped 2 rows")) << o.text;
+  EXPECT_TRUE(o.says("line 3: a field is not finite")) << o.text;
+  const std::string est = content("est.csv");
+  EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 3);
+  const Outcome truth =
+      run("tauext-replay log.csv --robot wallmobot3 --estimator truth --out e2.csv");
+  EXPECT_EQ(truth.code, 2);
+  EXPECT_TRUE(truth.says("needs columns tau_ext1..")) << truth.text;
+  const Outcome twice =
+      run("tauext-replay log.csv --robot wallmobot3 --estimator ndob,ndob --out e2.csv");
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_TRUE(twice.says("'ndob' is named twice")) << twice.text;
+}
+
+TEST_F(Programs, ReplayTakesTheTorqueAsTheLogsColumnsSay) {
+  run("tauext-record --robot testbed1 --scenario identify --out log.csv");
+  const std::string log = content("log.csv");
+  const std::string replay = "tauext-replay log.csv --robot testbed1 --out - --estimator mo2";
+  const auto rows = [](const Outcome& o) {  // without the names of estimators
+    return o.text.substr(0, o.text.find("\nestimator")).substr(o.text.find('\n'));
+  };
+  const Outcome held = run(replay), told = run(replay + " --torque instant");
+  write("log.csv", "t,q1,qd1,tau_instant1,tau_ext1,contact" + log.substr(log.find('\n')));
+  EXPECT_TRUE(rows(run(replay)) == rows(told));
+  EXPECT_TRUE(rows(run(replay + " --torque held")) == rows(held));
+  EXPECT_TRUE(rows(told) != rows(held));
+}
+
+TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
+  run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
+  write("empty.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\nx\n");
+  write("two.csv", "t,q1,q2,qd1,qd2,tau1,tau2\n0,1,2,3,4,5,6\n");
+  const Outcome empty =
+      run("tauext-replay empty.csv --robot wallmobot3 --estimator ndob --out est.csv");
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_TRUE(empty.says("empty.csv: no usable row (1 skipped")) << empty.text;
+  const Outcome two =
+      run("tauext-replay two.csv --robot wallmobot3 --estimator ndob --out est.csv");
+  EXPECT_EQ(two.code, 2);
+  EXPECT_TRUE(two.says("wallmobot3 has 3 joints, the samples have 2")) << two.text;
+  EXPECT_FALSE(exists("est.csv"));
+}
+
+TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
+  // milliseconds in place of seconds: every sample lies beyond the longest gap
+  std::string log = "\xEF\xBB\xBFt,q1,qd1,tau1\n";  // with a byte order mark
+  for (int k = 0; k < 100; ++k) log += std::to_string(k) + ",0.1,0,115\n";
+  write("ms.csv", log);
+  const Outcome o = run("tauext-replay --robot testbed1 --estimator ekf,ndob ms.csv --out est.csv");
+  EXPECT_EQ(o.code, 1) << o.text;
+  EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
+}
+
+TEST_F(Programs, ReplayScoresFromATimeWithinTheLog) {
+  ASSERT_EQ(run("tauext-record --robot testbed1 --scenario hold --out log.csv").code, 0);
+  const std::string replay =
+      "tauext-replay log.csv --robot testbed1 --estimator mo1 --out e.csv --score_from ";
+  for (const std::string from : {"1e9", "inf", "nan"}) {
+    const Outcome o = run(replay + from);
+    EXPECT_EQ(o.code, 2) << o.text;
+    EXPECT_TRUE(o.says("the log ends at")) << o.text;
+    EXPECT_FALSE(exists("e.csv"));
+  }
+  EXPECT_EQ(run(replay + "1").code, 0);
+}
+
+TEST_F(Programs, RenderDrawsARobotAndSaysWhatItCannot) {
+  const Outcome o =
+      run("tauext-render --robot wallmobot6 --q 0.3,0,0,0,0,0 --camera front --size 160x120 --out "
+          "a.png");
+  if (o.says("pictures are left out of this build")) GTEST_SKIP() << o.text;
+  EXPECT_EQ(o.code, 0) << o.text;
+  const std::string png = content("a.png");
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_GT(png.size(), 4000u) << "not all of one colour";
+  run("tauext-render --robot wallmobot6 --q 0,0,0,0,0,0 --camera front --size 160x120 --out b.png");
+  EXPECT_NE(png, content("b.png")) << "another pose";
+  const std::string arm = "tauext-render --robot " TAUEXT_EXAMPLES "/two_arms.urdf ";
+  EXPECT_EQ(run(arm + "--out c.png").code, 0) << "without shapes or cameras";
+  EXPECT_EQ(run(arm + "--q 1,2 --out d.png").code, 2);
+  EXPECT_EQ(run(arm + "--camera nose --out d.png").code, 2);
+  EXPECT_EQ(run(arm + "--size 1x1 --out d.png").code, 2);
+  EXPECT_FALSE(exists("d.png"));
+}
+
+}  // namespace
+}  // namespace tauext::test

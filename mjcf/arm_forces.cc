@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/arm_forces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "mjcf/plant/tree.h"
+
+namespace tauext {
+namespace {
+
+// Arms of fewer joints have the rest without a body: they carry nothing, and compile once.
+constexpr int kMostJoints = 8;
+
+using Arm = TreeModel<kMostJoints>;
+using Numbers = Vec<kMostJoints>;  // one of each joint
+
+Arm widened(const ArmTree& tree) {
+  const auto n = static_cast<Eigen::Index>(tree.joints.size());
+  Arm::Parameters p;
+  std::copy(tree.joints.begin(), tree.joints.end(), p.joints.begin());
+  p.coordinates.topLeftCorner(n, n) = tree.coordinates;
+  p.offset.head(n) = tree.offset;
+  return Arm(p);
+}
+
+class Forces final : public ArmForces {
+ public:
+  Forces(const ArmTree& tree, const ArmForceOptions& o)
+      : joints_(static_cast<Eigen::Index>(tree.joints.size())),
+        arm_(widened(tree)),
+        at_(tree.point(o.site)),
+        force_(arm_, at_, {.moment = o.moment}) {
+    if (o.moment && joints_ < kJointsOfMoment)
+      throw std::invalid_argument("force and moment at a point want 6 joints or more");
+    if (o.limits.size() == 0) return;
+    Numbers limits = Numbers::Ones();
+    limits.head(joints_) = o.limits;
+    touch_.emplace(arm_, limits);
+  }
+
+  SiteForce at_site(const double* q, const double* tau_ext) const noexcept override {
+    return force_(wide(q), wide(tau_ext));
+  }
+  TouchPlace touch(const double* q, const double* tau_ext) const noexcept override {
+    return touch_ ? (*touch_)(wide(q), wide(tau_ext)) : TouchPlace();
+  }
+  Eigen::VectorXd torque(const Eigen::VectorXd& q, const Vec<3>& f) const override {
+    const auto J = arm_.jacobian(wide(q.data()), at_.joint, at_.place);
+    return -(J.topRows<3>().transpose() * f).head(joints_);
+  }
+
+ private:
+  Numbers wide(const double* v) const noexcept {
+    Numbers out = Numbers::Zero();
+    for (Eigen::Index i = 0; i < joints_; ++i) out[i] = v[i];
+    return out;
+  }
+
+  Eigen::Index joints_;
+  Arm arm_;
+  ArmPoint at_;
+  ForceAtSite<kMostJoints> force_;
+  std::optional<TouchFinder<kMostJoints>> touch_;
+};
+
+}  // namespace
+
+std::unique_ptr<const ArmForces> arm_forces(const Model& arm, const ArmForceOptions& o) {
+  const ArmTree tree = tree_of(arm);
+  if (tree.joints.size() > kMostJoints)
+    throw std::invalid_argument(
+        fmt::format("{} joints: forces are found of 1 to {}", tree.joints.size(), kMostJoints));
+  return std::make_unique<Forces>(tree, o);
+}
+
+}  // namespace tauext
