@@ -53,9 +53,6 @@ function(tauext_program name source)
   target_link_options(${name} PRIVATE -Wl,--as-needed)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} OPTIONAL)  # ci/bench does not build them all
-  if(CMAKE_CXX_FLAGS MATCHES "fsanitize")  # minutes for what no test runs there
-    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
-  endif()
 endfunction()
 
 # tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [FAST] [PROPERTIES p v...] [LONG f]): a GoogleTest
@@ -64,10 +61,13 @@ endfunction()
 # GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
 function(tauext_test name)
   cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;PROPERTIES" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    target_sources(${name} PRIVATE ${ARG_RELEASE})
+    list(APPEND ARG_SOURCES ${ARG_RELEASE})
   endif()
+  if(NOT ARG_SOURCES)
+    return()
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} tauext_flags tauext_estimators fmt::fmt GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_options(${name} PRIVATE -Wno-array-bounds)

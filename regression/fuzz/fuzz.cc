@@ -23,7 +23,6 @@
 
 #include "bench/live/stream_table.h"
 #include "bench/logs/lcm_trace.h"
-#include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/degradation.h"
 #include "lcmtypes/receive/arrivals.h"
@@ -34,16 +33,8 @@
 #include "mjcf/trace/trace.h"
 #include "regression/accuracy/golden_file.h"
 #include "regression/counts/counts.h"
-#include "regression/fuzz/any_arm.h"
 
 namespace tauext {
-
-// what thresholds are read for
-const Robot& robot(std::string_view name) {
-  static const AnyArm arm;
-  if (name != arm.name()) throw std::invalid_argument("unknown robot");
-  return arm;
-}
 
 namespace {
 
