@@ -41,17 +41,18 @@ class Golden {
           fmt::format("'{}' is no regular expression: {}", o.filter, e.what()));
     }
     for (const Entry& e : golden_entries(o.selection)) {
-      add(e, e.group(), wanted);
-      if (also_degraded(e)) add(e, e.group() + kDegraded, wanted);
+      add(e, "", wanted);
+      if (also_degraded(e)) add(e, kDegraded, wanted);
     }
     if (groups_.empty()) {
       throw std::invalid_argument(
           fmt::format("the filter '{}' matches nothing; see --list", o.filter));
     }
     if (o.seeds.empty()) throw std::invalid_argument("golden metrics need a seed");
-    for (const auto& [name, ignored] : groups_) {
-      for (std::size_t s = 0; s < o.seeds.size(); ++s) jobs_.emplace_back(name, s);
-    }
+    for (const auto& [name, ignored] : groups_) jobs_.push_back(name);
+    std::stable_sort(jobs_.begin(), jobs_.end(), [&](const auto& a, const auto& b) {
+      return cost(a) > cost(b);  // so that no thread is left alone at the end
+    });
   }
 
   std::string run() {
@@ -70,53 +71,67 @@ class Golden {
     const auto* const end = std::end(kAlsoDegraded);
     return !own_sensors() && std::find(std::begin(kAlsoDegraded), end, e.scenario().name) != end;
   }
-  void add(const Entry& e, const std::string& group, const std::regex& wanted) {
-    if (std::regex_search(name_in(group, e), wanted)) groups_[group].push_back(e);
+  void add(const Entry& e, const std::string& how, const std::regex& wanted) {
+    if (std::regex_search(name_of(e, how), wanted)) groups_[e.group()][how].push_back(e);
+  }
+  static std::string name_of(const Entry& e, const std::string& how) {
+    return e.group() + how + e.name().substr(e.group().size());
+  }
+  // [s] simulated, by all entries
+  double cost(const std::string& group) const {
+    std::size_t entries = 0;
+    for (const auto& [how, rivals] : groups_.at(group)) entries += rivals.size();
+    return groups_.at(group).begin()->second.front().scenario().duration *
+           static_cast<double>(entries);
   }
 
-  static bool degraded(const std::string& group) { return group.ends_with(kDegraded); }
-  static std::string name_in(const std::string& group, const Entry& e) {
-    return group + e.name().substr(e.group().size());
-  }
-
-  SuiteOptions options(const std::string& group, std::size_t seed) const {
+  SuiteOptions options(const std::string& how, std::size_t seed) const {
     SuiteOptions s = o_.suite;
-    if (s.sensors.ideal()) s.sensors = degraded(group) ? degraded_sensors() : golden_sensors();
+    if (s.sensors.ideal()) s.sensors = how == kDegraded ? degraded_sensors() : golden_sensors();
     s.sensors.seed = o_.seeds[seed];
     return s;
   }
 
-  void score(const std::pair<std::string, std::size_t>& job) {
-    Suite suite(options(job.first, job.second));
-    for (const Entry& e : groups_.at(job.first)) {
-      Score score = suite.score(e);
-      score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
-      const std::lock_guard lock(mutex_);
-      const auto put = [&](const std::string& key, double value) {
-        auto& values = table_[name_in(job.first, e)][key];
-        values.resize(o_.seeds.size(), std::nan(""));
-        values[job.second] = value;
-      };
-      for (const MetricRow& metric : kMetrics) {
-        const auto value = score.get(metric.metric);
-        if (!metric.is(MetricRow::kGate) || !value) continue;
-        put(key_of(metric.metric), *value);
-        const std::vector<double>& joints = score.joints(metric.metric);
-        if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
-        for (std::size_t j = 0; j < joints.size(); ++j) {
-          put(key_of(metric.metric, static_cast<int>(j) + 1), joints[j]);
-        }
+  void score(const std::string& group) {
+    Suite suite(options("", 0));
+    for (const auto& [how, rivals] : groups_.at(group)) {
+      for (std::size_t seed = 0; seed < o_.seeds.size(); ++seed) {
+        suite.set_sensors(options(how, seed).sensors);
+        for (const Entry& e : rivals) score(suite, e, name_of(e, how), seed);
+      }
+    }
+  }
+
+  void score(Suite& suite, const Entry& e, const std::string& name, std::size_t seed) {
+    Score score = suite.score(e);
+    score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
+    const std::lock_guard lock(mutex_);
+    const auto put = [&](const std::string& key, double value) {
+      auto& values = table_[name][key];
+      values.resize(o_.seeds.size(), std::nan(""));
+      values[seed] = value;
+    };
+    for (const MetricRow& metric : kMetrics) {
+      const auto value = score.get(metric.metric);
+      if (!metric.is(MetricRow::kGate) || !value) continue;
+      put(key_of(metric.metric), *value);
+      const std::vector<double>& joints = score.joints(metric.metric);
+      if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        put(key_of(metric.metric, static_cast<int>(j) + 1), joints[j]);
       }
     }
   }
 
   std::string text() const {
     std::set<std::string> contacts;
-    for (const auto& [group, rivals] : groups_) {
-      if (rivals.front().scenario().has_obstacle()) contacts.insert(group);
+    for (const auto& [group, ways] : groups_) {
+      for (const auto& [how, rivals] : ways) {
+        if (rivals.front().scenario().has_obstacle()) contacts.insert(group + how);
+      }
     }
-    const auto described = [&](const std::string& group) {
-      return describe({options(group, 0).sensors, o_.suite.model_error});
+    const auto described = [&](const std::string& how) {
+      return describe({options(how, 0).sensors, o_.suite.model_error});
     };
     std::string out = fmt::format(
         "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n{}# contacts: {}\n# built: {}\n"
@@ -135,8 +150,9 @@ class Golden {
   }
 
   const GoldenOptions& o_;
-  std::map<std::string, std::vector<Entry>> groups_;
-  std::vector<std::pair<std::string, std::size_t>> jobs_;  // group and number of the seed
+  // by group, and "" or kDegraded
+  std::map<std::string, std::map<std::string, std::vector<Entry>>> groups_;
+  std::vector<std::string> jobs_;  // groups, the dearest first
   Table table_;
   std::mutex mutex_;  // of table_
 };

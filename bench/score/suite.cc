@@ -21,6 +21,13 @@ double allocations_per_step(Runner& runner) {
   return static_cast<double>(allocations() - before) / Runner::kBatch;
 }
 
+constexpr const char* kClosedLoop = "closed loop of ";
+
+// of the truth that an entry meets
+std::string key_of(const Entry& e) {
+  return e.closed_loop() ? kClosedLoop + e.name() : e.group();
+}
+
 // [N m] a joint that carries next to nothing is disturbed by those that carry much
 Eigen::VectorXd slack(const Robot& r) {
   const Eigen::VectorXd small = r.small_torque();
@@ -63,34 +70,48 @@ DetectorSettings Suite::settings(const Entry& e) const {
                                     e.estimator(), e.detector())};
 }
 
-const Suite::Traces& Suite::traces(const Entry& e) {
-  const std::string key = e.closed_loop() ? e.name() : e.group();
-  const auto it = traces_.find(key);
-  if (it != traces_.end()) return it->second;
-  Traces t;
-  const Scenario& s = e.scenario();
-  Sensors sensors = sensors_for(s, options_.sensors);
-  t.ideal = simulate(
-      e.robot().load_for(s, options_.model_error), s, options_.recording, sensors,
-      e.closed_loop() ? e.robot().supervisor(e.estimator(), e.detector(), settings(e)) : nullptr);
-  if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
-  t.noisy = measure(t.ideal, sensors);
-  return traces_.emplace(key, std::move(t)).first->second;
+void Suite::set_sensors(const Sensors& sensors) {
+  const auto closed_loop = [](const auto& kept) { return kept.first.starts_with(kClosedLoop); };
+  std::erase_if(ideal_, closed_loop);
+  std::erase_if(of_ideal_, closed_loop);
+  if (sensors.ideal() != options_.sensors.ideal()) of_ideal_.clear();  // others are scored now
+  noisy_.clear();
+  of_noisy_.clear();
+  options_.sensors = sensors;
 }
 
-const Suite::Estimates& Suite::estimates(const Entry& e) {
-  if (estimated_ != e.group()) estimates_.clear();
+const Trace& Suite::ideal(const Entry& e) {
+  const std::string key = key_of(e);
+  const auto it = ideal_.find(key);
+  if (it != ideal_.end()) return it->second;
+  const Scenario& s = e.scenario();
+  return ideal_
+      .emplace(key, simulate(e.robot().load_for(s, options_.model_error), s, options_.recording,
+                             sensors_for(s, options_.sensors),
+                             e.closed_loop()
+                                 ? e.robot().supervisor(e.estimator(), e.detector(), settings(e))
+                                 : nullptr))
+      .first->second;
+}
+
+const Trace& Suite::noisy(const Entry& e) {
+  const std::string key = key_of(e);
+  const auto it = noisy_.find(key);
+  if (it != noisy_.end()) return it->second;
+  Sensors sensors = sensors_for(e.scenario(), options_.sensors);
+  if (sensors.ideal()) sensors.velocity_noise = options_.noise_probe;
+  return noisy_.emplace(key, measure(ideal(e), sensors)).first->second;
+}
+
+const Suite::Estimate& Suite::estimate(const Entry& e, const Trace& trace, Estimates& made) {
+  if (estimated_ != e.group()) of_ideal_.clear(), of_noisy_.clear();
   estimated_ = e.group();
-  const std::string key = (e.closed_loop() ? e.name() : "") + "/" + e.estimator();
-  const auto it = estimates_.find(key);
-  if (it != estimates_.end()) return it->second;
-  const Traces& t = traces(e);
-  const auto run = [&](const Trace& trace) {
-    return e.robot().runner(e.estimator(), "", trace)->run();
-  };
-  Estimates made{run(t.ideal), run(t.noisy), kNoValue};
-  made.force_rmse = force_rmse(e, is_ideal(e) ? made.ideal : made.noisy);
-  return estimates_.emplace(key, std::move(made)).first->second;
+  const std::string key = key_of(e) + "/" + e.estimator();
+  const auto it = made.find(key);
+  if (it != made.end()) return it->second;
+  Estimate m{e.robot().runner(e.estimator(), "", trace)->run(), kNoValue};
+  if (&trace == &scored(e)) m.force_rmse = force_rmse(e, m.output);
+  return made.emplace(key, std::move(m)).first->second;
 }
 
 double Suite::force_rmse(const Entry& e, const Output& out) {
@@ -106,7 +127,7 @@ bool Suite::is_ideal(const Entry& e) const {
 }
 
 const Trace& Suite::scored(const Entry& e) {
-  return is_ideal(e) ? traces(e).ideal : traces(e).noisy;
+  return is_ideal(e) ? ideal(e) : noisy(e);
 }
 
 std::unique_ptr<Runner> Suite::runner(const Entry& e, const Trace& trace) const {
@@ -126,31 +147,31 @@ Suite::Run Suite::run(const Entry& e) {
 }
 
 // with a wrong model an estimate may be as wrong as that: then it only has to be one
-std::string Suite::error(const Entry& e, const Output& ideal, const Output& noisy) {
-  const Traces& recorded = traces(e);
+std::string Suite::error(const Entry& e, const Output& of_ideal, const Output& of_noisy) {
   const std::string bad =
       error_for(e.scenario(), options_.model_error).none()
-          ? failure(recorded.ideal, ideal, e.scenario().score_from, slack(e.robot()))
-          : bad_status(recorded.ideal, ideal);
+          ? failure(ideal(e), of_ideal, e.scenario().score_from, slack(e.robot()))
+          : bad_status(ideal(e), of_ideal);
   if (!bad.empty()) return bad;
-  const std::string rejected = bad_status(recorded.noisy, noisy);
+  const std::string rejected = bad_status(noisy(e), of_noisy);
   return rejected.empty() ? "" : "under sensor noise: " + rejected;
 }
 
 Score Suite::score(const Entry& e) {
   const Scenario& s = e.scenario();
-  const Traces& recorded = traces(e);
-  const auto& [ideal, noisy, force_rmse] = estimates(e);
+  const Estimate& of_ideal = estimate(e, ideal(e), of_ideal_);
+  const Estimate& of_noisy = estimate(e, noisy(e), of_noisy_);
+  const Estimate& of_scored = is_ideal(e) ? of_ideal : of_noisy;
 
   Score score;
-  score.error = error(e, ideal, noisy);
+  score.error = error(e, of_ideal.output, of_noisy.output);
   const Trace& trace = scored(e);
-  Output out = is_ideal(e) ? ideal : noisy;
+  Output out = of_scored.output;
   score.counts = out.counts;
   score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
   add_error_metrics(trace, out, s.score_from, score);
-  if (!std::isnan(force_rmse)) score.set(Metric::kForce, force_rmse);
-  add_noise_metric(trace, ideal, noisy, s.score_from, score);
+  if (!std::isnan(of_scored.force_rmse)) score.set(Metric::kForce, of_scored.force_rmse);
+  add_noise_metric(trace, of_ideal.output, of_noisy.output, s.score_from, score);
   add_response_metrics(trace, out, s, score);
   if (!e.detector().empty()) {
     const std::vector<Detection> said = e.robot().detect(e.detector(), trace, out, settings(e));
@@ -159,10 +180,10 @@ Score Suite::score(const Entry& e) {
     add_score_metrics(said, score);
   }
   if (e.closed_loop()) {
-    add_reaction_metrics(recorded.ideal, traces(e.with_detector("")).ideal, score);
+    add_reaction_metrics(ideal(e), ideal(e.with_detector("")), score);
   }
   if (allocations_are_counted())
-    score.set(Metric::kAllocs, allocations_per_step(*runner(e, recorded.ideal)));
+    score.set(Metric::kAllocs, allocations_per_step(*runner(e, ideal(e))));
   return score;
 }
 

@@ -58,30 +58,34 @@ class Suite {
   /// A runner over the trace that was scored, for the clock.
   std::unique_ptr<Runner> runner(const Entry& entry);
 
-  const SuiteOptions& options() const { return options_; }  ///< as constructed
+  const SuiteOptions& options() const { return options_; }  ///< as constructed, but for sensors
+
+  /// From now on scores are of these sensors. Truths are kept, as no sensor moves an arm but in a
+  /// closed loop, and so is what estimators made of them.
+  void set_sensors(const Sensors& sensors);
 
  private:
-  struct Traces {
-    Trace ideal, noisy;  // noisy: by `sensors`, or by the noise probe if these are ideal
-  };
   DetectorSettings settings(const Entry& entry) const;
   std::unique_ptr<Runner> runner(const Entry& entry, const Trace& trace) const;
-  std::string error(const Entry& entry, const Output& ideal, const Output& noisy);
-  const Traces& traces(const Entry& entry);
-  // what an estimator makes of them, without a detector
-  struct Estimates {
-    Output ideal, noisy;
-    double force_rmse;  // [N] of the one that is scored; NaN where the trace has no force
+  std::string error(const Entry& entry, const Output& of_ideal, const Output& of_noisy);
+  const Trace& ideal(const Entry& entry);
+  const Trace& noisy(
+      const Entry& entry);  // by the sensors, or by the noise probe if they are ideal
+  // what an estimator makes of a trace, without a detector
+  struct Estimate {
+    Output output;
+    double force_rmse;  // [N]; NaN where the trace has no force, or is not scored
   };
-  const Estimates& estimates(const Entry& entry);
+  using Estimates = std::map<std::string, Estimate>;  // by trace and estimator
+  const Estimate& estimate(const Entry& entry, const Trace& trace, Estimates& made);
   double force_rmse(const Entry& entry, const Output& output);
   bool is_ideal(const Entry& entry) const;
   const Trace& scored(const Entry& entry);
 
   SuiteOptions options_;
-  std::map<std::string, Traces> traces_;        // by group; a closed loop's by name
+  std::map<std::string, Trace> ideal_, noisy_;  // by group; a closed loop's by name
   std::string estimated_;                       // the group of
-  std::map<std::string, Estimates> estimates_;  // by trace and estimator
+  Estimates of_ideal_, of_noisy_;
   std::map<std::string, std::unique_ptr<const ArmForces>> forces_;  // by robot
 };
 

@@ -83,7 +83,7 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
   // with 250 ns for the EKF: 65 ns for observers, 80 for the sliding mode, 280 for the Kalman
   // filter; 16 ns of each judge the sample
   const std::pair<const char*, double> kLeast[] = {{"mo1", 3.2}, {"ndob_wb", 3.2}, {"mo2", 2.9},
-                                                   {"mo3", 2.9}, {"smo", 2.7},     {"aob", 1.4},
+                                                   {"mo3", 2.9}, {"smo", 2.7},     {"aob", 1.25},
                                                    {"dkf", 0.85}};
   for (const auto& [name, least] : kLeast) {
     const double r = ratio(*runner("ekf"), *runner(name), least);
