@@ -55,13 +55,15 @@ function(tauext_program name source)
   install(TARGETS ${name} OPTIONAL)  # ci/bench does not build them all
 endfunction()
 
-# tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [FAST] [PROPERTIES p v...] [LONG f]): a GoogleTest
-# program, at -O1 as the precompiled headers of tests are, which takes a fifth less to compile; FAST: as what is measured.
-# RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; LONG (a filter of
-# GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
+# tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [DEFINITIONS d...] [FAST] [PROPERTIES p v...] [LONG f]):
+# a GoogleTest program, at -O1 as the precompiled headers of tests are, which takes a fifth less to compile; FAST: as what
+# is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; LONG
+# (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
 function(tauext_test name)
-  cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;PROPERTIES" ${ARGN})
-  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;DEFINITIONS;PROPERTIES" ${ARGN})
+  if(TAUEXT_ONLY_RELEASE_TESTS)
+    set(ARG_SOURCES ${ARG_RELEASE})
+  elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
     list(APPEND ARG_SOURCES ${ARG_RELEASE})
   endif()
   if(NOT ARG_SOURCES)
@@ -70,7 +72,8 @@ function(tauext_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} tauext_flags tauext_estimators fmt::fmt GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_options(${name} PRIVATE -Wno-array-bounds)
+  target_compile_options(${name} PRIVATE -Wno-array-bounds $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+  target_compile_definitions(${name} PRIVATE ${ARG_DEFINITIONS})
   if(NOT ARG_FAST)
     target_precompile_headers(${name} REUSE_FROM tauext_precompiled_test)
     target_compile_options(${name} PRIVATE -O1)
