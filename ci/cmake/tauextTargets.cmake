@@ -57,7 +57,8 @@ endfunction()
 
 # tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [DEFINITIONS d...] [FAST] [PROPERTIES p v...] [LONG f]):
 # a GoogleTest program, at -O1 as the precompiled headers of tests are, which takes a fifth less to compile; FAST: as what
-# is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; LONG
+# is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; a
+# source that is in both lists has tests that mean something else there. LONG
 # (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
 function(tauext_test name)
   cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;DEFINITIONS;PROPERTIES" ${ARGN})
