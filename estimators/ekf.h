@@ -28,6 +28,8 @@
 /// w = c / sqrt(s), of which the columns so far change the next c, P -= sum of w w^T.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "estimators/concepts.h"
@@ -117,6 +119,7 @@ class Ekf {
   static constexpr int kRows = detail::kPadded<kDof>;
   static constexpr bool kBlocked = kRows > 4;  // more than a register
   using Block = detail::Block<kDof>;
+  using Into = detail::Into;
   using Column = Vec<kRows>;
 
   Estimate<kDof> estimate(Status s) const noexcept {
@@ -136,61 +139,68 @@ class Ekf {
     dv_.setZero();
     nu_q_.setZero();
     nu_qd_.setZero();
-    if (p_.Q_load > 0) add_load(10, model_.inertia(x_[0].template head<kDof>()));
+    if (p_.Q_load > 0)
+      add_load(10, detail::pad_matrix<kDof>(model_.inertia(x_[0].template head<kDof>())));
   }
 
   // Q_load B B^T, so many times
-  [[gnu::noinline]] void add_load(double times, const Mat<kDof>& B) noexcept {
-    dd_ += (times * p_.Q_load) * detail::pad_matrix<kDof>(Mat<kDof>(B * B.transpose()));
+  [[gnu::noinline]] void add_load(double times, const Block& B) noexcept {
+    const Block s = std::sqrt(times * p_.Q_load) * B;
+    detail::products<Into::kAdd, kDof, 1>({&s}, {&s}, dd_);
   }
 
+  using Padded = detail::PaddedDynamics<kDof>;
+
   // where x leads; B is set if a load needs it
-  [[gnu::always_inline]] ForwardDynamics<kDof> forward_dynamics(const Vec<kDof>& tau,
-                                                                Mat<kDof>& B) const noexcept {
+  [[gnu::always_inline]] Padded linearise(const Vec<kDof>& tau) const noexcept {
     const Vec<kDof> q = x_[0].template head<kDof>(), qd = x_[1].template head<kDof>(),
                     u = tau - x_[2].template head<kDof>();
-    if constexpr (requires { model_.forward_dynamics(q, qd, u, &B); }) {
-      return model_.forward_dynamics(q, qd, u, &B);
+    if constexpr (requires { model_.padded_dynamics(q, qd, u); }) {
+      return model_.padded_dynamics(q, qd, u);
     } else {
+      const ForwardDynamics<kDof> f = model_.forward_dynamics(q, qd, u);
+      const auto pad = [](const Mat<kDof>& m) { return detail::pad_matrix<kDof>(m); };
+      Padded p{detail::pad_vector<kDof>(f.qdd),
+               pad(f.dqdd_dq),
+               pad(f.dqdd_dqd),
+               pad(f.dqdd_dtau_ext),
+               Block::Zero(),
+               f.ok};
       if (p_.Q_load > 0) [[unlikely]]
-        B = model_.inertia(q);
-      return model_.forward_dynamics(q, qd, u);
+        p.B = pad(model_.inertia(q));
+      return p;
     }
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
   [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau, double Q_scale) noexcept {
-    Mat<kDof> B;
-    const ForwardDynamics<kDof> f = forward_dynamics(tau, B);
+    const Padded f = linearise(tau);
     if (!f.ok) return false;
-    const Column qdd = detail::pad_vector<kDof>(f.qdd);
     const Column qd = x_[1];
     x_[0] += h * qd;  // (10)
-    x_[1] += h * qdd;
+    x_[1] += h * f.qdd;
     if (p_.integration == Integration::kSecondOrder) {  // (iii)
-      const Vec<kDof> jerk = f.dqdd_dq * qd.template head<kDof>() + f.dqdd_dqd * f.qdd;
-      x_[0] += 0.5 * h * h * qdd;
-      x_[1] += 0.5 * h * h * detail::pad_vector<kDof>(jerk);
+      Column jerk = Column::Zero();
+#pragma GCC unroll 8
+      for (int j = 0; j < kDof; ++j) jerk += f.by_q.col(j) * qd[j] + f.by_qd.col(j) * f.qdd[j];
+      x_[0] += 0.5 * h * h * f.qdd;
+      x_[1] += 0.5 * h * h * jerk;
     }
 
-    // U and V of (i); G stands without its factor h, transposes are named by their letters
-    const Mat<kDof>* const G[] = {&f.dqdd_dq, &f.dqdd_dqd, &f.dqdd_dtau_ext};
-    const Block qv = transposed(vq_), q_d = transposed(dq_), vd = transposed(dv_);
-    const Block Uq = h * detail::times_transposed<kDof>(qq_, qv, q_d, G);
-    const Block Uv = h * detail::times_transposed<kDof>(vq_, vv_, vd, G);
-    const Block Ud = h * detail::times_transposed<kDof>(dq_, dv_, dd_, G);
-    const Block Uv_t = transposed(Uv);
-    const Block V_t =
-        Uv_t + 0.5 * h * detail::times_transposed<kDof>(transposed(Uq), Uv_t, transposed(Ud), G);
+    // U^T and G U of (i); G stands without its factor h, transposes are named by their letters
+    const Block* const G[] = {&f.by_q, &f.by_qd, &f.by_tau_ext};
+    const Block qv = detail::transposed(vq_);
+    const Block Uq = sum<0>(G, {&qq_, &vq_, &dq_}), Uv = sum<0>(G, {&qv, &vv_, &dv_}),
+                Ud = sum<2>(G, {&dq_, &dv_, &dd_}), GU = sum<3>(G, {&Uq, &Uv, &Ud}),
+                V = h * Uv + 0.5 * h * h * GU;
 
     qq_ += h * (qv + vq_) + h * h * vv_ + Q_scale * Q_[0];  // (i)
     dq_ += h * dv_;
-    vq_ = transposed(qv + h * vv_ + Uq + h * Uv);
-    vv_ += (V_t + transposed(V_t)) + Q_scale * Q_[1];
-    dv_ += Ud;
+    vq_ += h * (vv_ + Uq + h * Uv);
+    vv_ += (V + detail::transposed(V)) + Q_scale * Q_[1];
+    dv_ += h * detail::transposed(Ud);
     dd_ += Q_scale * Q_[2];
-    if (p_.Q_load > 0) [[unlikely]]
-      add_load(Q_scale, B);
+    if (p_.Q_load > 0) add_load(Q_scale, f.B);
     return true;
   }
 
@@ -205,7 +215,7 @@ class Ekf {
   [[gnu::noinline]] void correct(const Measurement<kDof>& y, double R_scale) noexcept {
     if constexpr (kBlocked) {
       learn(0, {&qq_, &vq_, &dq_}, y.q, R_scale * p_.R.template head<kDof>());
-      const Block qv = transposed(vq_);
+      const Block qv = detail::transposed(vq_);
       learn(1, {&qv, &vv_, &dv_}, y.qd, R_scale * p_.R.template tail<kDof>());
     } else {
       one_by_one(y, R_scale);
@@ -221,7 +231,8 @@ class Ekf {
     detail::learn_block<kDof>(m, columns, y, R, x_, w);
     Block* const P[] = {&qq_, &vq_, &vv_, &dq_, &dv_, &dd_};
     for (int a = 0, block = 0; a < 3; ++a) {
-      for (int b = 0; b <= a; ++b) detail::add_products<kDof, true>({&w[a]}, {&w[b]}, *P[block++]);
+      for (int b = 0; b <= a; ++b)
+        detail::products<Into::kSubtract, kDof, 1>({&w[a]}, {&w[b]}, *P[block++]);
     }
   }
 
@@ -233,7 +244,7 @@ class Ekf {
       update(c, s_inverse, y.q[i] - x_[0][i]);
       subtract(c[1], c[0], s_inverse, vq_);
     }
-    Block qv = transposed(vq_);
+    Block qv = detail::transposed(vq_);
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
       const Column c[] = {qv.col(i), vv_.col(i), dv_.col(i)};
@@ -241,7 +252,7 @@ class Ekf {
       update(c, s_inverse, y.qd[i] - x_[1][i]);
       subtract(c[0], c[1], s_inverse, qv);
     }
-    vq_ = transposed(qv);
+    vq_ = detail::transposed(qv);
   }
 
   // (ii), all but the block between q and qd
@@ -262,8 +273,12 @@ class Ekf {
     for (int j = 0; j < kDof; ++j) block.col(j) -= (a * b[j]) * s_inverse;
   }
 
-  static Block transposed(const Block& b) noexcept {
-    return detail::transposed<kRows>(b);
+  // sum of G_a b_a, where so many of the first b are given as their transposes
+  template <std::size_t kTransposed>
+  static Block sum(const Block* const (&G)[3], const Block* const (&b)[3]) noexcept {
+    Block product;
+    detail::products<Into::kSet, kDof, kTransposed>(G, b, product);
+    return product;
   }
 
   // block b of a diagonal

@@ -5,13 +5,16 @@
 /// A force on a link turns the joints on its way from the base and no joint behind it, so the last
 /// joint with a torque carries the link that is touched (De Luca and Mattone 2005; Haddadin,
 /// De Luca and Albu-Schaeffer 2017, "isolation"). A force whose line meets that joint's axis, or
-/// runs along it, is taken for one on the link before. Where six joints or more stand before the
+/// runs along it, is taken for one on the link before: no torque tells them apart, and on the last
+/// joint of many arms the end effector lies on that axis. Where six joints or more stand before the
 /// link, force f and moment n about its origin follow from (i) of site_force.h, and with them the
 /// line
 ///     p(s) = p0 + f x n / |f|^2 + s f.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
 #include "estimators/force/site_force.h"

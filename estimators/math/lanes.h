@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "estimators/types.h"
 
@@ -57,24 +58,32 @@ template <int N>
 }
 
 /// v with zeros appended.
-template <int N>
-[[gnu::always_inline]] inline Vec<kPadded<N>> pad_vector(const Vec<N>& v) noexcept {
+template <int N, class Scalar = double>
+[[gnu::always_inline]] inline Vec<kPadded<N>, Scalar> pad_vector(
+    const Vec<N, std::type_identity_t<Scalar>>& v) noexcept {
   if constexpr (kPadded<N> == N) return v;
-  Vec<kPadded<N>> p;
-  for (int i = 0; i < N; i += 4) {
-    Lanes x;
-    gather_zeros<N>(v, i, x);
-    store(&p[i], x);
+  Vec<kPadded<N>, Scalar> p;
+  if constexpr (std::is_same_v<Scalar, double>) {
+    for (int i = 0; i < N; i += 4) {
+      Lanes x;
+      gather_zeros<N>(v, i, x);
+      store(&p[i], x);
+    }
+  } else {
+    p.setZero();
+    p.template head<N>() = v;
   }
   return p;
 }
 
 /// m with rows and columns of zeros appended.
-template <int N>
-[[gnu::always_inline]] inline Block<N> pad_matrix(const Mat<N>& m) noexcept {
+template <int N, class Scalar = double>
+[[gnu::always_inline]] inline Mat<kPadded<N>, Scalar> pad_matrix(
+    const Mat<N, std::type_identity_t<Scalar>>& m) noexcept {
   if constexpr (kPadded<N> == N) return m;
-  Block<N> b = Block<N>::Zero();
-  for (int j = 0; j < N; ++j) b.col(j) = pad_vector<N>(m.col(j));
+  Mat<kPadded<N>, Scalar> b;
+  for (int j = 0; j < N; ++j) b.col(j) = pad_vector<N, Scalar>(m.col(j));
+  b.template rightCols<kPadded<N> - N>().setZero();
   return b;
 }
 
@@ -82,45 +91,66 @@ template <int N>
   std::memcpy(&x, from, sizeof x);
 }
 
-/// b^T by tiles of 4 x 4.
-template <int Rows>
-[[gnu::always_inline]] inline Mat<Rows> transposed(const Mat<Rows>& b) noexcept {
-  if constexpr (Rows == 1) return b;
-  Mat<Rows> t;
-#pragma GCC unroll 2
-  for (int i = 0; i < Rows; i += 4) {
-#pragma GCC unroll 2
-    for (int j = 0; j < Rows; j += 4) {
-      Lanes c0, c1, c2, c3;
-      load(&b(i, j), c0), load(&b(i, j + 1), c1), load(&b(i, j + 2), c2), load(&b(i, j + 3), c3);
-      const Lanes even01 = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
-      const Lanes odd01 = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
-      const Lanes even23 = __builtin_shufflevector(c2, c3, 0, 4, 2, 6);
-      const Lanes odd23 = __builtin_shufflevector(c2, c3, 1, 5, 3, 7);
-      store(&t(j, i), __builtin_shufflevector(even01, even23, 0, 1, 4, 5));
-      store(&t(j, i + 1), __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5));
-      store(&t(j, i + 2), __builtin_shufflevector(even01, even23, 2, 3, 6, 7));
-      store(&t(j, i + 3), __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7));
-    }
-  }
-  return t;
+/// Makes the rows of a 4 x 4 matrix of its columns.
+[[gnu::always_inline]] inline void turn(Lanes& c0, Lanes& c1, Lanes& c2, Lanes& c3) noexcept {
+  const Lanes even01 = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
+  const Lanes odd01 = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
+  const Lanes even23 = __builtin_shufflevector(c2, c3, 0, 4, 2, 6);
+  const Lanes odd23 = __builtin_shufflevector(c2, c3, 1, 5, 3, 7);
+  c0 = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
+  c1 = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
+  c2 = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
+  c3 = __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
 }
 
-/// The columns of c from `first` on, so many, plus those of the sum of a_t b_t^T, or less these;
-/// over the first K columns of each.
-template <int K, bool kMinus, int Columns, int Rows, class B, std::size_t Terms>
-[[gnu::always_inline]] inline void add_columns(const Mat<Rows>* const (&a)[Terms],
-                                               const B* const (&b)[Terms], int first,
-                                               Mat<Rows>& c) noexcept {
+/// b^T, of doubles by tiles of 4 x 4.
+template <int Rows, class Scalar>
+[[gnu::always_inline]] inline Mat<Rows, Scalar> transposed(const Mat<Rows, Scalar>& b) noexcept {
+  Mat<Rows, Scalar> t;
+  if constexpr (Rows == 1 || !std::is_same_v<Scalar, double>) {
+    t = b.transpose();
+    return t;
+  } else {
+#pragma GCC unroll 2
+    for (int i = 0; i < Rows; i += 4) {
+#pragma GCC unroll 2
+      for (int j = 0; j < Rows; j += 4) {
+        Lanes c0, c1, c2, c3;
+        load(&b(i, j), c0), load(&b(i, j + 1), c1), load(&b(i, j + 2), c2), load(&b(i, j + 3), c3);
+        turn(c0, c1, c2, c3);
+        store(&t(j, i), c0), store(&t(j, i + 1), c1), store(&t(j, i + 2), c2);
+        store(&t(j, i + 3), c3);
+      }
+    }
+    return t;
+  }
+}
+
+/// What becomes of a matrix.
+enum class Into { kSet, kAdd, kSubtract };
+
+/// The columns of c from `first` on, so many, become the sum of a_t b_t, or get it, or lose it;
+/// over the first K columns of each a. The first kTransposed b are given as their transposes.
+template <Into kInto, int K, std::size_t kTransposed, int Columns, int Rows, std::size_t Terms>
+[[gnu::always_inline]] inline void columns_of_products(const Mat<Rows>* const (&a)[Terms],
+                                                       const Mat<Rows>* const (&b)[Terms],
+                                                       int first, Mat<Rows>& c) noexcept {
   constexpr int kLanes = Rows / 4;
   Lanes sum[Columns][kLanes];
 #pragma GCC unroll 4
   for (int j = 0; j < Columns; ++j) {
 #pragma GCC unroll 2
-    for (int i = 0; i < kLanes; ++i) load(&c(4 * i, first + j), sum[j][i]);
+    for (int i = 0; i < kLanes; ++i) {
+      if constexpr (kInto == Into::kSet) {
+        sum[j][i] = Lanes{};
+      } else {
+        load(&c(4 * i, first + j), sum[j][i]);
+      }
+    }
   }
-#pragma GCC unroll 1
+#pragma GCC unroll 3
   for (std::size_t t = 0; t < Terms; ++t) {
+    const bool turned = t < kTransposed;
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
       Lanes column[kLanes];
@@ -128,11 +158,11 @@ template <int K, bool kMinus, int Columns, int Rows, class B, std::size_t Terms>
       for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
 #pragma GCC unroll 4
       for (int j = 0; j < Columns; ++j) {
-        const double x = (*b[t])(first + j, k);
+        const double x = turned ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
         const Lanes times{x, x, x, x};
 #pragma GCC unroll 2
         for (int i = 0; i < kLanes; ++i) {
-          if constexpr (kMinus) {
+          if constexpr (kInto == Into::kSubtract) {
             sum[j][i] -= column[i] * times;
           } else {
             sum[j][i] += column[i] * times;
@@ -148,45 +178,38 @@ template <int K, bool kMinus, int Columns, int Rows, class B, std::size_t Terms>
   }
 }
 
-/// c plus the sum of a_t b_t^T, or less that, over the first K columns of each; rows of b beyond K
-/// are left out. Four columns of c at a time stay in registers.
-template <int K, bool kMinus = false, int Rows, class B, std::size_t Terms>
-[[gnu::always_inline]] inline void add_products(const Mat<Rows>* const (&a)[Terms],
-                                                const B* const (&b)[Terms], Mat<Rows>& c) noexcept {
-  static_assert(K > 4 && K <= 8);
-  add_columns<K, kMinus, 4>(a, b, 0, c);
-  add_columns<K, kMinus, K - 4>(a, b, 4, c);
-}
-
-// one function in each program: less code is faster
-template <int N>
-[[gnu::noinline]] inline void add_three_products(const Block<N>* const (&A)[3],
-                                                 const Mat<N>* const (&G)[3],
-                                                 Block<N>& product) noexcept {
-  add_products<N>(A, G, product);
-}
-
-/// [A0 A1 A2] G^T over the columns that are no padding.
-template <int N>
-[[gnu::always_inline]] inline Block<N> times_transposed(const Block<N>& A0, const Block<N>& A1,
-                                                        const Block<N>& A2,
-                                                        const Mat<N>* const (&G)[3]) noexcept {
-  using Column = Vec<kPadded<N>>;
-  const Block<N>* const A[] = {&A0, &A1, &A2};
-  Block<N> product = Block<N>::Zero();
-  if constexpr (N > 4) return add_three_products<N>(A, G, product), product;
-#pragma GCC unroll 8
-  for (int i = 0; i < N; ++i) {
-    const Column zero = Column::Zero();
-    Column sum[3] = {zero, zero, zero};  // short chains of additions
-#pragma GCC unroll 3
-    for (int b = 0; b < 3; ++b) {
-#pragma GCC unroll 8
-      for (int j = 0; j < N; ++j) sum[b] += A[b]->col(j) * (*G[b])(i, j);
-    }
-    product.col(i) = (sum[0] + sum[1]) + sum[2];
+/// c, of which the columns from K on are zero, becomes the sum of a_t b_t, or gets it, or loses it.
+/// The first kTransposed b are given as their transposes. Four columns of c at a time stay in
+/// registers.
+template <Into kInto, int K, std::size_t kTransposed = 0, int Rows, std::size_t Terms>
+[[gnu::always_inline]] inline void products(const Mat<Rows>* const (&a)[Terms],
+                                            const Mat<Rows>* const (&b)[Terms],
+                                            Mat<Rows>& c) noexcept {
+  if constexpr (kInto == Into::kSet) c.template rightCols<Rows - K>().setZero();
+  if constexpr (Rows == 1) {
+    double sum = 0;
+    for (std::size_t t = 0; t < Terms; ++t) sum += (*a[t])(0, 0) * (*b[t])(0, 0);
+    c(0, 0) = (kInto == Into::kSet ? 0 : c(0, 0)) + (kInto == Into::kSubtract ? -sum : sum);
+  } else if constexpr (K <= 4) {
+    columns_of_products<kInto, K, kTransposed, K>(a, b, 0, c);
+  } else {
+    constexpr int kFirst = (K + 1) / 2;
+    columns_of_products<kInto, K, kTransposed, kFirst>(a, b, 0, c);
+    columns_of_products<kInto, K, kTransposed, K - kFirst>(a, b, kFirst, c);
   }
-  return product;
 }
+
+/// What ForwardDynamics is, with rows and columns of zeros appended.
+template <int N, class Scalar = double>
+struct PaddedDynamics {
+  using Rows = Vec<kPadded<N>, Scalar>;    ///< a number of each joint
+  using Square = Mat<kPadded<N>, Scalar>;  ///< over the joints
+  Rows qdd;                                ///< [rad/s^2]
+  Square by_q;                             ///< [1/s^2] dqdd/dq
+  Square by_qd;                            ///< [1/s] dqdd/dqd
+  Square by_tau_ext;                       ///< [1/(kg m^2)] dqdd/dtau_ext = -B^-1
+  Square B;                                ///< [kg m^2]
+  bool ok = false;                         ///< false: B was not positive definite
+};
 
 }  // namespace tauext::detail

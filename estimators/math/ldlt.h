@@ -4,6 +4,9 @@
 /// N = 3 three times as fast as Eigen::LLT, whose loops are made for large matrices.
 #pragma once
 
+#include <type_traits>
+
+#include "estimators/math/lanes.h"
 #include "estimators/types.h"
 
 namespace tauext {
@@ -12,24 +15,54 @@ namespace tauext {
 template <int N, class Scalar = double>
 class Ldlt {
  public:
+  static constexpr bool kLanes = N > 4 && std::is_same_v<Scalar, double>;  ///< in whole registers
+
   /// Factorises B, symmetric and positive definite.
-  [[gnu::always_inline]] explicit Ldlt(const Mat<N, Scalar>& B) noexcept {
+  [[gnu::always_inline]] explicit Ldlt(const Mat<N, Scalar>& B) noexcept
+      requires(!kLanes || N < 8) {
+    Mat<N, Scalar> LD;  // its strictly lower triangle
     for (int j = 0; j < N; ++j) {
       Scalar d = B(j, j);
-      for (int k = 0; k < j; ++k) d -= L_(j, k) * LD_(j, k);
+      for (int k = 0; k < j; ++k) d -= L_(j, k) * LD(j, k);
       ok_ = ok_ && d > 0;  // false for NaN
       d_inverse_[j] = Scalar(1) / d;
       for (int i = j + 1; i < N; ++i) {
         Scalar a = B(i, j);
-        for (int k = 0; k < j; ++k) a -= LD_(i, k) * L_(j, k);
-        LD_(i, j) = a;
+        for (int k = 0; k < j; ++k) a -= LD(i, k) * L_(j, k);
+        LD(i, j) = a;
         L_(i, j) = a * d_inverse_[j];
       }
     }
   }
 
+  /// The same of a padded B, whose columns are whole registers.
+  [[gnu::always_inline]] explicit Ldlt(const detail::Block<N>& B) noexcept requires(kLanes) {
+    using detail::Lanes;
+    Lanes c[N][2];
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) detail::load(&B(0, j), c[j][0]), detail::load(&B(4, j), c[j][1]);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      const double d = c[j][j / 4][j % 4], inverse = 1 / d;
+      ok_ = ok_ && d > 0;
+      d_inverse_[j] = inverse;
+      const Lanes scale{inverse, inverse, inverse, inverse};
+#pragma GCC unroll 2
+      for (int r = j / 4; r < 2; ++r) detail::store(&L_(4 * r, j), c[j][r] * scale);
+#pragma GCC unroll 8
+      for (int k = j + 1; k < N; ++k) {
+        const double x = c[j][k / 4][k % 4];
+        const Lanes share = Lanes{x, x, x, x} * scale;
+#pragma GCC unroll 2
+        for (int r = k / 4; r < 2; ++r) c[k][r] -= c[j][r] * share;
+      }
+    }
+  }
+
   /// Whether B was positive definite; if not, solve() means nothing.
-  bool ok() const noexcept { return ok_; }
+  bool ok() const noexcept {
+    return ok_;
+  }
 
   /// B^-1 b for a vector or a matrix of columns.
   template <int Cols>
@@ -37,21 +70,56 @@ class Ldlt {
       Eigen::Matrix<Scalar, N, Cols> b) const noexcept {
     for (int j = 0; j < Cols; ++j) {
       Scalar x[N];  // plain scalars stay in registers
-      for (int i = 0; i < N; ++i) {
-        x[i] = b(i, j);
-        for (int k = 0; k < i; ++k) x[i] -= L_(i, k) * x[k];
-      }
-      for (int i = N - 1; i >= 0; --i) {
-        x[i] *= d_inverse_[i];
-        for (int k = i + 1; k < N; ++k) x[i] -= L_(k, i) * x[k];
-      }
+      for (int i = 0; i < N; ++i) x[i] = b(i, j);
+      substitute(x);
       for (int i = 0; i < N; ++i) b(i, j) = x[i];
     }
     return b;
   }
 
+  /// B^-1 with rows and columns of zeros appended, times -1.
+  [[gnu::always_inline]] Mat<detail::kPadded<N>, Scalar> minus_inverse() const noexcept {
+    Mat<detail::kPadded<N>, Scalar> out;
+    if constexpr (kLanes) {
+      // four columns at a time; as it is symmetric, a row of them is a piece of a column
+#pragma GCC unroll 2
+      for (int first = 0; first < 8; first += 4) {
+        detail::Lanes x[N];
+#pragma GCC unroll 8
+        for (int i = 0; i < N; ++i) {
+          const auto at = [=](int j) { return i == first + j ? -1.0 : 0.0; };
+          x[i] = detail::Lanes{at(0), at(1), at(2), at(3)};
+        }
+        substitute(x, first);
+#pragma GCC unroll 8
+        for (int i = 0; i < N; ++i) detail::store(&out(first, i), x[i]);
+      }
+      out.template rightCols<8 - N>().setZero();
+    } else {
+      const Mat<N, Scalar> one = Mat<N, Scalar>::Identity();
+      out = detail::pad_matrix<N, Scalar>(-solve(one));
+    }
+    return out;
+  }
+
  private:
-  Mat<N, Scalar> L_, LD_;  // strictly lower triangles of L and L D
+  // x = B^-1 x, where the rows before the first one are zero
+  template <class Row>
+  [[gnu::always_inline]] void substitute(Row (&x)[N], int first = 0) const noexcept {
+#pragma GCC unroll 8
+    for (int i = first; i < N; ++i) {
+#pragma GCC unroll 8
+      for (int k = first; k < i; ++k) x[i] -= L_(i, k) * x[k];
+    }
+#pragma GCC unroll 8
+    for (int i = N - 1; i >= 0; --i) {
+      x[i] *= d_inverse_[i];
+#pragma GCC unroll 8
+      for (int k = i + 1; k < N; ++k) x[i] -= L_(k, i) * x[k];
+    }
+  }
+
+  Mat<detail::kPadded<N>, Scalar> L_;  // its strictly lower triangle
   Vec<N, Scalar> d_inverse_;
   bool ok_ = true;
 };

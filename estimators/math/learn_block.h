@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// A Kalman filter's measurement update for N readings at once, of a state in blocks of N: the
-/// scalar updates in turn, of which only the columns are formed that the next ones need.
+/// scalar updates in turn, of which only the columns are formed that the next ones need. No root is
+/// on the way from one column to the next.
 #pragma once
 
 #include <cmath>
@@ -19,18 +20,23 @@ template <int N, std::size_t Blocks>
                                                const Vec<N>& y, const Vec<N>& R,
                                                Vec<kPadded<N>> (&x)[Blocks],
                                                Block<N> (&w)[Blocks]) noexcept {
+  Block<N> c[Blocks];  // the columns, less what the readings before theirs take
+  double r[N];         // what a column is divided by, [1/unit^2]
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) {
-    Vec<kPadded<N>> c[Blocks];
-    for (std::size_t b = 0; b < Blocks; ++b) c[b] = columns[b]->col(i);
+    Vec<kPadded<N>> column[Blocks];
+    for (std::size_t b = 0; b < Blocks; ++b) column[b] = columns[b]->col(i);
 #pragma GCC unroll 8
     for (int k = 0; k < i; ++k) {
-      for (std::size_t b = 0; b < Blocks; ++b) c[b] -= w[b].col(k) * w[m](i, k);
+      const double share = c[m](i, k) * r[k];
+      for (std::size_t b = 0; b < Blocks; ++b) column[b] -= c[b].col(k) * share;
     }
-    const double share = 1 / std::sqrt(c[m][i] + R[i]), learnt = share * (y[i] - x[m][i]);
+    r[i] = 1 / (column[m][i] + R[i]);
+    const double learnt = r[i] * (y[i] - x[m][i]), root = std::sqrt(r[i]);
     for (std::size_t b = 0; b < Blocks; ++b) {
-      w[b].col(i) = share * c[b];
-      x[b] += w[b].col(i) * learnt;
+      c[b].col(i) = column[b];
+      w[b].col(i) = column[b] * root;
+      x[b] += column[b] * learnt;
     }
   }
 }

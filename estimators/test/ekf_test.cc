@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "estimators/test/arm.h"
 #include "estimators/test/precise.h"
+#include "estimators/test/random_tree.h"
 #include "estimators/test/textbook_ekf.h"
 #include "estimators/testbed1.h"
 
@@ -46,6 +49,49 @@ TEST(Ekf, AgreesWithTheDenseTextbookFormFor30SecondsAndPStaysSymmetric) {
     EXPECT_LT(worst, 1e-9) << "N m";
     EXPECT_LT((ekf.covariance() - textbook.P).norm(), 1e-9 * textbook.P.norm());
   }
+}
+
+// the blocks of more than four joints take whole registers, and learn from all of q, or qd, at once
+template <int N>
+void expect_textbook_on_a_tree() {
+  SCOPED_TRACE(std::to_string(N) + " joints");
+  RandomTree<N> random(N);
+  const auto arm = random.template model<double>();
+  EkfParameters<N> p;
+  p.P0.setConstant(1e-3);
+  p.Q.setConstant(1e-12);
+  p.R << Vec<N>::Constant(1e-10), Vec<N>::Constant(1e-6);
+  p.Q_load = 25;
+  p.Ts = 2e-3;
+  Ekf<TreeModel<N>> ekf(arm, p);
+  TextbookEkf<double, TreeModel<N>> textbook(p, arm);
+  const Vec<N> middle = random.template vector<N>(1), load = random.template vector<N>(5);
+  double worst = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 1e-3 * k, w = 3;
+    Measurement<N> y;
+    y.t = t;
+    y.q = middle + Vec<N>::Constant(0.2 * std::sin(w * t));
+    y.qd = Vec<N>::Constant(0.2 * w * std::cos(w * t));
+    y.tau = arm.inertia(y.q) * Vec<N>::Constant(-0.2 * w * w * std::sin(w * t)) +
+            arm.bias(y.q, y.qd) + arm.friction(y.qd) + load;
+    const Estimate<N> e = ekf.update(y), exact = textbook.update(y);
+    worst = std::max(worst, (e.tau_ext - exact.tau_ext).cwiseAbs().maxCoeff());
+    const Mat<3 * N> P = ekf.covariance();
+    ASSERT_EQ(P, P.transpose()) << "t = " << t;
+  }
+  EXPECT_LT((textbook.x.template tail<N>() - load).norm(), 0.1 * load.norm()) << "it works";
+  EXPECT_LT(worst, 1e-8 * load.norm()) << "N m";
+  EXPECT_LT((ekf.covariance() - textbook.P).norm(), 1e-9 * textbook.P.norm());
+}
+
+TEST(Ekf, AgreesWithTheDenseTextbookFormOnTreesOfAnySize) {
+  expect_textbook_on_a_tree<2>();
+  expect_textbook_on_a_tree<4>();
+  expect_textbook_on_a_tree<5>();
+  expect_textbook_on_a_tree<6>();
+  expect_textbook_on_a_tree<7>();
+  expect_textbook_on_a_tree<8>();
 }
 
 TEST(Ekf, AgreesWith100DigitArithmeticOn200Samples) {

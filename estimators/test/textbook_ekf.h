@@ -17,8 +17,11 @@ class TextbookEkf {
   static constexpr int N = Arm::kDof, kDof = N;
 
   template <class Parameters>
-  explicit TextbookEkf(const Parameters& p)
-      : second_order_(p.integration == Integration::kSecondOrder), Ts_(p.Ts) {
+  explicit TextbookEkf(const Parameters& p, const Arm& arm = Arm())
+      : second_order_(p.integration == Integration::kSecondOrder),
+        Ts_(p.Ts),
+        Q_load_(p.Q_load),
+        arm_(arm) {
     P0_ = p.P0.template cast<S>().asDiagonal();
     Q_ = p.Q.template cast<S>().asDiagonal();
     R_ = p.R.template cast<S>().asDiagonal();
@@ -35,6 +38,7 @@ class TextbookEkf {
       started_ = true;
       x << y, Vec<N, S>::Zero();
       P = P0_;
+      P.template bottomRightCorner<N, N>() += S(10) * load(x.template head<N>());
     } else {
       step(S(m.t) - t_, y);
     }
@@ -47,6 +51,15 @@ class TextbookEkf {
   Mat<3 * N, S> P = Mat<3 * N, S>::Zero();
 
  private:
+  // what Q_load adds to Q of tau_ext
+  Mat<N, S> load(const Vec<N, S>& q) const {
+    if constexpr (requires { arm_.inertia(q); }) {
+      const Mat<N, S> B = arm_.inertia(q);
+      return S(Q_load_) * B * B.transpose();
+    }
+    return Mat<N, S>::Zero();
+  }
+
   void step(const S& h, const Vec<2 * N, S>& y) {
     const Vec<N, S> q = x.template head<N>(), qd = x.template segment<N>(N),
                     d = x.template tail<N>();
@@ -64,6 +77,7 @@ class TextbookEkf {
       x += S(0.5) * h * ((F - Mat<3 * N, S>::Identity()) * xdot);
     }
     P = Mat<3 * N, S>(F * P * F.transpose()) + steps * Q_;
+    P.template bottomRightCorner<N, N>() += steps * load(q);
 
     const Mat<2 * N, S> innovation = H_ * P * H_.transpose() + R_ / steps;  // (14)
     const Eigen::LLT<Mat<2 * N, S>> factor(innovation);
@@ -74,7 +88,7 @@ class TextbookEkf {
   }
 
   bool second_order_;
-  double Ts_;
+  double Ts_, Q_load_;
   Arm arm_;
   Mat<3 * N, S> P0_, Q_;
   Mat<2 * N, S> R_;

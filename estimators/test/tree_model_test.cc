@@ -6,52 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <complex>
-#include <random>
 #include <stdexcept>
 #include <string>
+
+#include "estimators/test/random_tree.h"
 
 namespace tauext::test {
 namespace {
 
 using Complex = std::complex<double>;
-
-template <int N>
-struct RandomTree {
-  explicit RandomTree(unsigned seed) : random(seed) {
-    for (int i = 0; i < N; ++i) {
-      TreeJoint& j = joints[static_cast<std::size_t>(i)];
-      j.parent = static_cast<int>(std::uniform_int_distribution(-1, i - 1)(random));
-      if (i % 3 == 1) j.kind = TreeJoint::Kind::kSlide;
-      j.axis = vector<3>(1);
-      j.rotation =
-          Eigen::AngleAxis<double>(number(3), vector<3>(1).normalized()).toRotationMatrix();
-      j.position = vector<3>(0.5);
-      j.zero = number(1);
-      j.mass = 2 + number(1);
-      j.center = vector<3>(0.2);
-      const Mat<3> half = Mat<3>::NullaryExpr([&] { return number(0.3); });
-      j.inertia = half * half.transpose() + 0.1 * Mat<3>::Identity();
-      j.armature = 0.2;
-      j.viscous = 0.3;
-      j.dry = 0.4;
-      j.v_s = 0.5;
-    }
-    coordinates = Mat<N>::Identity() + 0.2 * Mat<N>::NullaryExpr([&] { return number(1); });
-  }
-  double number(double most) { return std::uniform_real_distribution(-most, most)(random); }
-  template <int K>
-  Vec<K> vector(double most) {
-    return Vec<K>::NullaryExpr([&] { return number(most); });
-  }
-  template <class Scalar>
-  TreeModel<N, Scalar> model() const {
-    return TreeModel<N, Scalar>({joints, {1, 2, -9}, coordinates, Vec<N>::Constant(0.1)});
-  }
-
-  std::mt19937_64 random;
-  std::array<TreeJoint, N> joints;
-  Mat<N> coordinates;
-};
 
 constexpr double kStep = 1e-100;  // of a complex step
 
@@ -82,9 +45,13 @@ void expect_consistent(unsigned seed) {
   const Dynamics<N> m = tree.momentum_dynamics(q, qd);
   EXPECT_LT((m.bias - tree.momentum_bias(q, qd)).norm() + (m.B - B).norm(), 1e-13 * scale);
 
-  Mat<N> same_B;
-  const ForwardDynamics<N> f = tree.forward_dynamics(q, qd, u, &same_B);
-  EXPECT_LT((same_B - B).norm(), 1e-14 * B.norm());
+  const ForwardDynamics<N> f = tree.forward_dynamics(q, qd, u);
+  const auto padded = tree.padded_dynamics(q, qd, u);
+  EXPECT_LT((padded.B.template topLeftCorner<N, N>() - B).norm(), 1e-14 * B.norm());
+  for (const auto* block : {&padded.B, &padded.by_q, &padded.by_qd, &padded.by_tau_ext}) {
+    const double own = block->template topLeftCorner<N, N>().cwiseAbs().sum();
+    EXPECT_NEAR(block->cwiseAbs().sum(), own, 1e-13 * own) << "zeros are appended";
+  }
   ASSERT_TRUE(f.ok);
   EXPECT_LT((B * f.qdd + tree.bias(q, qd) + tree.friction(qd) - u).norm(), 1e-12 * scale);
   EXPECT_LT((B * f.dqdd_dtau_ext + Mat<N>::Identity()).norm(), 1e-12 * N);
@@ -104,7 +71,10 @@ TEST(TreeModel, TermsAndDerivativesAreThoseOfOneArm) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     expect_consistent<1>(seed);
     expect_consistent<3>(seed);
+    expect_consistent<4>(seed);
+    expect_consistent<5>(seed);
     expect_consistent<7>(seed);
+    expect_consistent<8>(seed);
   }
 }
 

@@ -8,6 +8,8 @@
 /// origin by v. A force (n; f) has the moment n about the origin.
 #pragma once
 
+#include <type_traits>
+
 #include "estimators/math/lanes.h"
 
 namespace tauext::detail {
@@ -17,33 +19,47 @@ template <int P, class Scalar>
 struct Each {
   Scalar x[P];  ///< by body
 
-  static Each zero() noexcept { return all(Scalar(0)); }  ///< 0 of each
-  static Each all(const Scalar& a) noexcept {             ///< the same of each
+  [[gnu::always_inline]] static Each zero() noexcept {  ///< 0 of each
+    return all(Scalar(0));
+  }
+  [[gnu::always_inline]] static Each all(const Scalar& a) noexcept {  ///< the same of each
     Each e;
     for (Scalar& x : e.x) x = a;
     return e;
   }
   template <int N>
-  static Each from(const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
+  [[gnu::always_inline]] static Each from(
+      const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
     Each e = zero();
     for (int i = 0; i < N; ++i) e.x[i] = v[i];
     return e;
   }
-  Scalar operator[](int i) const noexcept { return x[i]; }  ///< that of body i
-  void set(int i, const Scalar& a) noexcept { x[i] = a; }   ///< that of body i
+  [[gnu::always_inline]] Scalar operator[](int i) const noexcept {  ///< that of body i
+    return x[i];
+  }
+  [[gnu::always_inline]] void set(int i, const Scalar& a) noexcept {  ///< that of body i
+    x[i] = a;
+  }
+  /// The same, or, if that saves work, 0 of the bodies before `first`.
+  [[gnu::always_inline]] Each since([[maybe_unused]] int first) const noexcept { return *this; }
+  [[gnu::always_inline]] void store(Scalar* to) const noexcept {  ///< as numbers side by side
+    for (const Scalar& a : x) *to++ = a;
+  }
   /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
-  void add(const Each& a, const Scalar& times, int first, int last) noexcept {
+  [[gnu::always_inline]] void add(const Each& a, const Scalar& times, int first,
+                                  int last) noexcept {
     for (int i = first; i <= last; ++i) x[i] += times * a.x[i];
   }
-  friend Each operator+(Each a, const Each& b) noexcept {  ///< one by one, as all operators
+  [[gnu::always_inline]] friend Each operator+(
+      Each a, const Each& b) noexcept {  ///< one by one, as all operators
     for (int i = 0; i < P; ++i) a.x[i] += b.x[i];
     return a;
   }
-  friend Each operator-(Each a, const Each& b) noexcept {
+  [[gnu::always_inline]] friend Each operator-(Each a, const Each& b) noexcept {
     for (int i = 0; i < P; ++i) a.x[i] -= b.x[i];
     return a;
   }
-  friend Each operator*(Each a, const Each& b) noexcept {
+  [[gnu::always_inline]] friend Each operator*(Each a, const Each& b) noexcept {
     for (int i = 0; i < P; ++i) a.x[i] *= b.x[i];
     return a;
   }
@@ -55,7 +71,17 @@ requires(P % 4 == 0) struct Each<P, double> {
   static constexpr int kCount = P / 4;
   Lanes x[kCount];  ///< by body, four in each
 
-  [[gnu::always_inline]] static Each zero() noexcept { return all(0); }
+  Each() noexcept = default;
+  // one by one: GCC 12 copies an aggregate by halves of registers, which loads then wait for
+  [[gnu::always_inline]] Each(const Each& e) noexcept { *this = e; }
+  [[gnu::always_inline]] Each& operator=(const Each& e) noexcept {
+#pragma GCC unroll 2
+    for (int k = 0; k < kCount; ++k) x[k] = e.x[k];
+    return *this;
+  }
+  [[gnu::always_inline]] static Each zero() noexcept {
+    return all(0);
+  }
   [[gnu::always_inline]] static Each all(double a) noexcept {
     Each e;
 #pragma GCC unroll 2
@@ -76,6 +102,16 @@ requires(P % 4 == 0) struct Each<P, double> {
   }
   [[gnu::always_inline]] void set(int i, double a) noexcept {
     x[i / 4][i % 4] = a;
+  }
+  [[gnu::always_inline]] Each since(int first) const noexcept {
+    Each e = zero();
+#pragma GCC unroll 2
+    for (int k = first / 4; k < kCount; ++k) e.x[k] = x[k];
+    return e;
+  }
+  [[gnu::always_inline]] void store(double* to) const noexcept {
+#pragma GCC unroll 2
+    for (int k = 0; k < kCount; ++k) detail::store(to + 4 * k, x[k]);
   }
   [[gnu::always_inline]] void add(const Each& a, double times, int first, int last) noexcept {
     const Lanes t{times, times, times, times};
@@ -118,6 +154,19 @@ struct Each3 {
   /// That of body i, as if every body had it.
   [[gnu::always_inline]] Each3 of(int i) const noexcept {
     return {One::all(x[i]), One::all(y[i]), One::all(z[i])};
+  }
+  /// Sets all of them from `own`, of which each has (x, y, z) of one body.
+  [[gnu::always_inline]] void set_all(const Each<4, Scalar>* own) noexcept {
+    if constexpr (P % 4 == 0 && std::is_same_v<Scalar, double>) {
+#pragma GCC unroll 2
+      for (int k = 0; k < P / 4; ++k) {
+        Lanes none = own[4 * k + 3].x[0];
+        x.x[k] = own[4 * k].x[0], y.x[k] = own[4 * k + 1].x[0], z.x[k] = own[4 * k + 2].x[0];
+        turn(x.x[k], y.x[k], z.x[k], none);
+      }
+    } else {
+      for (int i = 0; i < P; ++i) set(i, own[i]);
+    }
   }
 };
 

@@ -28,6 +28,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
@@ -73,7 +74,7 @@ class TreeModel {
   /// B(q) [kg m^2].
   [[gnu::noinline]] MatN inertia(const VecN& q) const noexcept {
     const auto s = passes_.pose(to_rho(q));
-    return matrix(passes_.inertia(s, passes_.composite(s.I)));
+    return inertia(s, passes_.composite(s.I));
   }
 
   /// g(q) [N m].
@@ -97,8 +98,7 @@ class TreeModel {
   /// inertia and bias, sharing the pose.
   [[gnu::noinline]] Dynamics<N, Scalar> dynamics(const VecN& q, const VecN& qd) const noexcept {
     const auto s = passes_.pose(to_rho(q));
-    return {matrix(passes_.inertia(s, passes_.composite(s.I))),
-            forces(bias(s, passes_.flow(s, to_rate(qd))))};
+    return {inertia(s, passes_.composite(s.I)), forces(bias(s, passes_.flow(s, to_rate(qd))))};
   }
 
   /// inertia and momentum_bias, sharing the pose.
@@ -106,7 +106,7 @@ class TreeModel {
                                                           const VecN& qd) const noexcept {
     const auto s = passes_.pose(to_rho(q));
     const auto c = passes_.composite(s.I);
-    return {matrix(passes_.inertia(s, c)), forces(momentum_bias(s, c, to_rate(qd)))};
+    return {inertia(s, c), forces(momentum_bias(s, c, to_rate(qd)))};
   }
 
   /// F(qd) [N m].
@@ -116,29 +116,36 @@ class TreeModel {
   }
 
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians, by (iv).
-  /// @param B if not null, gets inertia(q), which is at hand here
-  [[gnu::noinline]] ForwardDynamics<N, Scalar> forward_dynamics(const VecN& q, const VecN& qd,
-                                                                const VecN& u,
-                                                                MatN* B = nullptr) const noexcept {
+  ForwardDynamics<N, Scalar> forward_dynamics(const VecN& q, const VecN& qd,
+                                              const VecN& u) const noexcept {
+    const auto f = padded_dynamics(q, qd, u);
+    return {f.qdd.template head<N>(), own(f.by_q), own(f.by_qd), own(f.by_tau_ext), f.ok};
+  }
+
+  /// The same as it comes, with inertia(q).
+  [[gnu::noinline]] detail::PaddedDynamics<N, Scalar> padded_dynamics(
+      const VecN& q, const VecN& qd, const VecN& u) const noexcept {
     const VecN rate = to_rate(qd);
     const auto s = passes_.pose(to_rho(q));
     auto flow = passes_.flow(s, rate);
     const auto c = passes_.composite(s.I);
     VecN slope;
     const VecN rest = bias(s, flow) + friction(rate, slope);
-    const MatN inertia = matrix(passes_.inertia(s, c));
-    if (B != nullptr) *B = inertia;
-    const Ldlt<N, Scalar> factor(inertia);
-    ForwardDynamics<N, Scalar> f;
+    detail::PaddedDynamics<N, Scalar> f;
+    f.B = passes_.inertia(s, c);
+    to_q(f.B);
+    const Factor factor = factorised(f.B);
     f.ok = factor.ok();
-    f.qdd = factor.solve(VecN(u - forces(rest)));
-    f.dqdd_dtau_ext = factor.solve(MatN(-MatN::Identity()));
-    passes_.accelerate(s, to_rate(f.qdd), flow);
-    MatN by_q, by_qd;
+    const VecN qdd = factor.solve(VecN(u - forces(rest)));
+    f.qdd = detail::pad_vector<N, Scalar>(qdd);
+    f.by_tau_ext = factor.minus_inverse();
+    passes_.accelerate(s, to_rate(qdd), flow);
+    Square by_q, by_qd;
     passes_.derivatives(s, flow, c, by_q, by_qd);
-    by_qd.diagonal() += slope;
-    f.dqdd_dq.noalias() = f.dqdd_dtau_ext * matrix(by_q);
-    f.dqdd_dqd.noalias() = f.dqdd_dtau_ext * matrix(by_qd);
+    by_qd.diagonal().template head<N>() += slope;
+    to_q(by_q), to_q(by_qd);
+    f.by_q = times_transposed(f.by_tau_ext, by_q);
+    f.by_qd = times_transposed(f.by_tau_ext, by_qd);
     return f;
   }
 
@@ -171,8 +178,17 @@ class TreeModel {
   using Passes = detail::TreePasses<N, Scalar>;
 
   using Pose = typename Passes::Pose;
+  using Square = typename Passes::Square;
+  using Factor = Ldlt<N, Scalar>;
 
-  VecN bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
+  [[gnu::always_inline]] MatN inertia(const Pose& s,
+                                      const typename Passes::Inertia& c) const noexcept {
+    Square B = passes_.inertia(s, c);
+    to_q(B);
+    return own(B);
+  }
+
+  [[gnu::always_inline]] VecN bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
     return Passes::along(s.S, passes_.subtree(f.F));
   }
 
@@ -209,9 +225,29 @@ class TreeModel {
     if (direct_) return of_rho;
     return drho_.transpose() * of_rho;
   }
-  MatN matrix(const MatN& of_rho) const noexcept {
-    if (direct_) return of_rho;
-    return drho_.transpose() * of_rho * drho_;
+  void to_q(Square& of_rho) const noexcept {
+    if (direct_) return;
+    of_rho.template topLeftCorner<N, N>() = drho_.transpose() * own(of_rho) * drho_;
+  }
+
+  static MatN own(const Square& m) noexcept { return m.template topLeftCorner<N, N>(); }
+
+  [[gnu::always_inline]] static Factor factorised(const Square& B) noexcept {
+    if constexpr (Factor::kLanes) {
+      return Factor(B);
+    } else {
+      return Factor(own(B));
+    }
+  }
+
+  static Square times_transposed(const Square& a, const Square& b) noexcept {
+    if constexpr (Factor::kLanes) {
+      Square product;
+      detail::products<detail::Into::kSet, N, 1>({&a}, {&b}, product);
+      return product;
+    } else {
+      return a * b.transpose();
+    }
   }
 
   Parameters p_;

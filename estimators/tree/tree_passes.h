@@ -21,6 +21,7 @@ class TreePasses {
   static constexpr int P = kPadded<N>;  ///< lanes
   using VecN = Vec<N, Scalar>;          ///< a number of each joint
   using MatN = Mat<N, Scalar>;          ///< over the joints
+  using Square = Mat<P, Scalar>;        ///< the same in lanes
   using One = Each<P, Scalar>;          ///< the same in lanes
   using Three = Each3<P, Scalar>;       ///< vectors
   using Motion = EachMotion<P, Scalar>;
@@ -44,7 +45,7 @@ class TreePasses {
     g_.x = One::all(Scalar(gravity[0]));
     g_.y = One::all(Scalar(gravity[1]));
     g_.z = One::all(Scalar(gravity[2]));
-    for (int i = 0; i < N; ++i) behind_[i] = ahead_[i] = One::zero();
+    for (int i = 0; i < N; ++i) behind_[i] = own_behind_[i] = ahead_[i] = One::zero();
     for (int i = 0; i < N; ++i) fill(joints, i);
   }
 
@@ -89,15 +90,9 @@ class TreePasses {
 
   /// The inertias of the subtrees.
   [[gnu::always_inline]] Inertia composite(const Inertia& I) const noexcept {
-    Inertia c{m_behind_, subtree(I.h), I.Sigma};
-    c.Sigma.x = subtree(I.Sigma.x);
-    c.Sigma.y.y = subtree(I.Sigma.y.y);
-    c.Sigma.z.y = subtree(I.Sigma.z.y);
-    c.Sigma.z.z = subtree(I.Sigma.z.z);
-    c.Sigma.y.x = c.Sigma.x.y;
-    c.Sigma.z.x = c.Sigma.x.z;
-    c.Sigma.y.z = c.Sigma.z.y;
-    return c;
+    const Three x = subtree(I.Sigma.x);
+    const One yy = subtree(I.Sigma.y.y), yz = subtree(I.Sigma.y.z), zz = subtree(I.Sigma.z.z);
+    return {m_behind_, subtree(I.h), {x, {x.y, yy, yz}, {x.z, yz, zz}}};
   }
 
   [[gnu::always_inline]] Force subtree(const Force& f) const noexcept {
@@ -113,15 +108,18 @@ class TreePasses {
   }
 
   /// B of (ii), with the rotors.
-  [[gnu::always_inline]] MatN inertia(const Pose& s, const Inertia& c) const noexcept {
+  [[gnu::always_inline]] Square inertia(const Pose& s, const Inertia& c) const noexcept {
     const Force IS = c * s.S;
-    MatN B;
+    Square B, lower;
+    B.template rightCols<P - N>().setZero();
+    lower.template rightCols<P - N>().setZero();
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
-      const One column = behind_[i] * dot(s.S.of(i), IS);
-      for (int j = i; j < N; ++j) B(j, i) = B(i, j) = column[j];
-      B(i, i) += armature_[i];
+      const One column = dot(s.S.of(i), IS);
+      (armature_[i] + behind_[i] * column).since(i).store(&B(0, i));
+      (own_behind_[i] * column).since(i).store(&lower(0, i));
     }
+    B += transposed(lower);
     return B;
   }
 
@@ -130,9 +128,9 @@ class TreePasses {
     return along(s.S, {cross(c.h, g_), c.m * g_});
   }
 
-  /// d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
+  /// The transposes of d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
   [[gnu::always_inline]] void derivatives(const Pose& s, const Flow& f, const Inertia& c,
-                                          MatN& by_q, MatN& by_qd) const noexcept {
+                                          Square& by_q, Square& by_qd) const noexcept {
     const Motion Sdd = cross(f.A, s.S) + cross(f.V, f.Sd);
     const Each33<P, Scalar> Y{subtree(s.I.h.x * f.V.v + cross(f.V.w, s.I.Sigma.x)),
                               subtree(s.I.h.y * f.V.v + cross(f.V.w, s.I.Sigma.y)),
@@ -146,19 +144,22 @@ class TreePasses {
     const Three BtS = two * (trace * s.S.w - Y.transposed_times(s.S.w) + cross(l, s.S.v));
     const Force q_above = twice_B(f.Sd) + c * Sdd + cross(s.S, subtree(f.F));
     const Force qd_above = twice_B(s.S) + two * ISd;
+    Square q_columns, qd_columns;  // below the diagonal
+    for (Square* m : {&by_q, &by_qd, &q_columns, &qd_columns})
+      m->template rightCols<P - N>().setZero();
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
       const Motion S = s.S.of(i), Sd = f.Sd.of(i);
       const One q_below = dot(BtS, Sd.w) + dot(Sdd.of(i), IS);
       const One qd_below = dot(BtS, S.w) + two * dot(Sd, IS);
       const One q_right = dot(S, q_above), qd_right = dot(S, qd_above);
-      for (int j = 0; j < N; ++j) {
-        if (j < i) continue;  // set with the other's column
-        const Scalar in = behind_[i][j];
-        by_q(i, j) = in * q_right[j], by_qd(i, j) = in * qd_right[j];
-        by_q(j, i) = in * q_below[j], by_qd(j, i) = in * qd_below[j];
-      }
+      (behind_[i] * q_right).since(i).store(&by_q(0, i));
+      (behind_[i] * qd_right).since(i).store(&by_qd(0, i));
+      (own_behind_[i] * q_below).since(i).store(&q_columns(0, i));
+      (own_behind_[i] * qd_below).since(i).store(&qd_columns(0, i));
     }
+    by_q += transposed(q_columns);
+    by_qd += transposed(qd_columns);
   }
 
   /// 1 for the joints on the way to joint j, and itself.
@@ -182,26 +183,24 @@ class TreePasses {
 
   // from each body's frame in its parent's to all in the base's
   [[gnu::always_inline]] Pose placed(const Each33<P, Scalar>& R, const Three& p) const noexcept {
-    using Mat3 = Mat<3, Scalar>;
-    using Vec3 = Vec<3, Scalar>;
-    Mat3 turned[N + 1];
-    Vec3 at[N + 1];
-    turned[0].setIdentity();
-    at[0].setZero();
-    Pose out;
+    using Four = Each<4, Scalar>;  // x, y and z of one body, and nothing
+    Four x[P + 1], y[P + 1], z[P + 1], at[P + 1];
+    x[0] = y[0] = z[0] = at[0] = Four::zero();
+    x[0].set(0, Scalar(1)), y[0].set(1, Scalar(1)), z[0].set(2, Scalar(1));
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
       const int parent = parent_[i] + 1;
-      Mat3 own;
-      own << R.x.x[i], R.y.x[i], R.z.x[i], R.x.y[i], R.y.y[i], R.z.y[i], R.x.z[i], R.y.z[i],
-          R.z.z[i];
-      turned[i + 1].noalias() = turned[parent] * own;
-      at[i + 1] = at[parent] + turned[parent] * Vec3(p.x[i], p.y[i], p.z[i]);
-      out.R.x.set(i, turned[i + 1].col(0));
-      out.R.y.set(i, turned[i + 1].col(1));
-      out.R.z.set(i, turned[i + 1].col(2));
-      out.p.set(i, at[i + 1]);
+      const auto turned = [&](const Three& v) {
+        return Four::all(v.x[i]) * x[parent] + Four::all(v.y[i]) * y[parent] +
+               Four::all(v.z[i]) * z[parent];
+      };
+      x[i + 1] = turned(R.x), y[i + 1] = turned(R.y), z[i + 1] = turned(R.z);
+      at[i + 1] = at[parent] + turned(p);
     }
+#pragma GCC unroll 8
+    for (int i = N + 1; i <= P; ++i) x[i] = y[i] = z[i] = at[i] = Four::zero();
+    Pose out;
+    out.R.x.set_all(x + 1), out.R.y.set_all(y + 1), out.R.z.set_all(z + 1), out.p.set_all(at + 1);
     return out;
   }
 
@@ -229,8 +228,9 @@ class TreePasses {
   int parent_[N];
   Mat<3> to_own_[N];          // from the frame of the TreeJoint to ours, z along the axis
   One behind_[N], ahead_[N];  // [i][j]: 1 if j is in i's subtree, or i in j's
+  One own_behind_[N];         // behind_ without i itself
   VecN zero_, turns_;         // [rad] rho of the pose below; 1 of hinges
-  VecN armature_;             // [kg m^2]
+  One armature_[N];           // [kg m^2] of i, and 0 of the others
   One hinge_ = One::zero(), slide_ = hinge_, m_ = hinge_, m_behind_ = hinge_;
   Each33<P, Scalar> R_, Sigma_;  // in the parent's axes; about the center of mass, in ours
   Three p_, center_, g_;         // [m] in the parent's axes, in ours; [m/s^2] gravity
@@ -268,11 +268,13 @@ void TreePasses<N, Scalar>::fill(const std::array<TreeJoint, N>& joints, int i) 
   turns_[i] = Scalar(hinge ? 1 : 0);
   hinge_.set(i, Scalar(hinge ? 1 : 0));
   slide_.set(i, Scalar(hinge ? 0 : 1));
-  armature_[i] = Scalar(j.armature);
+  armature_[i] = One::zero();
+  armature_[i].set(i, Scalar(j.armature));
   m_.set(i, Scalar(j.mass));
   parent_[i] = j.parent;
   for (int k = i; k >= 0; k = parent_[k]) {
     behind_[k].set(i, Scalar(1));
+    own_behind_[k].set(i, Scalar(k == i ? 0 : 1));
     ahead_[i].set(k, Scalar(1));
     m_behind_.set(k, m_behind_[k] + m_[i]);
   }
