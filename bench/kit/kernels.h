@@ -108,8 +108,8 @@ class alignas(kPage) Instance final : public KernelInstance {
     alignas(Subject) unsigned char copies[2][sizeof(Subject)];
     for (auto& copy : copies) {
       std::memset(copy, &copy == copies ? 0 : 255, sizeof copy);
-      detail::keep(copy);  // else the compiler knows that a constructor ends what was there
-      std::destroy_at(new (copy) Subject(subject_));
+      detail::keep(copy);  // else the compiler knows that constructors and destructors end it
+      std::destroy_at(new (copy) Subject(subject_)), detail::keep(copy);
     }
     auto* const out = static_cast<unsigned char*>(bytes);
     for (int i = 0; i < std::min<int>(most, sizeof(Subject)); ++i)
