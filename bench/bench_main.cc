@@ -170,7 +170,7 @@ void add_selection_flags(CLI::App& app, Flags& flags) {
   app.add_option("--robot", flags.studies.robot,
                  "only this one, or that of an MJCF or URDF file (with --lock REGEX)")
       ->type_name("NAME|FILE");
-  app.add_option("--lock", flags.lock)->group("");
+  app.add_option("--lock", flags.lock)->group("")->check(not_empty);
   app.add_option("--scenarios", flags.scenarios)->group("");
   app.add_option("--estimator", flags.selection.estimators,
                  "run only these, as NAME[:KEY=VALUE].., like mo2:bandwidth=50")

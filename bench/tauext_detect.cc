@@ -134,7 +134,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--robot", f.study.robot,
                  "robot to study, or its file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
-  app.add_option("--lock", f.lock)->group("");
+  app.add_option("--lock", f.lock)->group("")->check(not_empty);
   add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
   add_count(app, "--runs", f.calibration.runs, 1, 10000,
             "training runs of 30 s for each condition");

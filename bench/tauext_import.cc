@@ -119,7 +119,8 @@ int main(int argc, char** argv) {
   app.add_option("file", file, "MJCF or URDF file")->required()->type_name("FILE.xml|FILE.urdf");
   app.add_option("--lock", options.lock,
                  "fix joints whose whole name matches where they are 0; mass stays")
-      ->type_name("REGEX");
+      ->type_name("REGEX")
+      ->check(not_empty);
   app.add_option("--out,-o", out, "file to write; - is standard output")->required();
   return run_program(app, argc, argv, [&] { return import(file, options, out); });
 }

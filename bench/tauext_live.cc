@@ -25,7 +25,8 @@ void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
   app.add_option("--robot", o.robot, "robot (see --list), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");
   app.add_option("--lock", o.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX");
+      ->type_name("REGEX")
+      ->check(not_empty);
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
   app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
   app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
@@ -46,7 +47,8 @@ void add_run_flags(CLI::App& app, live::Options& o) {
       ->type_name("FILE");
   app.add_option("--wrench", o.wrench,
                  "the force at this site or body (end_effector), and the link touched")
-      ->type_name("SITE");
+      ->type_name("SITE")
+      ->check(not_empty);
   app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
       ->type_name("[URL]")
       ->expected(0, 1);

@@ -60,7 +60,9 @@ int main(int argc, char** argv) {
   bool list = false;
   app.add_option("--robot", robot_name, "robot (see --list), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");
-  app.add_option("--lock", lock, "joints of that file to fix, like grippers'")->type_name("REGEX");
+  app.add_option("--lock", lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX")
+      ->check(not_empty);
   app.add_option("--scenario", scenario_name, "scenario (see --list)");
   app.add_option("--scenarios", scenario_file, "add those of a JSON file (bench/run/README.md)")
       ->type_name("FILE");

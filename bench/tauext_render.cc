@@ -26,7 +26,8 @@ void add_flags(CLI::App& app, Flags& f) {
       ->type_name("NAME|FILE")
       ->required();
   app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX");
+      ->type_name("REGEX")
+      ->check(not_empty);
   app.add_option("--q", f.q, "pose, a number for each joint [rad, m]; else 0, of a file its home")
       ->delimiter(',')
       ->type_name("Q1,Q2..");

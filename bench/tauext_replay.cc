@@ -94,7 +94,8 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX");
+      ->type_name("REGEX")
+      ->check(not_empty);
   app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -105,7 +106,8 @@ void add_flags(CLI::App& app, Flags& f) {
       ->check(CLI::IsMember({"held", "instant"}));
   app.add_option("--wrench", f.wrench,
                  "the force at this site or body (end_effector), and the link touched")
-      ->type_name("SITE");
+      ->type_name("SITE")
+      ->check(not_empty);
   app.add_option("--out", f.out, "file to write; - is standard output");
   app.add_option("--score_from", f.score_from,
                  "errors count from this time on [s]; else from the begin")
@@ -159,6 +161,8 @@ int replay(Flags& f) {
   }
   write_estimates(trace, columns, f.out);
   std::FILE* const to = f.out == "-" ? stderr : stdout;
+  if (!trace.has_truth())
+    fmt::print(to, "{} samples; no errors, as the log has no tau_ext\n", trace.size());
   if (good) print_metrics(trace, columns, f.score_from, to);
   if (good) print_forces(trace, columns, to);
   return good ? kGood : kAnswerIsNo;

@@ -77,4 +77,10 @@ std::unique_ptr<const ArmForces> arm_forces(const Model& arm, const ArmForceOpti
   return std::make_unique<Forces>(tree, o);
 }
 
+std::string touched_link(int link, int dof) {
+  if (link == 0) return "no link is touched";
+  return fmt::format("joint {} carries the link that is touched{}", link,
+                     link < dof ? ", or one behind it whose joints' axes the force meets" : "");
+}
+
 }  // namespace tauext

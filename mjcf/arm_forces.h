@@ -38,4 +38,9 @@ class ArmForces {
 /// @throws std::invalid_argument as tree_of, ArmTree::point and ForceAtSite do, and for more joints
 std::unique_ptr<const ArmForces> arm_forces(const Model& arm, const ArmForceOptions& options = {});
 
+/// In words: which link is touched.
+/// @param link the joint, from 1, that carries it; 0: none
+/// @param dof joints of the arm
+std::string touched_link(int link, int dof);
+
 }  // namespace tauext

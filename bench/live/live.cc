@@ -82,7 +82,7 @@ std::vector<Stream> streams_of(const std::vector<std::string>& estimators,
 LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string>& estimators,
                                const std::string& detector, const DetectorsOf& thresholds_of,
                                const Trace& trace, LiveStream* stream, const ArmForces* forces)
-    : stream_(stream), forces_(forces) {
+    : dof_(robot.dof()), stream_(stream), forces_(forces) {
   if (robot.dof() > kMaxJoints) {
     throw std::invalid_argument(
         fmt::format("{} has {} joints: a message holds {}", robot.name(), robot.dof(), kMaxJoints));
@@ -140,7 +140,9 @@ void LiveEstimation::find_force(const Reading& r, LiveFigures& f) noexcept {
   keep(out.direction, touch.line.direction);
   out.left_over = s.left_over;
   out.link = touch.link + 1;
-  f.largest_force.store(std::max(f.largest_force.load(kRelaxed), s.force.norm()), kRelaxed);
+  if (!(s.force.norm() > f.largest_force.load(kRelaxed))) return;
+  f.largest_force.store(s.force.norm(), kRelaxed);
+  f.touched.store(out.link, kRelaxed);
 }
 
 void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept {

@@ -29,6 +29,7 @@ struct LiveFigures {
   std::array<std::atomic<double>, kMaxJoints> squares{};  ///< [N^2 m^2] of the error, summed
   std::atomic<double> largest_error = 0;                  ///< [N m] of any joint
   std::atomic<double> largest_force = 0;  ///< [N] at the point where forces are looked for
+  std::atomic<int> touched = 0;  ///< then, the joint, from 1, that carries the link; 0: none
 
   /// [N m] worst joint's root of the mean squared error; NaN without a reference.
   double rmse() const noexcept;
@@ -56,6 +57,7 @@ class LiveEstimation {
   /// They forget everything: the sender has started anew.
   void reset() noexcept;
 
+  int dof() const { return dof_; }                                        ///< joints of the robot
   int size() const { return static_cast<int>(pairs_.size()); }            ///< estimators
   const std::string& name(int i) const { return pairs_[i]->name; }        ///< of estimator i
   const LiveFigures& figures(int i) const { return pairs_[i]->figures; }  ///< of estimator i
@@ -72,6 +74,7 @@ class LiveEstimation {
   void find_force(const Reading& r, LiveFigures& f) noexcept;
   static void compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept;
 
+  int dof_;
   std::vector<std::unique_ptr<Pair>> pairs_;
   LiveStream* stream_;
   const ArmForces* forces_;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/score/metric_list.h"
+#include "mjcf/arm_forces.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext::live {
@@ -66,8 +67,8 @@ std::string format(const LiveReport& r, const LiveEstimation& e) {
                step_us(f.step_ns, 0.99), step_us(f.step_ns, 1), fmt::to_string(f.unusable.load()),
                fmt::to_string(f.marks.load())});
     if (f.largest_force > 0)
-      table.add_note(
-          fmt::format("  {}: the largest force is {:.4g} N", e.name(i), f.largest_force.load()));
+      table.add_note(fmt::format("  {}: the largest force is {:.4g} N; {}", e.name(i),
+                                 f.largest_force.load(), touched_link(f.touched, e.dof())));
     if (const std::string said = f.counts.sentence(); !said.empty()) {
       table.add_note(fmt::format("  {}: {}", e.name(i), said));
     }

@@ -38,10 +38,14 @@ void remove_unfinished_files_on_signals() {
 
 // false if help or the version was asked for, which is then printed
 bool parse(CLI::App& app, int argc, char** argv) {
+  // what help hides, CLI11 does not name in an error either
+  const auto hidden = app.get_options([](const CLI::Option* o) { return o->get_group().empty(); });
+  for (CLI::Option* const o : hidden) o->group("hidden");
   try {
     app.parse(argc, argv);
     return true;
   } catch (const CLI::Success& e) {
+    for (CLI::Option* const o : hidden) o->group("");
     std::ostringstream text;
     app.exit(e, text);
     fmt::print("{}", text.str());
@@ -84,6 +88,10 @@ std::string whole_number(const std::string& text) {
   if (error == std::errc() && end == text.data() + text.size()) return "";
   return fmt::format("{} is not a whole number from 0 to {}", text,
                      std::numeric_limits<std::uint64_t>::max());
+}
+
+std::string not_empty(const std::string& text) {
+  return text.empty() ? "its value is empty; leave it out" : "";
 }
 
 std::string regular_expression(const std::string& text) {

@@ -56,6 +56,9 @@ void require_mode(const CLI::App& app, bool fits, const std::string& mode,
 /// @returns "" for a whole number from 0 to 2^64 - 1, else why not
 std::string whole_number(const std::string& text);
 
+/// A check for CLI11. @returns "" for any text, else what is wrong
+std::string not_empty(const std::string& text);
+
 /// A check for CLI11. @returns "" for a regular expression of std::regex, else why it is none
 std::string regular_expression(const std::string& text);
 

@@ -140,8 +140,7 @@ void print_forces(const Trace& trace, const std::vector<Replayed>& all, std::FIL
     const int link = largest->touch.link + 1;
     fmt::print(to, "{}: the largest force is {:.4g} N, at {:.3f} s; {}\n", c.estimator,
                size(*largest), trace.t[static_cast<std::size_t>(largest - c.acting.begin())],
-               link > 0 ? fmt::format("joint {} carries the link that is touched", link)
-                        : "no link is touched");
+               touched_link(link, trace.dof()));
   }
 }
 

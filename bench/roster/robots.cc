@@ -13,6 +13,7 @@
 
 #include "bench/roster/file_robot.h"
 #include "bench/roster/robot_of.h"
+#include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/table_writer.h"
@@ -70,7 +71,8 @@ std::string list_of(const Robot& r) {
 
 // what its scenarios and detectors are scaled by
 std::string list_scale(const Robot& r) {
-  const ArmScale scale = scale_of(r.load_for(quiet()));
+  const Model model = r.load_for(quiet());
+  const ArmScale scale = scale_of(model);
   TableWriter table({{"  joint", ""},
                      {"home", "rad, m"},
                      {"amplitude", "rad, m"},
@@ -82,8 +84,11 @@ std::string list_scale(const Robot& r) {
                fmt::format("{:.3g}", scale.usual_torque[i])});
   }
   return fmt::format(
-      "{}  its end effector weighs {:.3g} kg where it gives way, and is hit by {:.3g} N\n",
-      table.format(), scale.mass, scale.force);
+      "{}  its end effector is {}\n  it weighs {:.3g} kg where it gives way, and is hit by {:.3g} "
+      "N{}\n",
+      table.format(), tree_of(model).end_effector, scale.mass, scale.force,
+      scale.force < 0.99 * std::min(20 * scale.mass, 300.) ? ", as a joint would give way to more"
+                                                           : "");
 }
 
 }  // namespace

@@ -59,22 +59,32 @@ ThresholdSet set_of(const Json& j) {
   ThresholdSet set;
   set.robot = j.at("robot").get<std::string>();
   set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
-  const Robot& r = robot(set.robot);
   set.fingerprint = j.value("arm", "");
-  if (set.fingerprint != r.fingerprint()) {
-    throw std::runtime_error(
-        fmt::format("they are of another arm than {} is now; make them again with tauext-detect "
-                    "--calibrate",
-                    set.robot));
-  }
+  // an arm goes by its fingerprint: its file may have been elsewhere, and is not looked for
+  const Robot* const known = set.fingerprint.empty() ? &robot(set.robot) : nullptr;
+  int dof = known != nullptr ? known->dof() : 0;
   for (const auto& [estimator, detectors] : j.at("thresholds").items()) {
     for (const auto& [detector, values] : detectors.items()) {
-      r.check(estimator, detector);
+      if (known != nullptr) known->check(estimator, detector);
+      if (dof == 0) dof = static_cast<int>(values.at("threshold").size());
       set.by_estimator[estimator][detector] =
-          trained_of(values, r.dof(), fmt::format("{}/{}+{}", set.robot, estimator, detector));
+          trained_of(values, dof, fmt::format("{}/{}+{}", set.robot, estimator, detector));
     }
   }
   return set;
+}
+
+// of this robot as it is now; null if there is none
+const ThresholdSet* set_for(const Thresholds& t, const Robot& r, double velocity_noise) {
+  if (const ThresholdSet* const set = t.of(r.name(), velocity_noise, r.fingerprint())) return set;
+  for (const ThresholdSet& s : t.sets) {
+    if (s.robot != r.name()) continue;
+    throw std::runtime_error(
+        fmt::format("{}: they are of another arm than {} is now; make them again with "
+                    "tauext-detect --calibrate",
+                    t.path, r.name()));
+  }
+  return nullptr;
 }
 
 // robot/estimator+detector|detector, of all sets
@@ -148,15 +158,20 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
                                const std::string& detector) {
   if (t.sets.empty() || detector.empty()) return {};
   const std::string name(name_of_specification(detector));
-  const std::vector<std::string> parts = robot(robot_name).trained_parts(name);
+  const Robot& r = robot(robot_name);
+  const std::vector<std::string> parts = r.trained_parts(name);
   if (parts.empty()) return {};
   DetectorThresholds known;
-  if (const ThresholdSet* const set = t.of(robot_name, velocity_noise)) {
+  if (const ThresholdSet* const set = set_for(t, r, velocity_noise)) {
     const auto behind = set->by_estimator.find(estimator);
     for (const std::string& part : parts) {
       if (behind == set->by_estimator.end()) break;
       const auto own = behind->second.find(part == name ? detector : part);
-      if (own != behind->second.end()) known[part] = own->second;
+      if (own == behind->second.end()) continue;
+      if (own->second.threshold.size() != r.dof())
+        throw std::runtime_error(fmt::format("{}: {} numbers for {} joints", t.path,
+                                             own->second.threshold.size(), r.dof()));
+      known[part] = own->second;
     }
   }
   if (known.size() == parts.size()) return known;

@@ -15,8 +15,8 @@ namespace tauext {
 void write_thresholds(const Thresholds& t, const std::string& path);
 
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing
-/// key, no set, an arm whose file has changed since, a margin or a threshold that is not positive,
-/// a wrong number of joints, an unknown robot, estimator or detector (a metric that is none is
+/// key, no set, a margin or a threshold that is not positive, a wrong number of joints, an unknown
+/// robot, estimator or detector (a metric that is none is
 /// refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 
@@ -25,6 +25,7 @@ Thresholds read_thresholds(const std::string& path);
 /// for a detector that has no thresholds to train.
 /// @param velocity_noise [rad/s] of the sensors behind which it runs
 /// @throws std::invalid_argument listing what was trained, if that pair was not on that robot
+/// @throws std::runtime_error if the robot's file has changed since
 DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot,
                                double velocity_noise, const std::string& estimator,
                                const std::string& detector);

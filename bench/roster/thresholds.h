@@ -36,13 +36,16 @@ struct Thresholds {
 
   /// The set of this robot for sensors of this quality: the least noisy one that is as noisy, or
   /// else the noisiest. Null if there is none of this robot.
-  const ThresholdSet* of(const std::string& robot, double velocity_noise) const;
+  /// @param fingerprint Robot::fingerprint(); a robot that has one goes by it, whatever its name
+  const ThresholdSet* of(const std::string& robot, double velocity_noise,
+                         const std::string& fingerprint = "") const;
 };
 
-inline const ThresholdSet* Thresholds::of(const std::string& robot, double velocity_noise) const {
+inline const ThresholdSet* Thresholds::of(const std::string& robot, double velocity_noise,
+                                          const std::string& fingerprint) const {
   const ThresholdSet* best = nullptr;
   for (const ThresholdSet& s : sets) {
-    if (s.robot != robot) continue;
+    if (s.fingerprint != fingerprint || (fingerprint.empty() && s.robot != robot)) continue;
     const bool enough = s.velocity_noise >= velocity_noise;
     const bool had_enough = best != nullptr && best->velocity_noise >= velocity_noise;
     const bool better =

@@ -30,8 +30,7 @@ std::string key_of(const Entry& e) {
 
 // [N m] a joint that carries next to nothing is disturbed by those that carry much
 Eigen::VectorXd slack(const Robot& r) {
-  const Eigen::VectorXd small = r.small_torque();
-  return small.cwiseMax(small.maxCoeff() / 20);
+  return Eigen::VectorXd::Constant(r.dof(), r.small_torque().maxCoeff());
 }
 
 }  // namespace

@@ -103,6 +103,11 @@ TEST_F(FilePrograms, ThresholdsAreOfTheArmThatTheyWereTrainedOn) {
   write("own.urdf", arm);
   const Outcome made = run("tauext-detect --calibrate t.json --runs 1 " + few);
   ASSERT_EQ(made.code, 0) << made.text;
+  write("same.urdf", arm);
+  const Outcome same =
+      run("tauext-detect --thresholds t.json --robot same.urdf --estimator mo2 --detector "
+          "high_pass");
+  EXPECT_EQ(same.code, 0) << "an arm goes by what it is, not by its path: " << same.text;
   const auto mass = arm.find("<mass value=\"") + 13;
   ASSERT_GT(mass, 13u);
   write("own.urdf", arm.insert(mass, "1"));  // 112 kg instead of 12
@@ -179,9 +184,10 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
 TEST_F(FilePrograms, SayWhatIsWrongWithIt) {
   EXPECT_TRUE(run("tauext-bench --lock x").says("--lock: of which --robot FILE?"));
   EXPECT_TRUE(run("tauext-bench --robot wallmobot3 --lock x").says("wallmobot3 is none"));
+  EXPECT_TRUE(run("tauext-bench --robot a.xml --lock ''").says("--lock: its value is empty"));
   const Outcome tied = run("tauext-bench --robot " TAUEXT_EXAMPLES "/arm7.xml");
   EXPECT_EQ(tied.code, 2);
-  EXPECT_TRUE(tied.says("--lock REGEX fixes them")) << tied.text;
+  EXPECT_TRUE(tied.says("is tied to '") && tied.says("--lock REGEX fixes it")) << tied.text;
   EXPECT_EQ(run("tauext-record --robot nothing.urdf --scenario step --out x.csv").code, 2);
   EXPECT_TRUE(
       run("tauext-record --robot " + kArm6 + " --scenario dance --out x.csv")

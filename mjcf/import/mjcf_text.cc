@@ -170,7 +170,7 @@ class Import {
         const std::string element = fmt::format(" {} ", name_of(e));
         if (detail::kLeftOutElements.find(element) == detail::kLeftOutElements.npos)
           fail("line {}: this import knows no <{}>; take it out", e, name_of(e));
-        return drop(e, std::string(name_of(e)), out_.dropped);
+        return drop_section(e);
       }
       if (name_of(e) == "geom" && e.Attribute("mesh") != nullptr && !inside(e, "default")) {
         if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
@@ -186,6 +186,14 @@ class Import {
       if (meshes.count(name) > 0) return true;
       return drop(e, "mesh", out_.dropped);
     });
+  }
+
+  // counts what is in it
+  bool drop_section(XMLElement& e) {
+    const std::string name(name_of(e));
+    for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
+      if (c->NextSiblingElement() != nullptr) ++out_.dropped[name];
+    return drop(e, name, out_.dropped);
   }
 
   static bool is_left_out(const XMLElement& e, const std::string& attribute) {

@@ -179,6 +179,7 @@ class Urdf {
     const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
     set(out, "damping", {number(dynamics, "damping", 0)});
     set(out, "frictionloss", {number(dynamics, "friction", 0)});
+    set(out, "armature", {number(dynamics, "armature", 0)});  // URDF itself has no word for it
     if (const XMLElement* const mimic = joint.FirstChildElement("mimic")) {
       XMLElement* all = mujoco_.FirstChildElement("equality");
       if (all == nullptr) all = mujoco_.InsertNewChildElement("equality");

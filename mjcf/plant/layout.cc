@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "mjcf/trace/printable.h"
@@ -140,12 +141,34 @@ Layout layout_of(const mjModel& m, const mjData& d) {
 }
 
 BodyPoint end_effector_of(const mjModel& m, int last) {
-  for (const char* name : {kEndEffector, "attachment_site"}) {
-    const int site = mj_name2id(&m, mjOBJ_SITE, name);
-    if (site >= 0) return {m.site_bodyid[site], Eigen::Vector3d::Map(m.site_pos + 3 * site)};
-  }
+  const auto site = [&](const char* name) -> std::optional<BodyPoint> {
+    const int id = mj_name2id(&m, mjOBJ_SITE, name);
+    if (id < 0) return {};
+    return BodyPoint{m.site_bodyid[id], Eigen::Vector3d::Map(m.site_pos + 3 * id),
+                     fmt::format("the site '{}'", name)};
+  };
+  if (auto found = site(kEndEffector)) return *found;
+  if (const int id = mj_name2id(&m, mjOBJ_BODY, kEndEffector); id >= 0)
+    return {id, Eigen::Vector3d::Zero(), fmt::format("the origin of the body '{}'", kEndEffector)};
+  if (auto found = site("attachment_site")) return *found;
   const int body = m.dof_bodyid[last];
-  return {body, Eigen::Vector3d::Map(m.body_ipos + 3 * body)};
+  return {body, Eigen::Vector3d::Map(m.body_ipos + 3 * body),
+          fmt::format("the centre of mass of the body '{}', as there is no site 'end_effector'",
+                      name_of(m, mjOBJ_BODY, body))};
+}
+
+std::string first_tie(const mjModel& m) {
+  const bool joint = m.eq_type[0] == mjEQ_JOINT;
+  const bool bodies = m.eq_type[0] == mjEQ_CONNECT || m.eq_type[0] == mjEQ_WELD;
+  if (!joint && !bodies) return "an <equality> ties tendons: not supported; take it out";
+  const auto name = [&](int id) {
+    if (id < 0) return std::string("a number");
+    return fmt::format("'{}'", name_of(m, joint ? mjOBJ_JOINT : mjOBJ_BODY, id));
+  };
+  return fmt::format("{} {} is tied to {} by {}: not supported; {}", joint ? "joint" : "body",
+                     name(m.eq_obj1id[0]), name(m.eq_obj2id[0]),
+                     joint ? "<equality> or <mimic>" : "<equality>",
+                     joint ? "--lock REGEX fixes it" : "open the ring");
 }
 
 }  // namespace tauext

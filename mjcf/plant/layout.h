@@ -33,14 +33,19 @@ struct Layout {
 struct BodyPoint {
   int body = 0;                                  ///< its number in the model
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< [m] in its frame
+  std::string what;                              ///< in words
 };
 
 /// The name of the point that touches the outside, in every arm.
 inline constexpr const char* kEndEffector = "end_effector";
 
-/// The site `end_effector`, else `attachment_site`, else the centre of mass of the body behind the
-/// last of the arm's degrees of freedom.
+/// The site `end_effector`, else the body of that name (a link of URDF, which has no sites), else
+/// the site `attachment_site`, else the centre of mass of the body behind the last of the arm's
+/// degrees of freedom.
 BodyPoint end_effector_of(const mjModel& m, int last);
+
+/// What the first equality of a model that has some ties together, and what to do.
+std::string first_tie(const mjModel& m);
 
 /// @param d at any state of m, after mj_forward
 /// @throws std::invalid_argument if the model is not laid out like that, naming what is not

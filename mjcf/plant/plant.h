@@ -63,8 +63,7 @@ class Plant {
   /// A site of the arm.
   /// @throws std::invalid_argument for an unknown site
   Point site(const std::string& name) const;
-  /// The point that touches the outside: the site `end_effector`, else `attachment_site`, else the
-  /// centre of mass of the body behind the last joint.
+  /// The point that touches the outside: end_effector_of in layout.h.
   Point end_effector() const { return moving(end_effector_); }
   /// Its Jacobian [m per joint coordinate] in the world frame.
   Eigen::MatrixXd end_effector_jacobian() const;

@@ -57,7 +57,7 @@ void check(const mjModel& m) {
     throw std::invalid_argument(
         "no joint is left that moves: an arm of hinges and slides is wanted");
   }
-  refuse(m.neq > 0, "joints tied together by <equality> (--lock REGEX fixes them)");
+  if (m.neq > 0) throw std::invalid_argument(first_tie(m));
   refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
   for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
     refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
@@ -197,6 +197,7 @@ void set_points(const mjModel& m, const std::vector<Place>& places, ArmTree& tre
     add(mjOBJ_SITE, i, m.site_bodyid[i], vector(m.site_pos + 3 * i));
   for (int i = 1; i < m.nbody; ++i) add(mjOBJ_BODY, i, i, Vec<3>::Zero());
   const BodyPoint end = end_effector_of(m, m.nv - 1);
+  tree.end_effector = end.what;
   const Place& place = places[static_cast<std::size_t>(end.body)];
   tree.points.insert({kEndEffector, {place.joint, place.p + place.R * end.at}});
 }
@@ -240,7 +241,8 @@ std::string too_stiff(const Model& model) {
     if (rate <= kQuickest) continue;
     return fmt::format(
         "{}: a damping of {:.3g} stops its inertia of {:.2g} within {:.2g} ms, faster than samples "
-        "of 1 ms show; add its motor's inertia behind the gear, armature=\"{:.2g}\" or more",
+        "of 1 ms show; add its motor's inertia behind the gear, armature=\"{:.2g}\" or more, to "
+        "its <joint> in MJCF, to its <dynamics> in URDF",
         named_joint(*model, i), damping, 1 / tree.mobility[i], 1000 / rate,
         1.05 * (damping / kQuickest - 1 / tree.mobility[i]));
   }

@@ -40,6 +40,8 @@ struct ArmTree {
   /// Sites, and origins of bodies, that joints move; and kEndEffector.
   std::map<std::string, ArmPoint> points;
 
+  std::string end_effector;  ///< what kEndEffector is, in words
+
   /// A point by its name.
   /// @throws std::invalid_argument listing the known ones
   const ArmPoint& point(const std::string& name) const;

@@ -149,6 +149,26 @@ TEST_F(Import, OfUrdfIsTheArmThatMuJoCosOwnReaderMakes) {
   EXPECT_GT(tree.friction(qd)[0], 0.5);
 }
 
+// what a URDF cannot say otherwise
+TEST_F(Import, OfUrdfTakesAnArmatureAndALinkForTheEndEffector) {
+  std::string text = urdf(
+      "<link name='end_effector'/><joint name='tip' type='fixed'><parent link='tool'/><child "
+      "link='end_effector'/><origin xyz='0 .1 .25'/></joint>");
+  const std::string friction = "friction='.3'";
+  text.insert(text.find(friction), "armature='.2' ");
+  const Model model = load_mjcf(put(text, "arm.urdf"));
+  const ArmTree tree = tree_of(model);
+  EXPECT_EQ(tree.joints[0].armature, 0.2);
+  EXPECT_EQ(tree.joints[1].armature, 0);
+  EXPECT_EQ(tree.end_effector, "the origin of the body 'end_effector'");
+  EXPECT_EQ(tree.point("end_effector").joint, 2);
+  EXPECT_LT((tree.point("end_effector").place - Vec<3>(0, 0.1, 0.25)).norm(), 1e-12);
+  Plant plant(model);
+  plant.set_state(Vec<3>(0.4, -1.1, 0.05), Vec<3>::Zero());
+  const Vec<3> at = tree_model<3>(model).position(Vec<3>(0.4, -1.1, 0.05), 2, Vec<3>(0, 0.1, 0.25));
+  EXPECT_LT((plant.end_effector().position - (tree.base + at)).norm(), 1e-9);
+}
+
 TEST_F(Import, OfUrdfSaysWhatIsWrong) {
   const auto error = [&](const std::string& more, const std::string& lock = "") {
     const std::string path = put(urdf(more), "arm.urdf");
@@ -163,7 +183,9 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
       "link='a'/></joint><link name='b'><inertial><mass value='.1'/><inertia ixx='1e-3' "
       "iyy='1e-3' izz='1e-3'/></inertial></link><joint name='right' type='prismatic'><parent "
       "link='tool'/><child link='b'/><mimic joint='left'/></joint>";
-  has(error(fingers), "--lock");
+  has(error(fingers),
+      "joint 'right' is tied to 'left' by <equality> or <mimic>: not supported; --lock REGEX "
+      "fixes");
   EXPECT_EQ(error(fingers, "left|right"), "no error");
   has(error("<joint name='x' type='fixed'><parent link='tool'/><child link='none'/></joint>"),
       "joint 'x': its child 'none' is no link");
