@@ -85,13 +85,9 @@ void expect_textbook_on_a_tree() {
   EXPECT_LT((ekf.covariance() - textbook.P).norm(), 1e-9 * textbook.P.norm());
 }
 
-TEST(Ekf, AgreesWithTheDenseTextbookFormOnTreesOfAnySize) {
-  expect_textbook_on_a_tree<2>();
-  expect_textbook_on_a_tree<4>();
-  expect_textbook_on_a_tree<5>();
-  expect_textbook_on_a_tree<6>();
+TEST(Ekf, AgreesWithTheDenseTextbookFormOnTreesOf2And7Joints) {
+  expect_textbook_on_a_tree<2>();  // a size more takes half a minute to compile
   expect_textbook_on_a_tree<7>();
-  expect_textbook_on_a_tree<8>();
 }
 
 TEST(Ekf, AgreesWith100DigitArithmeticOn200Samples) {

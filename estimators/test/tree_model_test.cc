@@ -71,8 +71,6 @@ TEST(TreeModel, TermsAndDerivativesAreThoseOfOneArm) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     expect_consistent<1>(seed);
     expect_consistent<3>(seed);
-    expect_consistent<4>(seed);
-    expect_consistent<5>(seed);
     expect_consistent<7>(seed);
     expect_consistent<8>(seed);
   }
