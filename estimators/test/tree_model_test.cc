@@ -72,7 +72,6 @@ TEST(TreeModel, TermsAndDerivativesAreThoseOfOneArm) {
     expect_consistent<1>(seed);
     expect_consistent<3>(seed);
     expect_consistent<7>(seed);
-    expect_consistent<8>(seed);
   }
 }
 

@@ -19,56 +19,53 @@ template <int P, class Scalar>
 struct Each {
   Scalar x[P];  ///< by body
 
-  [[gnu::always_inline]] static Each zero() noexcept {  ///< 0 of each
+  static Each zero() noexcept {  ///< 0 of each
     return all(Scalar(0));
   }
-  [[gnu::always_inline]] static Each all(const Scalar& a) noexcept {  ///< the same of each
+  static Each all(const Scalar& a) noexcept {  ///< the same of each
     Each e;
     for (Scalar& x : e.x) x = a;
     return e;
   }
   template <int N>
-  [[gnu::always_inline]] static Each from(
-      const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
+  static Each from(const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
     Each e = zero();
     for (int i = 0; i < N; ++i) e.x[i] = v[i];
     return e;
   }
-  [[gnu::always_inline]] Scalar operator[](int i) const noexcept {  ///< that of body i
+  Scalar operator[](int i) const noexcept {  ///< that of body i
     return x[i];
   }
-  [[gnu::always_inline]] void set(int i, const Scalar& a) noexcept {  ///< that of body i
+  void set(int i, const Scalar& a) noexcept {  ///< that of body i
     x[i] = a;
   }
   /// The same, or, if that saves work, 0 of the bodies before `first`.
-  [[gnu::always_inline]] Each since([[maybe_unused]] int first) const noexcept { return *this; }
-  [[gnu::always_inline]] void store(Scalar* to) const noexcept {  ///< as numbers side by side
+  Each since([[maybe_unused]] int first) const noexcept { return *this; }
+  void store(Scalar* to) const noexcept {  ///< as numbers side by side
     for (const Scalar& a : x) *to++ = a;
   }
   /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
-  [[gnu::always_inline]] void add(const Each& a, const Scalar& times, int first,
-                                  int last) noexcept {
+  void add(const Each& a, const Scalar& times, int first, int last) noexcept {
     for (int i = first; i <= last; ++i) x[i] += times * a.x[i];
   }
-  [[gnu::always_inline]] friend Each operator+(
-      Each a, const Each& b) noexcept {  ///< one by one, as all operators
+  friend Each operator+(Each a, const Each& b) noexcept {  ///< one by one, as all operators
     for (int i = 0; i < P; ++i) a.x[i] += b.x[i];
     return a;
   }
-  [[gnu::always_inline]] friend Each operator-(Each a, const Each& b) noexcept {
+  friend Each operator-(Each a, const Each& b) noexcept {
     for (int i = 0; i < P; ++i) a.x[i] -= b.x[i];
     return a;
   }
-  [[gnu::always_inline]] friend Each operator*(Each a, const Each& b) noexcept {
+  friend Each operator*(Each a, const Each& b) noexcept {
     for (int i = 0; i < P; ++i) a.x[i] *= b.x[i];
     return a;
   }
 };
 
-/// Registers full of them.
+/// Registers full of them; of one body, which needs no padding, the first lane of one.
 template <int P>
-requires(P % 4 == 0) struct Each<P, double> {
-  static constexpr int kCount = P / 4;
+requires(P % 4 == 0 || P == 1) struct Each<P, double> {
+  static constexpr int kCount = (P + 3) / 4;
   Lanes x[kCount];  ///< by body, four in each
 
   Each() noexcept = default;
@@ -110,8 +107,12 @@ requires(P % 4 == 0) struct Each<P, double> {
     return e;
   }
   [[gnu::always_inline]] void store(double* to) const noexcept {
+    if constexpr (P == 1) {
+      *to = x[0][0];
+      return;
+    }
 #pragma GCC unroll 2
-    for (int k = 0; k < kCount; ++k) detail::store(to + 4 * k, x[k]);
+    for (int k = 0; k < P / 4; ++k) detail::store(to + 4 * k, x[k]);
   }
   [[gnu::always_inline]] void add(const Each& a, double times, int first, int last) noexcept {
     const Lanes t{times, times, times, times};
