@@ -87,8 +87,7 @@ std::string list_scale(const Robot& r) {
       "{}  its end effector is {}\n  it weighs {:.3g} kg where it gives way, and is hit by {:.3g} "
       "N{}\n",
       table.format(), tree_of(model).end_effector, scale.mass, scale.force,
-      scale.force < 0.99 * std::min(20 * scale.mass, 300.) ? ", as a joint would give way to more"
-                                                           : "");
+      scale.gives_way ? ", as a joint would give way to more" : "");
 }
 
 }  // namespace

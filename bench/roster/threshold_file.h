@@ -16,7 +16,7 @@ void write_thresholds(const Thresholds& t, const std::string& path);
 
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, not JSON, a missing
 /// key, no set, a margin or a threshold that is not positive, a wrong number of joints, an unknown
-/// robot, estimator or detector (a metric that is none is
+/// robot, and of a robot without a file an unknown estimator or detector (a metric that is none is
 /// refused where the detector is built)
 Thresholds read_thresholds(const std::string& path);
 

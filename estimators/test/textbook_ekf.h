@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <stdexcept>
 
 #include "estimators/ekf.h"
 #include "estimators/wallmobot3.h"
@@ -56,6 +57,8 @@ class TextbookEkf {
     if constexpr (requires { arm_.inertia(q); }) {
       const Mat<N, S> B = arm_.inertia(q);
       return S(Q_load_) * B * B.transpose();
+    } else if (Q_load_ != 0) {
+      throw std::invalid_argument("Q_load wants an arm that knows its inertia");
     }
     return Mat<N, S>::Zero();
   }

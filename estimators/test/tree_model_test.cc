@@ -98,6 +98,7 @@ TEST(TreeModel, RefusesJointsThatAreNone) {
   refuses([](auto& r) { r.joints[1].armature = -1; }, "armature");
   refuses([](auto& r) { r.joints[0].v_s = 0; }, "v_s above 0");
   refuses([](auto& r) { r.coordinates.setZero(); }, "invertible");
+  refuses([](auto& r) { r.coordinates.col(1) = 0.1 * r.coordinates.col(0); }, "invertible");
 }
 
 TEST(TreeModel, SaysWhereItIsSingular) {

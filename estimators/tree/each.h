@@ -19,10 +19,8 @@ template <int P, class Scalar>
 struct Each {
   Scalar x[P];  ///< by body
 
-  static Each zero() noexcept {  ///< 0 of each
-    return all(Scalar(0));
-  }
-  static Each all(const Scalar& a) noexcept {  ///< the same of each
+  static Each zero() noexcept { return all(Scalar(0)); }  ///< 0 of each
+  static Each all(const Scalar& a) noexcept {             ///< the same of each
     Each e;
     for (Scalar& x : e.x) x = a;
     return e;
@@ -33,12 +31,8 @@ struct Each {
     for (int i = 0; i < N; ++i) e.x[i] = v[i];
     return e;
   }
-  Scalar operator[](int i) const noexcept {  ///< that of body i
-    return x[i];
-  }
-  void set(int i, const Scalar& a) noexcept {  ///< that of body i
-    x[i] = a;
-  }
+  Scalar operator[](int i) const noexcept { return x[i]; }  ///< that of body i
+  void set(int i, const Scalar& a) noexcept { x[i] = a; }   ///< that of body i
   /// The same, or, if that saves work, 0 of the bodies before `first`.
   Each since([[maybe_unused]] int first) const noexcept { return *this; }
   void store(Scalar* to) const noexcept {  ///< as numbers side by side

@@ -65,7 +65,10 @@ void set_forces(const Plant& plant, const VectorXd& way, ArmScale& scale) {
   if (!(gives[2] > 1e-6)) return;  // it weighs a thousand tons
   const Vector3d u = slanted(scale);
   scale.mass = 1 / u.dot(mobility * u);
-  scale.force = std::min({20 * scale.mass, 300., share_of(plant, J.transpose() * u, way)});
+  const double most = std::min(20 * scale.mass, 300.);
+  const double bearable = share_of(plant, J.transpose() * u, way);
+  scale.force = std::min(most, bearable);
+  scale.gives_way = bearable < most;
 }
 
 // a one-sided spring and damper in the way of the end effector

@@ -28,6 +28,7 @@ struct ArmScale {
   /// [N] of blows, pushes being smaller: 20 m/s^2 of that mass, 300 N, or what moves a joint by
   /// 0.05 rad. 0 if no force on the end effector moves the arm.
   double force = 0;
+  bool gives_way = false;  ///< whether that joint limits the force
 };
 
 /// @throws std::invalid_argument if the model cannot be simulated (mjcf/plant/layout.h)
