@@ -19,6 +19,7 @@
 #include "bench/roster/robot_of.h"
 #include "bench/roster/robots.h"
 #include "estimators/tree/tree_model.h"
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/scenarios/scenario.h"
 
@@ -60,11 +61,11 @@ extern template class RobotOf<8>;
 #endif
 
 /// An estimator for every robot from a file, whatever its number of joints: make takes any
-/// TreeModel<N>.
+/// AnyTree<N>, which is a RobotModel.
 template <class Make>
 void register_file_estimator(Make make) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (register_estimator<TreeModel<I + 1>>(make), ...);
+    (register_estimator<AnyTree<I + 1>>(make), ...);
   }
   (std::make_index_sequence<kMaxFileJoints>());
 }
@@ -85,8 +86,8 @@ inline void register_specification(const std::string& robot, const std::string& 
   detail::registered_specifications().emplace_back(robot, specification);
 }
 
-/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/plant/layout.h says. It
-/// has the estimators that every arm has (for_each_common_estimator), and the scenarios that you
+/// A robot: its model for the estimators, and an MJCF file laid out as mjcf/mujoco/layout.h says.
+/// It has the estimators that every arm has (for_each_common_estimator), and the scenarios that you
 /// register.
 /// @throws std::runtime_error naming the file if MuJoCo cannot read it
 template <RobotModel M>

@@ -14,6 +14,7 @@
 
 #include "bench/program/program.h"
 #include "mjcf/import/mjcf_text.h"
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/input_file.h"
@@ -55,14 +56,18 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
                    const std::string& out) {
   std::string name = "make_" + std::filesystem::path(out).stem().string();
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  const std::string type = fmt::format("tauext::TreeModel<{}>", arm.joints.size());
+  const std::size_t joints = arm.joints.size();
+  const bool tied = joints > static_cast<std::size_t>(arm.dof());
+  const std::string type = tied
+                               ? fmt::format("tauext::TreeModel<{}, double, {}>", arm.dof(), joints)
+                               : fmt::format("tauext::TreeModel<{}>", joints);
   std::string text = fmt::format(
       "// Made by tauext-import from {}{}.\n#pragma once\n\n#include "
       "\"estimators/tree/tree_model.h\"\n\ninline {} {}() {{\n  {}::Parameters p;\n  using K = "
       "tauext::TreeJoint::Kind;\n",
       printable_name(file), options.lock.empty() ? "" : " --lock " + printable_name(options.lock),
       type, name, type);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+  for (std::size_t i = 0; i < joints; ++i) {
     const TreeJoint& j = arm.joints[i];
     text += fmt::format(
         "  {{\n    tauext::TreeJoint& j = p.joints[{}];\n    j.parent = {};\n    j.kind = K::{};\n"
@@ -74,10 +79,9 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
         rows(j.rotation), listed(j.position), j.zero, j.mass, listed(j.center), rows(j.inertia),
         j.armature, j.viscous, j.dry, j.v_s);
   }
-  return text + fmt::format(
-                    "  p.gravity = {};\n  p.coordinates << {};\n  p.offset << {};\n  return "
-                    "{}(p);\n}}\n",
-                    listed(arm.gravity), rows(arm.coordinates), rows(arm.offset), type);
+  return text +
+         fmt::format("  p.gravity = {};\n  p.drho << {};\n  p.rho0 << {};\n  return {}(p);\n}}\n",
+                     listed(arm.gravity), rows(arm.drho), rows(arm.rho0), type);
 }
 
 int import(const std::string& file, const ImportOptions& options, const std::string& out) {
@@ -92,9 +96,17 @@ int import(const std::string& file, const ImportOptions& options, const std::str
   AtomicFile to(out);
   to.write(out.ends_with(".h") ? cpp_of(arm, file, options, out) : text.xml);
   to.commit();
-  say(fmt::format("{}: {} joints, {} of them slides, that move {:.4g} kg", out, arm.joints.size(),
-                  slides, mass));
-  if (arm.joints.size() > 8) say("note: estimators take 1 to 8 joints; --lock fixes others");
+  const std::size_t followers = arm.joints.size() - static_cast<std::size_t>(arm.dof());
+  say(fmt::format("{}: {} joints, {} of them slides, that move {:.4g} kg{}", out, arm.joints.size(),
+                  slides, mass,
+                  followers > 0
+                      ? fmt::format("; {} follow{} another", followers, followers == 1 ? "s" : "")
+                      : ""));
+  if (arm.dof() > kMostCoordinates || followers > kMostFollowers)
+    say(
+        fmt::format("note: estimators take arms of 1 to {} joints and up to {} more that follow "
+                    "them; --lock fixes others",
+                    kMostCoordinates, kMostFollowers));
   if (const std::string stiff = too_stiff(load_mjcf(file, options)); !stiff.empty())
     say("note: it cannot be simulated: " + stiff);
   if (!text.changed.empty()) say(fmt::format("changed: {}", counted(text.changed)));
@@ -109,7 +121,7 @@ int main(int argc, char** argv) {
       "Reads an arm's MJCF or URDF as people have it, and writes what its dynamics needs, in one\n"
       "file that MuJoCo 2.2.2 reads: bodies, joints, masses and friction, and a motor of gain 1 "
       "on\n"
-      "each joint. Says what it leaves out: actuators, meshes, contacts, newer attributes.\n"
+      "each joint that follows no other. Says what it leaves out: actuators, meshes, contacts.\n"
       "--robot FILE does the same by itself. To a file that ends in .h it writes the arm as C++:\n"
       "a function that returns its TreeModel, which needs Eigen alone.\n\n"
       "  tauext-import panda.xml --lock 'finger_joint.*' --out arm.xml\n",

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <stdexcept>
 
@@ -13,25 +12,14 @@ namespace tauext {
 namespace {
 
 // Arms of fewer joints have the rest without a body: they carry nothing, and compile once.
-constexpr int kMostJoints = 8;
-
-using Arm = TreeModel<kMostJoints>;
-using Numbers = Vec<kMostJoints>;  // one of each joint
-
-Arm widened(const ArmTree& tree) {
-  const auto n = static_cast<Eigen::Index>(tree.joints.size());
-  Arm::Parameters p;
-  std::copy(tree.joints.begin(), tree.joints.end(), p.joints.begin());
-  p.coordinates.topLeftCorner(n, n) = tree.coordinates;
-  p.offset.head(n) = tree.offset;
-  return Arm(p);
-}
+using Arm = TiedTree;
+using Numbers = Vec<kMostCoordinates>;  // one of each coordinate
 
 class Forces final : public ArmForces {
  public:
   Forces(const ArmTree& tree, const ArmForceOptions& o)
-      : joints_(static_cast<Eigen::Index>(tree.joints.size())),
-        arm_(widened(tree)),
+      : joints_(tree.dof()),
+        arm_(detail::filled<Arm>(tree)),
         at_(tree.point(o.site)),
         force_(arm_, at_, {.moment = o.moment}) {
     if (o.moment && joints_ < kJointsOfMoment)
@@ -60,20 +48,21 @@ class Forces final : public ArmForces {
     return out;
   }
 
-  Eigen::Index joints_;
+  Eigen::Index joints_;  // coordinates
   Arm arm_;
   ArmPoint at_;
-  ForceAtSite<kMostJoints> force_;
-  std::optional<TouchFinder<kMostJoints>> touch_;
+  ForceAtSite<kMostCoordinates, Arm::kJoints> force_;
+  std::optional<TouchFinder<kMostCoordinates, Arm::kJoints>> touch_;
 };
 
 }  // namespace
 
 std::unique_ptr<const ArmForces> arm_forces(const Model& arm, const ArmForceOptions& o) {
   const ArmTree tree = tree_of(arm);
-  if (tree.joints.size() > kMostJoints)
+  if (tree.dof() > kMostCoordinates)
     throw std::invalid_argument(
-        fmt::format("{} joints: forces are found of 1 to {}", tree.joints.size(), kMostJoints));
+        fmt::format("{} joints: forces are found of 1 to {}", tree.dof(), kMostCoordinates));
+  detail::require_size(tree, tree.dof());
   return std::make_unique<Forces>(tree, o);
 }
 

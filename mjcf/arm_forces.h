@@ -8,7 +8,7 @@
 #include <string>
 
 #include "estimators/force/touch_place.h"
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
 #include "mjcf/plant/model.h"
 
 namespace tauext {

@@ -156,11 +156,12 @@ class Run {
   VectorXd limits(int k) const {
     const std::vector<int> joints = plant_.joints_at_limits();
     if (joints.empty()) return VectorXd::Zero(dof());
-    if (s_.reaches_limits) return plant_.limit_torque();
+    if (s_.reaches_limits && !plant_.is_tied()) return plant_.limit_torque();
     throw std::runtime_error(fmt::format(
-        "scenario {}: joint {} reaches its limit at t = {:g} s, at {:.4g} rad (or m); a "
-        "scenario that means to sets reaches_limits",
-        s_.name, joints.front() + 1, trace_.t[k], trace_.q(joints.front(), k)));
+        "scenario {}: joint {} reaches its limit at t = {:g} s, at {:.4g} rad (or m); {}", s_.name,
+        joints.front() + 1, trace_.t[k], trace_.q(joints.front(), k),
+        plant_.is_tied() ? "an arm whose joints follow others must not; --lock REGEX fixes these"
+                         : "a scenario that means to sets reaches_limits"));
   }
 
   void ask(const Supervisor& supervisor, int k) {

@@ -11,13 +11,15 @@
 namespace tauext {
 namespace {
 
+static_assert(kMaxFileJoints <= kMostCoordinates);
+
 // the robot of that number of joints, N or more
 template <int N>
 std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
   if (joints == N) return detail::file_robot_of<N>(name, model);
   if constexpr (N < kMaxFileJoints) return robot_from<N + 1>(joints, name, model);
-  throw std::invalid_argument(
-      fmt::format("{} joints: 1 to {} are supported", joints, kMaxFileJoints));
+  throw std::invalid_argument(fmt::format(
+      "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
 }
 
 }  // namespace
@@ -28,7 +30,7 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
   const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}) : load_robot(name);
   try {
-    return robot_from<1>(static_cast<int>(tree_of(model).joints.size()), name, model);
+    return robot_from<1>(tree_of(model).dof(), name, model);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
   }

@@ -11,7 +11,7 @@
 
 namespace tauext {
 
-/// The most joints of such a robot. Each number of joints is compiled for itself: builds with
+/// The most coordinates of such a robot. Each number of joints is compiled for itself: builds with
 /// sanitizers have fewer.
 inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
 

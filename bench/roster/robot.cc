@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "bench/roster/baselines.h"
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/scenarios/scenario.h"
@@ -37,6 +39,10 @@ std::string fingerprint_of(const ArmTree& arm) {
     for (const Mat<3>& m : {j.rotation, j.inertia})
       text += fmt::format(" {:.9g}", fmt::join(m.data(), m.data() + m.size(), " "));
   }
+  if (arm.drho.rows() != arm.drho.cols() || !arm.drho.isIdentity(0) || !arm.rho0.isZero(0)) {
+    text += fmt::format(" {:.9g} {:.9g}", fmt::join(arm.drho.reshaped(), " "),
+                        fmt::join(arm.rho0.data(), arm.rho0.data() + arm.rho0.size(), " "));
+  }
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return fmt::format("{:016x}", hash);
@@ -45,7 +51,9 @@ std::string fingerprint_of(const ArmTree& arm) {
 }  // namespace
 
 bool is_robot_file(std::string_view name) {
-  const std::string_view path = name.substr(0, name.find(kLock));
+  std::string path(name.substr(0, name.find(kLock)));
+  std::transform(path.begin(), path.end(), path.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return path.ends_with(".xml") || path.ends_with(".urdf");
 }
 
@@ -56,8 +64,7 @@ Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(nam
   usual_torque_ = scale_of(file_).usual_torque;
   const ArmTree arm = tree_of(file_);
   fingerprint_ = fingerprint_of(arm);
-  slides_ = std::any_of(arm.joints.begin(), arm.joints.end(),
-                        [](const TreeJoint& j) { return j.kind == TreeJoint::Kind::kSlide; });
+  for (int i = 0; i < dof; ++i) slides_ = slides_ || arm.slides(i);
 }
 
 std::string Robot::label() const {
@@ -89,8 +96,11 @@ Model Robot::load_for(const Scenario& s, const ModelError& error) const {
 }
 
 std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool moment) const {
-  return arm_forces(file_ ? file_ : load_robot(name_),
-                    {.site = site, .moment = moment, .limits = small_torque()});
+  return arm_forces(model(), {.site = site, .moment = moment, .limits = small_torque()});
+}
+
+Model Robot::model() const {
+  return file_ ? file_ : load_robot(name_);
 }
 
 void Robot::require_fit() const {

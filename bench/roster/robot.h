@@ -73,6 +73,8 @@ class Robot {
   /// What happens to it; the generic ones (mjcf/scenarios/generic.h) if it is from a file.
   /// @throws std::invalid_argument if it is from a file and too_stiff() to be simulated
   const std::vector<Scenario>& scenarios() const;
+  /// What it looks like, and is; not always fit to be simulated.
+  Model model() const;
   /// The simulated robot as the scenario needs it, with errors that its estimators do not know of.
   /// @throws std::invalid_argument for an error out of range, and as scenarios() does
   Model load_for(const Scenario& scenario, const ModelError& error = {}) const;

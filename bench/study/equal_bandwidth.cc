@@ -31,6 +31,10 @@ mean error if the last link is 5 % heavier than the model says. friction: rms er
 friction of {:.2g} N m that the model does not know. step: CPU time. Every figure is that of the
 worst joint.
 )";
+constexpr double kNear = 0.05;  // of the bandwidth that is asked for
+constexpr const char* kFar =
+    "!: the bandwidth is more than 5 % off, and no design comes nearer; compare this row with "
+    "care.\n";
 constexpr const char* kNever = "never: no design comes within 25 % of this bandwidth.\n";
 
 void require_scenarios(const Robot& r, const std::vector<std::string>& wanted) {
@@ -139,12 +143,16 @@ std::optional<double> design_for(const SharedRuns& runs, const std::string& esti
   return found ? std::optional(std::exp(best_x)) : std::nullopt;
 }
 
-std::vector<std::string> cells_of(const AtBandwidth& r) {
+bool is_far(const AtBandwidth& r, double w) {
+  return r.worth && std::abs(r.worth->bandwidth / w - 1) > kNear;
+}
+
+std::vector<std::string> cells_of(const AtBandwidth& r, bool marked) {
   if (!r.worth) return {r.estimator, "-", "never", "-", "-", "-", "-", "-", "-", "-"};
   const Worth& x = *r.worth;
   return {r.estimator,
           fmt::format("{:.1f}", r.design),
-          fmt::format("{:.1f}", x.bandwidth),
+          fmt::format("{:.1f}{}", x.bandwidth, marked ? "!" : ""),
           fmt::format("{:.3f}", x.noise),
           milliseconds(x.lag),
           milliseconds(x.rise_0_90),
@@ -212,12 +220,16 @@ std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<A
                      {"mass", "N m"},
                      {"friction", "N m"},
                      {"step", "ns"}});
-  for (const AtBandwidth& row : rows) table.add(cells_of(row));
-  if (format != TableFormat::kText) return table.format(format);
+  const bool text = format == TableFormat::kText;
+  for (const AtBandwidth& row : rows) table.add(cells_of(row, text && is_far(row, w)));
+  if (!text) return table.format(format);
   const bool all =
       std::all_of(rows.begin(), rows.end(), [](const AtBandwidth& x) { return bool(x.worth); });
-  return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}", r.name(), w, table.format(),
-                     fmt::format(kBandwidthLegend, r.hidden_friction()), all ? "" : kNever);
+  const bool far =
+      std::any_of(rows.begin(), rows.end(), [&](const AtBandwidth& x) { return is_far(x, w); });
+  return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}{}", r.name(), w, table.format(),
+                     fmt::format(kBandwidthLegend, r.hidden_friction()), far ? kFar : "",
+                     all ? "" : kNever);
 }
 
 }  // namespace tauext::study

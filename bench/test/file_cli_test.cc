@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "arm7.h"  // by tauext-import, from bench/examples/arm7.xml
+#include "arm7_with_gripper.h"
 #include "bench/test/programs.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 
 namespace tauext::test {
@@ -23,12 +25,13 @@ const std::string kArm7 = TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
 const std::string kTwoArms = TAUEXT_EXAMPLES "/two_arms.urdf";
 
 // what the header has, beside MuJoCo on the file
-TEST(ImportedArm, AsCppIsTheArmOfTheFile) {
-  const TreeModel<7> arm = make_arm7();
-  Plant plant(simulated(load_mjcf(TAUEXT_EXAMPLES "/arm7.xml", {"finger.*"})));
+template <class Arm>
+void expect_arm_of_the_file(const Arm& arm, const std::string& lock) {
+  Plant plant(simulated(load_mjcf(TAUEXT_EXAMPLES "/arm7.xml", {lock})));
+  ASSERT_EQ(plant.dof(), Arm::kDof);
   for (int k = 0; k < 20; ++k) {
-    Vec<7> q, qd;
-    for (int i = 0; i < 7; ++i) {
+    Vec<Arm::kDof> q, qd;
+    for (int i = 0; i < Arm::kDof; ++i) {
       q[i] = std::sin(3. * k + i);
       qd[i] = std::cos(5. * k + 2 * i);
     }
@@ -39,7 +42,33 @@ TEST(ImportedArm, AsCppIsTheArmOfTheFile) {
   }
 }
 
+TEST(ImportedArm, AsCppIsTheArmOfTheFile) {
+  expect_arm_of_the_file(make_arm7(), "finger.*");
+  expect_arm_of_the_file(make_arm7_with_gripper(), "");
+}
+
 using FilePrograms = Programs;
+
+// the gripper is an eighth joint: one finger moves as the other does
+TEST_F(FilePrograms, AFingerFollowsTheOtherOneInEveryProgram) {
+  const std::string arm = " --robot " TAUEXT_EXAMPLES "/arm7.xml";
+  const Outcome o =
+      run("tauext-bench" + arm + " --benchmark_filter='/(step|in_motion)/(mo2|ekf)$' " +
+          "--benchmark_min_time=0.01 --benchmark_out=r.json");
+  EXPECT_EQ(o.code, 0) << o.text;
+  std::map<std::string, double> rmse;
+  const auto results = nlohmann::json::parse(content("r.json"));
+  for (const auto& row : results.at("benchmarks"))
+    rmse[row.at("name")] = row.at("rmse_Nm");
+  ASSERT_EQ(rmse.size(), 4u) << o.text;
+  EXPECT_LT(rmse.at("arm7/step/ekf"), 1.5 * rmse.at("arm7/step/mo2"));
+  EXPECT_LT(rmse.at("arm7/in_motion/mo2"), 0.01) << "nothing acts on it";
+  ASSERT_EQ(run("tauext-record" + arm + " --scenario blow --out x.csv").code, 0);
+  const Outcome force =
+      run("tauext-replay x.csv" + arm + " --estimator truth --wrench end_effector --out e.csv");
+  EXPECT_EQ(force.code, 0) << force.text;
+  EXPECT_TRUE(force.says("joint 7 carries the link that is touched")) << force.text;
+}
 
 TEST_F(FilePrograms, TheSuiteRunsOnIt) {
   const Outcome list = run("tauext-bench --list --robot " + kTwoArms);
@@ -185,9 +214,15 @@ TEST_F(FilePrograms, SayWhatIsWrongWithIt) {
   EXPECT_TRUE(run("tauext-bench --lock x").says("--lock: of which --robot FILE?"));
   EXPECT_TRUE(run("tauext-bench --robot wallmobot3 --lock x").says("wallmobot3 is none"));
   EXPECT_TRUE(run("tauext-bench --robot a.xml --lock ''").says("--lock: its value is empty"));
-  const Outcome tied = run("tauext-bench --robot " TAUEXT_EXAMPLES "/arm7.xml");
+  std::ostringstream text;
+  text << std::ifstream(TAUEXT_EXAMPLES "/arm7.xml").rdbuf();
+  std::string curved = text.str();
+  curved.insert(curved.find("joint1="), "polycoef='0 1 .1 0 0' ");
+  write("curved.xml", curved);
+  const Outcome tied = run("tauext-bench --robot curved.xml");
   EXPECT_EQ(tied.code, 2);
-  EXPECT_TRUE(tied.says("is tied to '") && tied.says("--lock REGEX fixes it")) << tied.text;
+  EXPECT_TRUE(tied.says("follows another by a polynomial") && tied.says("--lock REGEX fixes it"))
+      << tied.text;
   EXPECT_EQ(run("tauext-record --robot nothing.urdf --scenario step --out x.csv").code, 2);
   EXPECT_TRUE(
       run("tauext-record --robot " + kArm6 + " --scenario dance --out x.csv")

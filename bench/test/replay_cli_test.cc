@@ -32,6 +32,18 @@ TEST_F(Programs, ReplayWritesOneRowPerSampleAndPrintsTheErrors) {
             "t,ndob_tau_ext1,ndob_tau_ext2,ndob_tau_ext3,ndob_status,pan_tompkins_mark");
 }
 
+// the dynamic linker tells what it loads
+TEST_F(Programs, ReplayOfARobotByNameRunsWithoutMuJoCo) {
+  const std::string linker = "LD_DEBUG=files " TAUEXT_BIN "/";
+  const Outcome record =
+      run_system(linker + "tauext-record --robot wallmobot3 --scenario step --out log.csv");
+  EXPECT_TRUE(record.says("file=libmujoco")) << "who simulates needs it";
+  const Outcome replay = run_system(
+      linker + "tauext-replay log.csv --robot wallmobot3 --estimator ekf,mo2 --out est.csv");
+  EXPECT_EQ(replay.code, 0);
+  EXPECT_FALSE(replay.says("libmujoco"));
+}
+
 // by the truth of a touch without a moment, at the end effector of an arm that sees all of it
 TEST_F(Programs, ReplayFindsTheForceAndTheLink) {
   const std::string arm = " --robot " TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
@@ -160,6 +172,8 @@ TEST_F(Programs, RenderDrawsARobotAndSaysWhatItCannot) {
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_GT(png.size(), 4000u) << "not all of one colour";
   run("tauext-render --robot wallmobot6 --q 0,0,0,0,0,0 --camera front --size 160x120 --out b.png");
+  EXPECT_TRUE(run("tauext-render --list").says("wallmobot6\n"));
+  EXPECT_TRUE(run("tauext-render --list --robot wallmobot6").says("front"));
   EXPECT_NE(png, content("b.png")) << "another pose";
   const std::string arm = "tauext-render --robot " TAUEXT_EXAMPLES "/two_arms.urdf ";
   EXPECT_EQ(run(arm + "--out c.png").code, 0) << "without shapes or cameras";

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian 12's mujocoConfig.cmake names the headers of a package that libmujoco-dev does not depend
-# on, so the library is looked up here. Sets MuJoCo_FOUND, gives MuJoCo::MuJoCo.
+# on, so the library is looked up here. Sets MuJoCo_FOUND, gives MuJoCo::MuJoCo and its MuJoCo::headers alone.
 include(FindPackageHandleStandardArgs)
 find_path(MuJoCo_INCLUDE_DIR mujoco/mujoco.h)
 find_library(MuJoCo_LIBRARY mujoco)
@@ -12,6 +12,8 @@ endif()
 find_package_handle_standard_args(MuJoCo REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR
                                   VERSION_VAR MuJoCo_VERSION)
 if(MuJoCo_FOUND AND NOT TARGET MuJoCo::MuJoCo)
+  add_library(MuJoCo::headers INTERFACE IMPORTED)
+  set_target_properties(MuJoCo::headers PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${MuJoCo_INCLUDE_DIR})
   add_library(MuJoCo::MuJoCo UNKNOWN IMPORTED)
   set_target_properties(MuJoCo::MuJoCo PROPERTIES
     IMPORTED_LOCATION ${MuJoCo_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${MuJoCo_INCLUDE_DIR})

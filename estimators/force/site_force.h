@@ -79,9 +79,9 @@ LeverSolution<Rows> solve_by_lever(const Mat<Rows>& JJt, const Vec<Rows>& J_tau_
   return out;
 }
 
-template <int Rows, int N>
-SiteForce force_at(const TreeModel<N>& arm, const ArmPoint& at, const SiteForceParameters& p,
-                   const Vec<N>& q, const Vec<N>& tau_ext) noexcept {
+template <int Rows, int N, int M>
+SiteForce force_at(const TreeModel<N, double, M>& arm, const ArmPoint& at,
+                   const SiteForceParameters& p, const Vec<N>& q, const Vec<N>& tau_ext) noexcept {
   Eigen::Matrix<double, Rows, N> J = arm.jacobian(q, at.joint, at.place).template topRows<Rows>();
   if constexpr (Rows == 6) J.template bottomRows<3>() *= p.length;
   const auto found = solve_by_lever<Rows>(J * J.transpose(), J * tau_ext, p.least_lever);
@@ -96,15 +96,16 @@ SiteForce force_at(const TreeModel<N>& arm, const ArmPoint& at, const SiteForceP
 
 }  // namespace detail
 
-/// The force at a point of an arm of N joints.
-template <int N>
+/// The force at a point of an arm of N coordinates and M joints.
+template <int N, int M = N>
 class ForceAtSite {
  public:
   /// @throws std::invalid_argument for a point that does not move with a joint, for a moment with
   /// fewer than 6 joints, and for parameters out of range
-  ForceAtSite(const TreeModel<N>& arm, const ArmPoint& at, const SiteForceParameters& p = {})
+  ForceAtSite(const TreeModel<N, double, M>& arm, const ArmPoint& at,
+              const SiteForceParameters& p = {})
       : arm_(arm), at_(at), p_(p) {
-    if (at.joint < 0 || at.joint >= N || !at.place.allFinite())
+    if (at.joint < 0 || at.joint >= M || !at.place.allFinite())
       throw std::invalid_argument("a force is looked for at a point that no joint moves");
     if (p.moment && N < kJointsOfMoment)
       throw std::invalid_argument("force and moment at a point want 6 joints or more");
@@ -119,7 +120,7 @@ class ForceAtSite {
   }
 
  private:
-  TreeModel<N> arm_;
+  TreeModel<N, double, M> arm_;
   ArmPoint at_;
   SiteForceParameters p_;
 };

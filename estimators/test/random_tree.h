@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms of any shape: hinges and slides, chains and trees, in coordinates that are not the joints'.
+// Arms of any shape: hinges and slides, chains and trees, in coordinates that are not the joints',
+// which may be fewer.
 #pragma once
 
 #include <array>
@@ -9,10 +10,10 @@
 
 namespace tauext::test {
 
-template <int N>
+template <int N, int M = N>
 struct RandomTree {
   explicit RandomTree(unsigned seed) : random(seed) {
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < M; ++i) {
       TreeJoint& j = joints[static_cast<std::size_t>(i)];
       j.parent = static_cast<int>(std::uniform_int_distribution(-1, i - 1)(random));
       if (i % 3 == 1) j.kind = TreeJoint::Kind::kSlide;
@@ -30,7 +31,7 @@ struct RandomTree {
       j.dry = 0.4;
       j.v_s = 0.5;
     }
-    coordinates = Mat<N>::Identity() + 0.2 * Mat<N>::NullaryExpr([&] { return number(1); });
+    drho = Drho::Identity() + 0.2 * Drho::NullaryExpr([&] { return number(1); });
   }
   double number(double most) { return std::uniform_real_distribution(-most, most)(random); }
   template <int K>
@@ -38,13 +39,14 @@ struct RandomTree {
     return Vec<K>::NullaryExpr([&] { return number(most); });
   }
   template <class Scalar>
-  TreeModel<N, Scalar> model() const {
-    return TreeModel<N, Scalar>({joints, {1, 2, -9}, coordinates, Vec<N>::Constant(0.1)});
+  TreeModel<N, Scalar, M> model() const {
+    return TreeModel<N, Scalar, M>({joints, {1, 2, -9}, drho, Vec<M>::Constant(0.1)});
   }
 
   std::mt19937_64 random;
-  std::array<TreeJoint, N> joints;
-  Mat<N> coordinates;
+  std::array<TreeJoint, M> joints;
+  using Drho = Eigen::Matrix<double, M, N>;
+  Drho drho;
 };
 
 }  // namespace tauext::test

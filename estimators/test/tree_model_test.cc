@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <complex>
 #include <stdexcept>
 #include <string>
@@ -23,11 +24,12 @@ Vec<N, Complex> complex(const Vec<N>& re, const Vec<N>& im) {
   return re.template cast<Complex>() + Complex(0, kStep) * im;
 }
 
-template <int N>
+template <int N, int M = N>
 void expect_consistent(unsigned seed) {
-  SCOPED_TRACE(std::to_string(N) + " joints, tree " + std::to_string(seed));
-  RandomTree<N> r(seed);
-  const TreeModel<N> tree = r.template model<double>();
+  SCOPED_TRACE(std::to_string(N) + " of " + std::to_string(M) + " joints, tree " +
+               std::to_string(seed));
+  RandomTree<N, M> r(seed);
+  const TreeModel<N, double, M> tree = r.template model<double>();
   const auto exact = r.template model<Complex>();
   const Vec<N> q = r.template vector<N>(2), qd = r.template vector<N>(2),
                u = r.template vector<N>(9);
@@ -72,6 +74,29 @@ TEST(TreeModel, TermsAndDerivativesAreThoseOfOneArm) {
     expect_consistent<1>(seed);
     expect_consistent<3>(seed);
     expect_consistent<7>(seed);
+    expect_consistent<2, 10>(seed);
+  }
+}
+
+// what holds joints together does no work: the whole arm's terms, projected
+TEST(TreeModel, OfTiedJointsIsTheWholeArmAlongItsCoordinates) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomTree<3, 7> r(seed);
+    const TreeModel<7> whole({r.joints, {1, 2, -9}});
+    const auto tied = r.model<double>();
+    const Vec<3> q = r.vector<3>(2), qd = r.vector<3>(2), u = r.vector<3>(9);
+    const Vec<7> rho = r.drho * q + Vec<7>::Constant(0.1), rate = r.drho * qd;
+    const Mat<7> B = whole.inertia(rho);
+    const Vec<7> forces = whole.bias(rho, rate) + whole.friction(rate);
+    EXPECT_LT((tied.inertia(q) - r.drho.transpose() * B * r.drho).norm(), 1e-12 * B.norm());
+    EXPECT_LT((tied.gravity(q) - r.drho.transpose() * whole.gravity(rho)).norm(), 1e-11);
+    // the joints go as drho says, and what then is missing of their forces does no work
+    const Vec<7> rest = B * (r.drho * tied.forward_dynamics(q, qd, u).qdd) + forces;
+    EXPECT_LT((r.drho.transpose() * rest - u).norm(), 1e-11 * forces.norm());
+    for (int j = 0; j < 7; ++j) {
+      const Vec<3> at(0.1, -0.2, 0.3);
+      EXPECT_LT((tied.jacobian(q, j, at) - whole.jacobian(rho, j, at) * r.drho).norm(), 1e-13);
+    }
   }
 }
 
@@ -97,8 +122,9 @@ TEST(TreeModel, RefusesJointsThatAreNone) {
   refuses([](auto& r) { r.joints[1].inertia(0, 1) += 1; }, "its inertia");
   refuses([](auto& r) { r.joints[1].armature = -1; }, "armature");
   refuses([](auto& r) { r.joints[0].v_s = 0; }, "v_s above 0");
-  refuses([](auto& r) { r.coordinates.setZero(); }, "invertible");
-  refuses([](auto& r) { r.coordinates.col(1) = 0.1 * r.coordinates.col(0); }, "invertible");
+  refuses([](auto& r) { r.drho.setZero(); }, "full rank");
+  refuses([](auto& r) { r.drho.col(1) = 0.1 * r.drho.col(0); }, "full rank");
+  refuses([](auto& r) { r.drho(0, 0) = NAN; }, "finite");
 }
 
 TEST(TreeModel, SaysWhereItIsSingular) {

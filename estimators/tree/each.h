@@ -66,7 +66,7 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   // one by one: GCC 12 copies an aggregate by halves of registers, which loads then wait for
   [[gnu::always_inline]] Each(const Each& e) noexcept { *this = e; }
   [[gnu::always_inline]] Each& operator=(const Each& e) noexcept {
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) x[k] = e.x[k];
     return *this;
   }
@@ -75,14 +75,14 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   }
   [[gnu::always_inline]] static Each all(double a) noexcept {
     Each e;
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) e.x[k] = Lanes{a, a, a, a};
     return e;
   }
   template <int N>
   [[gnu::always_inline]] static Each from(const Vec<N>& v) noexcept {
     Each e;
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) {
       gather_zeros<N>(v, 4 * k, e.x[k]);
     }
@@ -96,7 +96,7 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   }
   [[gnu::always_inline]] Each since(int first) const noexcept {
     Each e = zero();
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = first / 4; k < kCount; ++k) e.x[k] = x[k];
     return e;
   }
@@ -105,31 +105,31 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
       *to = x[0][0];
       return;
     }
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < P / 4; ++k) detail::store(to + 4 * k, x[k]);
   }
   [[gnu::always_inline]] void add(const Each& a, double times, int first, int last) noexcept {
     const Lanes t{times, times, times, times};
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) {
       if (4 * k <= last && first < 4 * k + 4) x[k] += a.x[k] * t;
     }
   }
   [[gnu::always_inline]] friend Each operator+(const Each& a, const Each& b) noexcept {
     Each e;
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] + b.x[k];
     return e;
   }
   [[gnu::always_inline]] friend Each operator-(const Each& a, const Each& b) noexcept {
     Each e;
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] - b.x[k];
     return e;
   }
   [[gnu::always_inline]] friend Each operator*(const Each& a, const Each& b) noexcept {
     Each e;
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] * b.x[k];
     return e;
   }
@@ -153,7 +153,7 @@ struct Each3 {
   /// Sets all of them from `own`, of which each has (x, y, z) of one body.
   [[gnu::always_inline]] void set_all(const Each<4, Scalar>* own) noexcept {
     if constexpr (P % 4 == 0 && std::is_same_v<Scalar, double>) {
-#pragma GCC unroll 2
+#pragma GCC unroll 4
       for (int k = 0; k < P / 4; ++k) {
         Lanes none = own[4 * k + 3].x[0];
         x.x[k] = own[4 * k].x[0], y.x[k] = own[4 * k + 1].x[0], z.x[k] = own[4 * k + 2].x[0];

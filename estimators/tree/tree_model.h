@@ -28,7 +28,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
-#include <type_traits>
+#include <tuple>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
@@ -37,34 +37,40 @@
 
 namespace tauext {
 
-/// An arm of N joints. Scalar is double in use; the tests put in complex and long numbers.
+/// An arm with N coordinates. Scalar is double in use; the tests put in complex and long numbers.
 ///
-/// The coordinates q are those of the joints, rho, or, where the arm is driven otherwise (a
-/// parallelogram), q = coordinates rho + offset.
-template <int N, class Scalar = double>
+/// The coordinates q are those of its M joints, rho. Where the arm is driven otherwise (a
+/// parallelogram), or where joints follow others (the second finger of a gripper), rho = drho q +
+/// rho0. Such ties are rigid; what holds them does no work and is in no torque.
+template <int N, class Scalar = double, int M = N>
 class TreeModel {
+  static_assert(M >= N, "every coordinate moves a joint");
+
  public:
   static constexpr int kDof = N;
-  using VecN = Vec<N, Scalar>;  ///< a number of each joint
-  using MatN = Mat<N, Scalar>;  ///< over the joints
+  static constexpr int kJoints = M;  ///< that the coordinates move
+  using VecN = Vec<N, Scalar>;  ///< a number of each coordinate
+  using MatN = Mat<N, Scalar>;  ///< over the coordinates
 
   /// What it is made of.
   struct Parameters {
-    std::array<TreeJoint, N> joints;          ///< parents before children
-    Vec<3> gravity = {0, 0, -kGravity};       ///< [m/s^2]
-    Mat<N> coordinates = Mat<N>::Identity();  ///< dq/drho, invertible
-    Vec<N> offset = Vec<N>::Zero();           ///< [rad] q at rho = 0
+    std::array<TreeJoint, M> joints;     ///< parents before children
+    Vec<3> gravity = {0, 0, -kGravity};  ///< [m/s^2]
+    /// of full rank
+    Eigen::Matrix<double, M, N> drho = Eigen::Matrix<double, M, N>::Identity();
+    Vec<M> rho0 = Vec<M>::Zero();  ///< [rad] or [m] rho at q = 0
   };
 
   /// @throws std::invalid_argument for a joint that is none, naming its number and what is wrong
   explicit TreeModel(const Parameters& p)
       : p_(p),
-        direct_(p.coordinates == Mat<N>::Identity() && p.offset.isZero(0)),
-        passes_(p.joints, p.gravity) {
-    const Mat<N> inverse = p.coordinates.inverse();
-    if (!inverse.allFinite() || !p.gravity.allFinite() || !p.offset.allFinite())
-      throw std::invalid_argument("a tree's coordinates must be invertible, its numbers finite");
-    drho_ = inverse.template cast<Scalar>();
+        direct_(M == N && p.drho.isIdentity(0) && p.rho0.isZero(0)),
+        passes_(p.joints, p.gravity),
+        drho_(p.drho.template cast<Scalar>()) {
+    if (!p.drho.allFinite() || !p.gravity.allFinite() || !p.rho0.allFinite())
+      throw std::invalid_argument("a tree's numbers must be finite");
+    if (Eigen::FullPivLU<Eigen::MatrixXd>(p.drho).rank() < N)
+      throw std::invalid_argument("a tree's drho must have full rank");
   }
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
@@ -80,7 +86,7 @@ class TreeModel {
   /// g(q) [N m].
   [[gnu::noinline]] VecN gravity(const VecN& q) const noexcept {
     const auto s = passes_.pose(to_rho(q));
-    return forces(VecN(-passes_.weights(s, passes_.composite(s.I))));
+    return forces(VecM(-passes_.weights(s, passes_.composite(s.I))));
   }
 
   /// C qd + g [N m].
@@ -111,7 +117,7 @@ class TreeModel {
 
   /// F(qd) [N m].
   VecN friction(const VecN& qd) const noexcept {
-    VecN slope;
+    VecM slope;
     return forces(friction(to_rate(qd), slope));
   }
 
@@ -125,15 +131,14 @@ class TreeModel {
   /// The same as it comes, with inertia(q).
   [[gnu::noinline]] detail::PaddedDynamics<N, Scalar> padded_dynamics(
       const VecN& q, const VecN& qd, const VecN& u) const noexcept {
-    const VecN rate = to_rate(qd);
+    const VecM rate = to_rate(qd);
     const auto s = passes_.pose(to_rho(q));
     auto flow = passes_.flow(s, rate);
     const auto c = passes_.composite(s.I);
-    VecN slope;
-    const VecN rest = bias(s, flow) + friction(rate, slope);
+    VecM slope;
+    const VecM rest = bias(s, flow) + friction(rate, slope);
     detail::PaddedDynamics<N, Scalar> f;
-    f.B = passes_.inertia(s, c);
-    to_q(f.B);
+    over_bodies([&](Bodies& B) { B = passes_.inertia(s, c); }, f.B);
     const Factor factor = factorised(f.B);
     f.ok = factor.ok();
     const VecN qdd = factor.solve(VecN(u - forces(rest)));
@@ -141,9 +146,12 @@ class TreeModel {
     f.by_tau_ext = factor.minus_inverse();
     passes_.accelerate(s, to_rate(qdd), flow);
     Square by_q, by_qd;
-    passes_.derivatives(s, flow, c, by_q, by_qd);
-    by_qd.diagonal().template head<N>() += slope;
-    to_q(by_q), to_q(by_qd);
+    over_bodies(
+        [&](Bodies& q_part, Bodies& qd_part) {
+          passes_.derivatives(s, flow, c, q_part, qd_part);
+          qd_part.diagonal().template head<M>() += slope;
+        },
+        by_q, by_qd);
     f.by_q = times_transposed(f.by_tau_ext, by_q);
     f.by_qd = times_transposed(f.by_tau_ext, by_qd);
     return f;
@@ -164,44 +172,49 @@ class TreeModel {
                                        const Vec<3>& point) const noexcept {
     const auto s = passes_.pose(to_rho(q));
     const Vec<3, Scalar> at = passes_.at_base(s, joint, point);
-    Eigen::Matrix<Scalar, 6, N> J;
-    for (int i = 0; i < N; ++i) {
+    Eigen::Matrix<Scalar, 6, M> J;
+    for (int i = 0; i < M; ++i) {
       const Vec<3, Scalar> w(s.S.w.x[i], s.S.w.y[i], s.S.w.z[i]);
       const Vec<3, Scalar> v(s.S.v.x[i], s.S.v.y[i], s.S.v.z[i]);
       J.col(i) << v + w.cross(at), w;
       J.col(i) *= passes_.ahead(joint)[i];
     }
-    return direct_ ? J : J * drho_;
+    if constexpr (M == N) {
+      if (direct_) return J;
+    }
+    return J * drho_;
   }
 
  private:
-  using Passes = detail::TreePasses<N, Scalar>;
+  using Passes = detail::TreePasses<M, Scalar>;
+  using VecM = Vec<M, Scalar>;  // a number of each joint
 
   using Pose = typename Passes::Pose;
-  using Square = typename Passes::Square;
+  using Bodies = typename Passes::Square;          // over the joints, in lanes
+  using Square = Mat<detail::kPadded<N>, Scalar>;  // over the coordinates
   using Factor = Ldlt<N, Scalar>;
 
   [[gnu::always_inline]] MatN inertia(const Pose& s,
                                       const typename Passes::Inertia& c) const noexcept {
-    Square B = passes_.inertia(s, c);
-    to_q(B);
+    Square B;
+    over_bodies([&](Bodies& of_rho) { of_rho = passes_.inertia(s, c); }, B);
     return own(B);
   }
 
-  [[gnu::always_inline]] VecN bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
+  [[gnu::always_inline]] VecM bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
     return Passes::along(s.S, passes_.subtree(f.F));
   }
 
-  VecN momentum_bias(const Pose& s, const typename Passes::Inertia& c,
-                     const VecN& rate) const noexcept {
+  VecM momentum_bias(const Pose& s, const typename Passes::Inertia& c,
+                     const VecM& rate) const noexcept {
     const auto f = passes_.flow(s, rate);
     return Passes::along(f.Sd, passes_.subtree(f.H)) + passes_.weights(s, c);
   }
 
   // of the joints' rates, and how it grows with them
-  VecN friction(const VecN& rate, VecN& slope) const noexcept {
-    VecN F;
-    for (int i = 0; i < N; ++i) {
+  VecM friction(const VecM& rate, VecM& slope) const noexcept {
+    VecM F;
+    for (int i = 0; i < M; ++i) {
       const TreeJoint& j = p_.joints[static_cast<std::size_t>(i)];
       using std::tanh;
       F[i] = Scalar(j.viscous) * rate[i], slope[i] = Scalar(j.viscous);
@@ -213,21 +226,44 @@ class TreeModel {
     return F;
   }
 
-  VecN to_rho(const VecN& q) const noexcept {
-    if (direct_) return q;
-    return drho_ * (q - p_.offset.template cast<Scalar>());
+  VecM to_rho(const VecN& q) const noexcept {
+    if constexpr (M == N) {
+      if (direct_) return q;
+    }
+    return drho_ * q + p_.rho0.template cast<Scalar>();
   }
-  VecN to_rate(const VecN& qd) const noexcept {
-    if (direct_) return qd;
+  VecM to_rate(const VecN& qd) const noexcept {
+    if constexpr (M == N) {
+      if (direct_) return qd;
+    }
     return drho_ * qd;
   }
-  VecN forces(const VecN& of_rho) const noexcept {
-    if (direct_) return of_rho;
+  VecN forces(const VecM& of_rho) const noexcept {
+    if constexpr (M == N) {
+      if (direct_) return of_rho;
+    }
     return drho_.transpose() * of_rho;
   }
-  void to_q(Square& of_rho) const noexcept {
-    if (direct_) return;
-    of_rho.template topLeftCorner<N, N>() = drho_.transpose() * own(of_rho) * drho_;
+
+  // what `fill` makes over the joints, over the coordinates; in place where these are as many
+  template <class Fill, class... Squares>
+  [[gnu::always_inline]] void over_bodies(Fill&& fill, Squares&... of_q) const noexcept {
+    if constexpr (M == N) {
+      fill(of_q...);
+      if (!direct_) (turn(of_q, of_q), ...);
+    } else {
+      std::array<Bodies, sizeof...(of_q)> all;
+      std::apply(
+          [&](auto&... of_rho) {
+            fill(of_rho...);
+            ((of_q.setZero(), turn(of_rho, of_q)), ...);
+          },
+          all);
+    }
+  }
+  void turn(const Bodies& of_rho, Square& of_q) const noexcept {
+    of_q.template topLeftCorner<N, N>() =
+        (drho_.transpose() * of_rho.template topLeftCorner<M, M>() * drho_).eval();
   }
 
   static MatN own(const Square& m) noexcept { return m.template topLeftCorner<N, N>(); }
@@ -253,7 +289,7 @@ class TreeModel {
   Parameters p_;
   bool direct_;  // q is rho
   Passes passes_;
-  MatN drho_;  // drho/dq
+  Eigen::Matrix<Scalar, M, N> drho_;
 };
 
 }  // namespace tauext

@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -15,6 +16,14 @@
 
 namespace tauext::detail {
 namespace {
+
+// a joint that is taken away stays at its `ref`
+bool stays_in_range(const XMLElement& joint) {
+  std::istringstream range(text(joint, "range"));
+  double lower = 0, upper = 0;
+  const double ref = joint.DoubleAttribute("ref", 0);
+  return !(range >> lower >> upper) || (lower <= ref && ref <= upper);
+}
 
 std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,
                                     std::map<std::string, int>& changed) {
@@ -32,7 +41,7 @@ std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,
     names.push_back(text(e, "name"));
     if (!std::regex_match(names.back(), which)) return true;
     locked.insert(names.back());
-    return drop(e, "joint locked", changed);
+    return drop(e, stays_in_range(e) ? "joint locked" : "joint locked outside its range", changed);
   });
   if (locked.empty()) {
     throw std::runtime_error(one_line(

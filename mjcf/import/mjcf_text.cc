@@ -235,8 +235,16 @@ class Import {
     compiler->SetAttribute("meshdir", (fs::absolute(path_).parent_path() / folder).c_str());
   }
 
+  // on joints that follow no other
   void add_motors(XMLElement& root) {
     std::vector<std::string> joints;
+    std::set<std::string> followers;
+    each(root, [&](XMLElement& e) {
+      if (parent_name(e) != "equality") return true;
+      if (text(e, "active") == "false") return drop(e, "equality that is not active", out_.dropped);
+      if (name_of(e) == "joint") followers.insert(text(e, "joint1"));
+      return true;
+    });
     each(root, [&](XMLElement& e) {
       if (name_of(e) != "joint" || inside(e, "default") || inside(e, "equality") ||
           inside(e, "tendon"))
@@ -248,6 +256,7 @@ class Import {
     });
     XMLElement* const actuators = root.InsertNewChildElement("actuator");
     for (const std::string& j : joints) {
+      if (followers.count(j) > 0) continue;
       XMLElement* const motor = actuators->InsertNewChildElement("motor");
       motor->SetAttribute("name", j.c_str());
       motor->SetAttribute("joint", j.c_str());

@@ -31,7 +31,8 @@ bool is_urdf(const std::string& path);
 void refuse_nan(const std::string& path);
 
 /// Of the file, with all that it includes, the bodies, joints, masses and springs: what dynamics
-/// needs, and MuJoCo 2.2.2 knows. Its actuators are dropped; each joint gets a motor of unit gain.
+/// needs, and MuJoCo 2.2.2 knows. Its actuators are dropped; joints that follow
+/// no other get a motor of unit gain.
 /// Meshes are left out but where a mass depends on them. Ranges are limits, as in newer MuJoCo.
 /// @throws std::runtime_error in one line, naming the element and the remedy, and the file if it is
 /// an included one

@@ -2,18 +2,16 @@
 #include "mjcf/picture/picture.h"
 
 #include <fmt/format.h>
+#include <mujoco/mujoco.h>
 
 #include <stdexcept>
-
 #ifdef TAUEXT_PICTURES
 #include <GL/osmesa.h>
-#include <mujoco/mujoco.h>
 #include <png.h>
 
 #include <algorithm>
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "mjcf/plant/plant.h"
 #include "mjcf/trace/atomic_file.h"
@@ -21,6 +19,12 @@
 #endif
 
 namespace tauext {
+
+std::vector<std::string> cameras_of(const Model& robot) {
+  std::vector<std::string> names;
+  for (int i = 0; i < robot->ncam; ++i) names.push_back(element_name(*robot, mjOBJ_CAMERA, i));
+  return names;
+}
 
 #ifdef TAUEXT_PICTURES
 namespace {
@@ -36,10 +40,8 @@ void check(const Model& robot, const Eigen::VectorXd& q, const View& view, int d
   if (std::min(view.width, view.height) < 16 || std::max(view.width, view.height) > 4096)
     throw std::invalid_argument(
         fmt::format("a picture of {}x{} pixels: 16 to 4096", view.width, view.height));
-  std::vector<std::string> cameras;
-  for (int i = 0; i < robot->ncam; ++i) cameras.emplace_back(robot->names + robot->name_camadr[i]);
   if (!view.camera.empty())
-    find_known(cameras, "camera", view.camera, [](const std::string& c) { return c; });
+    find_known(cameras_of(robot), "camera", view.camera, [](const std::string& c) { return c; });
 }
 
 // OpenGL that draws into memory of ours, while it lives
@@ -147,6 +149,9 @@ void write_picture(const Model& robot, const Eigen::VectorXd& q, const View& vie
     m.vis.global.offheight = view.height;
     const float orange[] = {0.93F, 0.45F, 0.10F, 1};
     std::copy_n(orange, 4, m.vis.rgba.inertia);
+    if (m.nlight > 0) return;  // else the lamp that goes with the camera has to do
+    std::fill_n(m.vis.headlight.ambient, 3, 0.4F);
+    std::fill_n(m.vis.headlight.diffuse, 3, 0.7F);
   });
   Plant plant(model);
   check(model, q, view, plant.dof());

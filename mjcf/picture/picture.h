@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "mjcf/plant/model.h"
 
@@ -18,6 +19,9 @@ struct View {
   int width = 1200;        ///< [pixels], 16 to 4096
   int height = 900;        ///< [pixels], 16 to 4096
 };
+
+/// The names of a robot's cameras.
+std::vector<std::string> cameras_of(const Model& robot);
 
 /// Draws the robot in a pose q [rad] or [m] and writes a PNG; the file appears whole or not at all.
 /// A robot without shapes is drawn as boxes of the same inertia, and its joints.

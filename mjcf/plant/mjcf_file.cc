@@ -2,7 +2,6 @@
 #include "mjcf/plant/mjcf_file.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -25,12 +26,9 @@ namespace {
 // warnings are counted in mjData, where Plant::step looks for them
 void ignore_warning(const char*) {}
 
-using Owned = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
-
 std::string element(const mjModel& m, mjtObj type, std::string_view kind, int id) {
-  const char* const name = mj_id2name(&m, type, id);
-  return name != nullptr && *name != '\0' ? fmt::format("{} '{}'", kind, printable_name(name))
-                                          : fmt::format("{} {}", kind, id);
+  const std::string name = element_name(m, type, id);
+  return name.empty() ? fmt::format("{} {}", kind, id) : fmt::format("{} '{}'", kind, name);
 }
 
 // numbers of a kind of elements, by MJCF's name, and the limits of what a machine can have
@@ -108,6 +106,7 @@ void check_physical(const mjModel& m) {
            {kTendon, "tendon", m.ntendon, "stiffness", m.tendon_stiffness, 1, 0, 1e9},
            {kTendon, "tendon", m.ntendon, "damping", m.tendon_damping, 1, 0, kMuch},
            {kTendon, "tendon", m.ntendon, "frictionloss", m.tendon_frictionloss, 1, 0, kMuch},
+           {mjOBJ_EQUALITY, "equality", m.neq, "polycoef", m.eq_data, mjNEQDATA, -kMuch, kMuch},
            {kMotor, "actuator", m.nu, "gear", m.actuator_gear, 6, -kAny, kAny},
            {kMotor, "actuator", m.nu, "ctrlrange", m.actuator_ctrlrange, 2, -kAny, kAny},
            {kMotor, "actuator", m.nu, "forcerange", m.actuator_forcerange, 2, -kAny, kAny},
@@ -128,7 +127,7 @@ void check_physical(const mjModel& m) {
 
 // a step of its own, from its initial state
 void try_step(const mjModel& m) {
-  const std::unique_ptr<mjData, decltype(&mj_deleteData)> d(mj_makeData(&m), mj_deleteData);
+  const State d(mj_makeData(&m));
   mj_step(&m, d.get());
   for (int w = 0; w < mjNWARNING; ++w) {
     if (d->warning[w].number == 0) continue;
@@ -142,13 +141,13 @@ std::string_view without_line(std::string_view message) {
   return message.substr(0, message.rfind(", line"));
 }
 
-// whether motors drive it, and each of its joints
+// whether motors drive it, and each of its joints, of which none follows another
 bool has_motors(const mjModel& m) {
   for (int i = 0; i < m.nu; ++i) {
     if (m.actuator_gaintype[i] != mjGAIN_FIXED || m.actuator_biastype[i] != mjBIAS_NONE)
       return false;
   }
-  return m.nu > 0 && m.nu >= m.nv;
+  return m.nu > 0 && m.nu >= m.nv && !has_ties(m);
 }
 
 // mjMINVAL is no word of a user's
@@ -162,25 +161,25 @@ std::string without_jargon(const std::string& message) {
 }
 
 // the file as it is, or, if it has to be, imported
-std::shared_ptr<const mjModel> loaded(const std::string& path, const ImportOptions& options) {
+Model loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
-  Owned m(nullptr, mj_deleteModel);
   const bool urdf = is_urdf(path);
-  if (!urdf) m.reset(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
+  const Model m =
+      urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
   if (m && options.lock.empty() && has_motors(*m)) return m;
   const std::string first = one_line(error.data());
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});
   } catch (const std::runtime_error& e) {
-    // the same in the words that name the file's own line
+    // the same in the words that name the file's own line; those of the imported text help nobody
     if (!m && !urdf && without_line(first) == without_line(e.what()))
       throw std::runtime_error(first);
-    throw;
+    throw std::runtime_error(std::string(without_line(e.what())));
   }
 }
 
 std::string compiled(const std::string& path, const ImportOptions& options) {
-  const std::shared_ptr<const mjModel> m = loaded(path, options);
+  const Model m = loaded(path, options);
   check_physical(*m);
   refuse_nan(path);
   try_step(*m);
@@ -194,13 +193,12 @@ std::string compiled(const std::string& path, const ImportOptions& options) {
 void throw_mujoco_errors() {
   static std::once_flag once;
   std::call_once(once, [] {
-    mju_user_error = throw_error;
-    mju_user_warning = ignore_warning;
+    *detail::mujoco().mju_user_error = throw_error;
+    *detail::mujoco().mju_user_warning = ignore_warning;
   });
 }
 
-std::shared_ptr<const mjModel> load_files(
-    const std::vector<std::pair<std::string, std::string_view>>& files) {
+Model load_files(const std::vector<std::pair<std::string, std::string_view>>& files) {
   // it holds a fixed table, and so lives on the heap
   const std::unique_ptr<mjVFS, void (*)(mjVFS*)> vfs(new mjVFS, [](mjVFS* v) {
     mj_deleteVFS(v);
@@ -218,8 +216,7 @@ std::shared_ptr<const mjModel> load_files(
                          ? mj_loadModel(main.c_str(), vfs.get())
                          : mj_loadXML(main.c_str(), vfs.get(), error.data(), error.size());
   if (m == nullptr) throw std::runtime_error(one_line(error.data()));
-  return std::shared_ptr<const mjModel>(
-      m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
+  return owned(m);
 }
 
 std::string compiled_mjcf(const std::string& path, const Limits& limits,

@@ -3,16 +3,14 @@
 /// MJCF files of users. MuJoCo crashes or hangs at some of them, and believes any number.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/confined.h"
 #include "mjcf/import/mjcf_text.h"
-#include "mjcf/plant/confined.h"
-
-struct mjModel_;  // MuJoCo's
+#include "mjcf/mujoco/handles.h"
 
 namespace tauext {
 
@@ -22,8 +20,7 @@ void throw_mujoco_errors();
 /// The model of the first of these files in memory (MJCF, or MJB if its name ends so), each with
 /// its name.
 /// @throws std::runtime_error with MuJoCo's words
-std::shared_ptr<const mjModel_> load_files(
-    const std::vector<std::pair<std::string, std::string_view>>& files);
+Model load_files(const std::vector<std::pair<std::string, std::string_view>>& files);
 
 /// Compiles a file in a child process, which also refuses numbers that no machine has (those of
 /// dynamics: bodies, joints, tendons, motors, sites, gravity) and tries one step. What MuJoCo

@@ -2,7 +2,6 @@
 #include "mjcf/plant/model.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/robots.h"
 #include "mjcf/trace/input_file.h"
@@ -31,20 +31,6 @@ std::map<std::string, Model, std::less<>>& registered() {
 }
 
 }  // namespace
-
-void DeleteState::operator()(mjData* d) const {
-  mj_deleteData(d);
-}
-
-State initial_state(const mjModel& m) {
-  State d(mj_makeData(&m));
-  mj_forward(&m, d.get());
-  return d;
-}
-
-std::string mujoco_version() {
-  return mj_versionString();
-}
 
 std::vector<std::string> robot_names() {
   std::vector<std::string> names;
@@ -91,7 +77,7 @@ void register_mjcf(const std::string& name, const std::string& path) {
 
 Model changed(const Model& model, const std::function<void(mjModel&)>& change) {
   mjModel* const m = mj_copyModel(nullptr, model.get());
-  Model copy(m, [](const mjModel* p) { mj_deleteModel(const_cast<mjModel*>(p)); });
+  Model copy = owned(m);
   change(*m);
   const State d(mj_makeData(m));
   mj_setConst(m, d.get());

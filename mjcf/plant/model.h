@@ -4,36 +4,14 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mjcf/import/mjcf_text.h"
-
-// MuJoCo's own names; its header is included in the sources of mjcf/plant/ alone
-struct mjModel_;
-struct mjData_;
-using mjModel = mjModel_;  ///< MuJoCo's model
-using mjData = mjData_;    ///< MuJoCo's state of a model
+#include "mjcf/mujoco/handles.h"
 
 namespace tauext {
-
-/// A loaded model, shared and read-only: safe to use from many threads, one Plant each.
-using Model = std::shared_ptr<const mjModel>;
-
-/// Calls mj_deleteData.
-struct DeleteState {
-  void operator()(mjData* d) const;  ///< the deleter's operator
-};
-/// A state of a model, with all that MuJoCo computes from it.
-using State = std::unique_ptr<mjData, DeleteState>;
-
-/// The model at its initial state, after mj_forward.
-State initial_state(const mjModel& m);
-
-/// MuJoCo's version, like "2.2.2".
-std::string mujoco_version();
 
 /// The names of the robots that come with tauext, sorted; then the registered ones.
 std::vector<std::string> robot_names();
@@ -43,7 +21,7 @@ std::vector<std::string> robot_names();
 /// @throws std::invalid_argument for an unknown robot or scene, listing the known ones
 Model load_robot(std::string_view name, std::string_view scene = "");
 
-/// A robot of your own: an MJCF file, laid out as mjcf/plant/layout.h says, or as people have it
+/// A robot of your own: an MJCF file, laid out as mjcf/mujoco/layout.h says, or as people have it
 /// (mjcf/import/). It is compiled and tried in a child process with limits.
 /// @throws std::runtime_error naming the path, with MuJoCo's own message, what crashed, or the
 /// element whose numbers are not physical

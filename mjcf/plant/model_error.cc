@@ -2,13 +2,13 @@
 #include "mjcf/plant/model_error.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
+#include "mjcf/mujoco/mujoco_functions.h"
 
 namespace tauext {
 namespace {
@@ -29,9 +29,9 @@ void check(const ModelError& e) {
   check("armature [kg m^2]", e.armature, 0, 1e4);
 }
 
-// the degrees of freedom of the arm, from the base to the tip
+// the degrees of freedom of the arm that follow no other, from the base to the tip
 std::vector<int> arm_of(const Model& m) {
-  return layout_of(*m, *initial_state(*m)).arm;
+  return layout_of(*m, *initial_state(*m)).leaders;
 }
 
 // along the line from the last joint to the centre of mass of what it moves; that line has to lie
@@ -54,8 +54,9 @@ Model with_errors(const Model& robot, const ModelError& e) {
   check(e);
   const std::vector<int> arm = arm_of(robot);
   const int last = robot->dof_bodyid[arm.back()];
-  const Model heavy = with_scaled_body(robot, mj_id2name(robot.get(), mjOBJ_BODY, last), e.mass);
-  return changed(heavy, [&](mjModel& m) {
+  return changed(robot, [&](mjModel& m) {
+    m.body_mass[last] *= e.mass;
+    for (int i = 0; i < 3; ++i) m.body_inertia[3 * last + i] *= e.mass;
     if (e.com != 0) move_com(m, arm.back(), e.com);
     for (const int dof : arm) {
       m.dof_damping[dof] += e.viscous;

@@ -21,8 +21,8 @@ struct ModelError {
   bool none() const { return *this == ModelError(); }  ///< the robot is as its file says
 };
 
-/// A copy of the robot, scene included, with these errors. "Every joint" means MuJoCo's hinges: on
-/// wallmobot3 the second one turns by q3 - q2.
+/// A copy of the robot, scene included, with these errors. "Every joint" means MuJoCo's that follow
+/// no other: on wallmobot3 the second one turns by q3 - q2.
 /// @throws std::invalid_argument for an error out of range, naming it
 Model with_errors(const Model& robot, const ModelError& error);
 

@@ -2,10 +2,12 @@
 #include "mjcf/plant/plant.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <stdexcept>
+
+#include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
 
 namespace tauext {
 namespace {
@@ -25,7 +27,8 @@ bool is_limit(int type) {
 
 }  // namespace
 
-Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model_)) {
+Plant::Plant(Model model)
+    : model_(std::move(model)), data_(initial_state(*model_)), is_tied_(has_rigid_ties(*model_)) {
   const mjModel& m = *model_;
   if (m.opt.integrator != mjINT_RK4) {
     throw std::invalid_argument(
@@ -33,23 +36,22 @@ Plant::Plant(Model model) : model_(std::move(model)), data_(initial_state(*model
         "the estimators' own model, and implicit gains energy");
   }
   layout_ = layout_of(m, *data_);
-  S_lu_.compute(layout_.S);
-  St_lu_.compute(layout_.S.transpose());
-  q0_ = view(data_->actuator_length, dof()) - layout_.S * view(data_->qpos, m.nq)(layout_.arm);
   if (layout_.load_dof >= 0) load_ = LoadState::kHeld;
   end_effector_ = end_effector_of(m, layout_.arm.back());
+  if (is_tied_) {  // the model's initial state may be off them
+    put_arm(q(), qd());
+    mj_forward(&m, data_.get());
+  }
 }
 
 VectorXd Plant::of_arm(const double* force) const {
   const VectorXd f = view(force, model_->nv)(layout_.arm);
-  return St_lu_.solve(f);
+  return layout_.T.transpose() * f;
 }
 
 void Plant::set_state(const VectorXd& q, const VectorXd& qd) {
   mj_resetData(model_.get(), data_.get());
-  const VectorXd rho = S_lu_.solve(q - q0_), rho_dot = S_lu_.solve(qd);
-  Eigen::Map<VectorXd>(data_->qpos, model_->nq)(layout_.arm) = rho;
-  Eigen::Map<VectorXd>(data_->qvel, model_->nv)(layout_.arm) = rho_dot;
+  put_arm(q, qd);
   tau_ext_ = VectorXd::Zero(dof());
   push_.setZero();
   if (load_ != LoadState::kNone) {
@@ -59,6 +61,11 @@ void Plant::set_state(const VectorXd& q, const VectorXd& qd) {
     apply_to_load();
   }
   mj_forward(model_.get(), data_.get());
+}
+
+void Plant::put_arm(const VectorXd& q, const VectorXd& qd) {
+  Eigen::Map<VectorXd>(data_->qpos, model_->nq)(layout_.arm) = layout_.T * q + layout_.rho0;
+  Eigen::Map<VectorXd>(data_->qvel, model_->nv)(layout_.arm) = layout_.T * qd;
 }
 
 void Plant::set_input(const VectorXd& tau, const VectorXd& tau_ext) {
@@ -110,7 +117,7 @@ void Plant::drop_load() {
 }
 
 VectorXd Plant::q() const {
-  return layout_.S * view(data_->qpos, model_->nq)(layout_.arm) + q0_;
+  return layout_.S * view(data_->qpos, model_->nq)(layout_.arm) + layout_.q0;
 }
 
 VectorXd Plant::qd() const {
@@ -122,11 +129,8 @@ VectorXd Plant::tau() const {
 }
 
 MatrixXd Plant::inertia() const {
-  RowMajor M(model_->nv, model_->nv);
-  mj_fullM(model_.get(), M.data(), data_->qM);
-  // B = S^-T M S^-1
-  const MatrixXd half = St_lu_.solve(MatrixXd(M(layout_.arm, layout_.arm)));
-  return St_lu_.solve(half.transpose()).transpose();
+  const MatrixXd M = mass_matrix(*model_, *data_);
+  return layout_.T.transpose() * M(layout_.arm, layout_.arm) * layout_.T;
 }
 
 VectorXd Plant::bias() const {
@@ -230,8 +234,7 @@ Point Plant::site(const std::string& name) const {
 }
 
 MatrixXd Plant::end_effector_jacobian() const {
-  const MatrixXd J = jacobian(end_effector_)(Eigen::all, layout_.arm);
-  return St_lu_.solve(J.transpose()).transpose();
+  return jacobian(end_effector_)(Eigen::all, layout_.arm) * layout_.T;
 }
 
 VectorXd Plant::tau_ext_of(const Vector3d& f) const {
@@ -252,6 +255,7 @@ void Plant::step(double h) {
     m.opt.timestep = h;
     mj_RungeKutta(&m, data_.get(), 4);
   }
+  if (is_tied_) put_arm(q(), qd());  // else rounding would move the joints off their ties
   mj_forward(model_.get(), data_.get());
   for (int w = 0; w < mjNWARNING; ++w) {
     if (data_->warning[w].number == 0) continue;

@@ -4,11 +4,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <string>
 #include <vector>
 
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/trace/screw.h"
 
@@ -20,9 +19,9 @@ struct Point {
   Eigen::Vector3d velocity;  ///< [m/s]
 };
 
-/// A simulated arm, and what stands around it, as mjcf/plant/layout.h reads them from the model.
-/// MuJoCo's coordinates rho of the arm are mapped to q = S rho; generalised forces by rho_force =
-/// S^T force.
+/// A simulated arm, and what stands around it, as mjcf/mujoco/layout.h reads them from the model.
+/// MuJoCo's coordinates rho of the arm are mapped to q = S rho + q0, and back by rho = T q + rho0;
+/// generalised forces by force = T^T rho_force.
 ///
 /// Everything but `step` speaks of the present state and input, and equation (3) holds there:
 ///     B qdd + bias + friction + tau_ext = tau.
@@ -72,6 +71,9 @@ class Plant {
   std::vector<int> joints_at_limits() const;
   /// What the limits do to the arm [N m, sign of (3)]; no part of tau_ext().
   Eigen::VectorXd limit_torque() const;
+  /// Whether joints rigidly follow others. The force of a limit would break the ties, so such an
+  /// arm must stay off its limits.
+  bool is_tied() const { return is_tied_; }
 
   /// tau_ext = -J^T f [N m] of a force f [N, world frame] that acts on the arm at its end effector.
   Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f) const;
@@ -94,6 +96,7 @@ class Plant {
  private:
   enum class LoadState { kNone, kHeld, kHung, kDropped };
 
+  void put_arm(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
   void apply_to_load();
   BodyPoint carried_site(const std::string& name) const;
   Eigen::Vector3d position(const BodyPoint& c) const;
@@ -107,9 +110,7 @@ class Plant {
   Model model_;
   State data_;
   Layout layout_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> S_lu_;   // of S
-  Eigen::PartialPivLU<Eigen::MatrixXd> St_lu_;  // of S^T
-  Eigen::VectorXd q0_;
+  bool is_tied_;
   BodyPoint end_effector_;
   Eigen::VectorXd tau_ext_;  // of set_input
   LoadState load_ = LoadState::kNone;

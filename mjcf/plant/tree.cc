@@ -2,21 +2,19 @@
 #include "mjcf/plant/tree.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 
-#include "estimators/friction.h"
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
+#include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
 #include "mjcf/trace/known.h"
-#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -24,22 +22,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kQuickest = 500;         // [1/s] of friction: 40 % of a speed are gone in a sample
-constexpr int kSmoothFriction = 1 << 30;  // of disableflags: a bit that MuJoCo does not know
-
-// to MuJoCo's passive forces; v_s stands where its own friction, switched off, has a constant
-void add_smooth_friction(const mjModel* m, mjData* d) {
-  if ((m->opt.disableflags & kSmoothFriction) == 0) return;
-  for (int i = 0; i < m->nv; ++i) {
-    const CoulombFriction dry{m->dof_frictionloss[i], m->dof_solref[mjNREF * i]};
-    d->qfrc_passive[i] -= dry.torque(d->qvel[i]);
-  }
-}
-
-std::string named_joint(const mjModel& m, int i) {
-  const char* const name = mj_id2name(&m, mjOBJ_JOINT, i);
-  const bool named = name != nullptr && *name != '\0';
-  return fmt::format("joint {}{}", i + 1, named ? " '" + printable_name(name) + "'" : "");
+// of each joint, over all that move with it
+VectorXd together(const Ties& ties, const VectorXd& of_joint) {
+  const MatrixXd moves = (ties.T.array() != 0).cast<double>();
+  return moves * (moves.transpose() * of_joint);
 }
 
 void check(const mjModel& m) {
@@ -51,13 +37,12 @@ void check(const mjModel& m) {
     if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
     throw std::invalid_argument(
         fmt::format("{} is {}: an arm of hinges and slides on a fixed base is wanted; take it out",
-                    named_joint(m, i), m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
+                    joint_name(m, i), m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
   }
   if (m.nv == 0) {
     throw std::invalid_argument(
         "no joint is left that moves: an arm of hinges and slides is wanted");
   }
-  if (m.neq > 0) throw std::invalid_argument(first_tie(m));
   refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
   for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
     refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
@@ -78,9 +63,14 @@ bool has_tendon_coordinates(const mjModel& m) {
 
 // the actuators' coordinates, or MuJoCo's
 void set_coordinates(const mjModel& m, ArmTree& tree) {
-  tree.coordinates = MatrixXd::Identity(m.nv, m.nv);
-  tree.offset = VectorXd::Zero(m.nv);
+  const Ties ties = ties_of(m);
+  tree.drho = ties.T;
+  tree.rho0 = ties.rho0;
+  tree.leaders = ties.free;
   if (!has_tendon_coordinates(m)) return;
+  if (has_ties(m))
+    throw std::invalid_argument(
+        "motors on tendons, and joints that follow others: not supported together");
   const State d = initial_state(m);
   const Layout l = layout_of(m, *d);
   for (int i = 0; i < l.dof; ++i) {
@@ -90,20 +80,37 @@ void set_coordinates(const mjModel& m, ArmTree& tree) {
                     "coordinates are, their gears must be 1",
                     i, m.actuator_gear[6 * i]));
   }
-  if (l.dof != m.nv) throw std::invalid_argument("the motors do not move every joint of the model");
-  tree.coordinates = l.S;
-  tree.offset = VectorXd::Map(d->actuator_length, m.nv) - l.S * VectorXd::Map(d->qpos, m.nv);
+  if (static_cast<int>(l.arm.size()) != m.nv)
+    throw std::invalid_argument("the motors do not move every joint of the model");
+  tree.drho = l.T;
+  tree.rho0 = l.rho0;
 }
 
+// of joints, and of those that follow them
 void set_ranges(const mjModel& m, ArmTree& tree) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  tree.lower = VectorXd::Constant(m.nv, -kNone);
-  tree.upper = VectorXd::Constant(m.nv, kNone);
-  if (!tree.coordinates.isIdentity(0)) return;
+  tree.lower = VectorXd::Constant(tree.dof(), -kNone);
+  tree.upper = VectorXd::Constant(tree.dof(), kNone);
+  if (has_tendon_coordinates(m)) return;
   for (int i = 0; i < m.njnt; ++i) {
     if (!m.jnt_limited[i]) continue;
-    tree.lower[i] = m.jnt_range[2 * i];
-    tree.upper[i] = m.jnt_range[2 * i + 1];
+    const double* const range = m.jnt_range + 2 * i;
+    Eigen::Index k = 0;
+    tree.drho.row(i).cwiseAbs().maxCoeff(&k);
+    const double factor = tree.drho(i, k), at = tree.rho0[i];
+    if (factor == 0) {
+      if (at >= range[0] && at <= range[1]) continue;
+      throw std::invalid_argument(fmt::format(
+          "{} is held at {:.4g}, outside its range; --lock REGEX fixes it", joint_name(m, i), at));
+    }
+    const double ends[] = {(range[0] - at) / factor, (range[1] - at) / factor};
+    tree.lower[k] = std::max(tree.lower[k], std::min(ends[0], ends[1]));
+    tree.upper[k] = std::min(tree.upper[k], std::max(ends[0], ends[1]));
+    if (tree.lower[k] < tree.upper[k]) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: its range and those of the joints that follow it have nothing in common; --lock "
+        "REGEX fixes them",
+        joint_name(m, tree.leaders[static_cast<std::size_t>(k)])));
   }
 }
 
@@ -113,27 +120,30 @@ void set_usual(const mjModel& m, ArmTree& tree) {
   constexpr double kAcceleration = 10;  // [rad/s^2] or [m/s^2]
   constexpr double kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19};
   const State d = initial_state(m);
-  MatrixXd M(m.nv, m.nv);
-  tree.usual_torque = tree.mobility = VectorXd::Zero(m.nv);
-  const auto to_q = tree.coordinates.transpose().partialPivLu();
+  const Ties ties = ties_of(m);
+  tree.usual_torque = VectorXd::Zero(tree.dof());
+  tree.mobility = VectorXd::Zero(m.nv);
   for (int k = 0; k < kPoses; ++k) {
-    for (int i = 0; i < m.nv; ++i) {
+    VectorXd free(tree.dof());
+    for (int n = 0; n < tree.dof(); ++n) {
+      const int i = ties.free[static_cast<std::size_t>(n)];
       const double most = m.jnt_type[i] == mjJNT_SLIDE ? 0.5 : 3.14159;
-      const double* const range = m.jnt_range + 2 * i;
-      const double from = m.jnt_limited[i] ? range[0] : -most;
-      const double to = m.jnt_limited[i] ? range[1] : most;
-      const double turns = k * std::sqrt(kPrimes[i % 8]);
-      d->qpos[i] = from + (to - from) * (turns - std::floor(turns));
+      double from = -most, to = most;
+      if (m.jnt_limited[i]) from = m.jnt_range[2 * i], to = m.jnt_range[2 * i + 1];
+      if (std::isfinite(tree.lower[n])) from = tree.lower[n], to = tree.upper[n];
+      const double turns = k * std::sqrt(kPrimes[n % 8]);
+      free[n] = from + (to - from) * (turns - std::floor(turns));
     }
+    VectorXd::Map(d->qpos, m.nv) = ties.T * free + ties.rho0;
     mj_fwdPosition(&m, d.get());
     mj_fwdVelocity(&m, d.get());
-    mj_fullM(&m, M.data(), d->qM);
-    const VectorXd gravity = to_q.solve(VectorXd::Map(d->qfrc_bias, m.nv));
-    const MatrixXd half = to_q.solve(M);
-    const VectorXd inertia = to_q.solve(half.transpose()).diagonal();
+    const MatrixXd M = mass_matrix(m, *d);
+    const VectorXd gravity = tree.drho.transpose() * VectorXd::Map(d->qfrc_bias, m.nv);
+    const VectorXd inertia = (tree.drho.transpose() * M * tree.drho).diagonal();
     tree.usual_torque = tree.usual_torque.cwiseMax(gravity.cwiseAbs());
     tree.usual_torque = tree.usual_torque.cwiseMax(kAcceleration * inertia);
-    tree.mobility = tree.mobility.cwiseMax(M.inverse().diagonal());
+    const MatrixXd moved = ties.T * (ties.T.transpose() * M * ties.T).inverse();
+    tree.mobility = tree.mobility.cwiseMax(moved.cwiseProduct(ties.T).rowwise().sum());
   }
 }
 
@@ -179,7 +189,6 @@ void add_joints(const mjModel& m, int body, Place& at, ArmTree& tree) {
     j.armature = m.dof_armature[dof];
     j.viscous = m.dof_damping[dof];
     j.dry = m.dof_frictionloss[dof];
-    j.v_s = std::max(j.v_s, j.dry * tree.mobility[dof] / kQuickest);
     tree.joints.push_back(j);
     at = {i, Mat<3>::Identity(), -anchor};
   }
@@ -204,49 +213,24 @@ void set_points(const mjModel& m, const std::vector<Place>& places, ArmTree& tre
 
 }  // namespace
 
+bool ArmTree::slides(int i) const {
+  const int leader = leaders[static_cast<std::size_t>(i)];
+  return joints[static_cast<std::size_t>(leader)].kind == TreeJoint::Kind::kSlide;
+}
+
 const ArmPoint& ArmTree::point(const std::string& name) const {
   return find_known(points, "site", name, [](const auto& p) { return p.first; }).second;
 }
 
-void detail::require_equal_joints(std::size_t have, int want) {
-  if (have == static_cast<std::size_t>(want)) return;
-  throw std::invalid_argument(fmt::format("the model has {} joints, not {}", have, want));
-}
-
-Model simulated(const Model& model) {
-  static std::once_flag once;
-  std::call_once(once, [] { mjcb_passive = add_smooth_friction; });
-  const ArmTree tree = tree_of(model);
-  return changed(model, [&](mjModel& m) {
-    for (int i = 0; i < m.nv; ++i)
-      m.dof_solref[mjNREF * i] = tree.joints[static_cast<std::size_t>(i)].v_s;
-    m.opt.integrator = mjINT_RK4;
-    m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | kSmoothFriction;
-    const bool on_joints = std::all_of(m.actuator_trntype, m.actuator_trntype + m.nu,
-                                       [](int type) { return type == mjTRN_JOINT; });
-    if (m.nu != m.nv || !on_joints) return;
-    for (int i = 0; i < m.nu; ++i) {
-      m.actuator_trnid[2 * i] = i;
-      m.actuator_gear[6 * i] = m.actuator_gainprm[i * mjNGAIN] = 1;
-      m.actuator_ctrllimited[i] = m.actuator_forcelimited[i] = 0;
-    }
-  });
-}
-
-std::string too_stiff(const Model& model) {
-  const ArmTree tree = tree_of(model);
-  for (int i = 0; i < model->nv; ++i) {
-    const double damping = tree.joints[static_cast<std::size_t>(i)].viscous;
-    const double rate = damping * tree.mobility[i];  // [1/s]
-    if (rate <= kQuickest) continue;
-    return fmt::format(
-        "{}: a damping of {:.3g} stops its inertia of {:.2g} within {:.2g} ms, faster than samples "
-        "of 1 ms show; add its motor's inertia behind the gear, armature=\"{:.2g}\" or more, to "
-        "its <joint> in MJCF, to its <dynamics> in URDF",
-        named_joint(*model, i), damping, 1 / tree.mobility[i], 1000 / rate,
-        1.05 * (damping / kQuickest - 1 / tree.mobility[i]));
-  }
-  return "";
+void detail::require_size(const ArmTree& tree, int coordinates) {
+  if (tree.dof() != coordinates)
+    throw std::invalid_argument(
+        fmt::format("the model has {} joints, not {}", tree.dof(), coordinates));
+  const int followers = static_cast<int>(tree.joints.size()) - tree.dof();
+  if (followers <= kMostFollowers) return;
+  throw std::invalid_argument(
+      fmt::format("{} joints follow others, and at most {} may; --lock REGEX fixes them", followers,
+                  kMostFollowers));
 }
 
 ArmTree tree_of(const Model& model) {
@@ -257,6 +241,8 @@ ArmTree tree_of(const Model& model) {
   set_coordinates(m, tree);
   set_ranges(m, tree);
   set_usual(m, tree);
+  tree.friction_rate =
+      together(ties_of(m), VectorXd::Map(m.dof_damping, m.nv).cwiseProduct(tree.mobility));
   std::vector<Place> places(static_cast<std::size_t>(m.nbody));
   std::vector<Mass> masses(static_cast<std::size_t>(m.nv));
   for (int body = 1; body < m.nbody; ++body) {
@@ -275,10 +261,14 @@ ArmTree tree_of(const Model& model) {
     all.inertia += axes * vector(m.body_inertia + 3 * body).asDiagonal() * axes.transpose() +
                    mass * inertia_at(center);
   }
+  const VectorXd slips =
+      together(ties_of(m), VectorXd::Map(m.dof_frictionloss, m.nv).cwiseProduct(tree.mobility)) /
+      kQuickestFriction;
   tree.base = tree.joints.front().position;  // sums about a point nearby lose no digits
   for (std::size_t i = 0; i < masses.size(); ++i) {
     TreeJoint& j = tree.joints[i];
     if (j.parent < 0) j.position -= tree.base;
+    j.v_s = std::max(j.v_s, slips[static_cast<Eigen::Index>(i)]);
     j.mass = masses[i].m;
     if (j.mass > 0) j.center = masses[i].h / j.mass;
     const Mat<3> inertia = masses[i].inertia - j.mass * inertia_at(j.center);

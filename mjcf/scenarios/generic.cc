@@ -26,11 +26,9 @@ using Eigen::VectorXd;
 struct Ranges {
   VectorXd middle, half;  // [rad] or [m]
 
-  explicit Ranges(const ArmTree& arm)
-      : middle(VectorXd::Zero(arm.lower.size())), half(arm.lower.size()) {
-    for (Eigen::Index i = 0; i < half.size(); ++i) {
-      const bool slide = arm.joints[static_cast<std::size_t>(i)].kind == TreeJoint::Kind::kSlide;
-      half[i] = slide ? 0.5 : 3.14159;
+  explicit Ranges(const ArmTree& arm) : middle(VectorXd::Zero(arm.dof())), half(arm.dof()) {
+    for (int i = 0; i < arm.dof(); ++i) {
+      half[i] = arm.slides(i) ? 0.5 : 3.14159;
       if (!std::isfinite(arm.lower[i])) continue;
       middle[i] = (arm.lower[i] + arm.upper[i]) / 2;
       half[i] = std::min(half[i], (arm.upper[i] - arm.lower[i]) / 2);

@@ -31,7 +31,7 @@ struct ArmScale {
   bool gives_way = false;  ///< whether that joint limits the force
 };
 
-/// @throws std::invalid_argument if the model cannot be simulated (mjcf/plant/layout.h)
+/// @throws std::invalid_argument if the model cannot be simulated (mjcf/mujoco/layout.h)
 ArmScale scale_of(const Model& model);
 
 /// free, step, ramp, sine, chirp, in_motion, and, where a force on the end effector moves the arm,

@@ -10,6 +10,7 @@
 
 #include "estimators/higher_order_momentum_observer.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/record.h"
 #include "mjcf/scenarios/generic.h"
@@ -90,6 +91,20 @@ TEST(ArmForces, OfAPointAreWhatActsThere) {
   EXPECT_NEAR(hand.moment.norm() / f.norm(), 0.09, 0.09);
   EXPECT_NEAR(hand.moment.dot(f), 0, 1e-9);
   EXPECT_GT(hand.moment.norm(), 0.1);
+}
+
+// the torques of a touch of one finger are those of another touch of the other one
+TEST(ArmForces, OfAFingerThatAnotherOneFollowsHaveNoLine) {
+  const Model model = simulated(load_mjcf(kExamples + "/arm7.xml"));
+  const VectorXd q = scale_of(model).home;
+  const VectorXd limits = VectorXd::Constant(8, 0.01);
+  for (const char* finger : {"left", "right"}) {
+    const auto at = arm_forces(model, {.site = finger, .moment = true, .limits = limits});
+    const VectorXd tau = at->torque(q, {10, -20, 5});
+    const TouchPlace place = at->touch(q.data(), tau.data());
+    EXPECT_EQ(place.link, 7) << finger;
+    EXPECT_FALSE(place.has_line) << finger;
+  }
 }
 
 TEST(ArmForces, OfAnUnknownPointAreRefusedWithTheKnownOnes) {

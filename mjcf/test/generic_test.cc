@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/record.h"
 #include "mjcf/test/error_of.h"
@@ -24,8 +25,10 @@ struct Arm {
   const char* file;
   const char* lock;
 };
-constexpr Arm kArms[] = {
-    {"arm6", "arm6.xml", ""}, {"arm7", "arm7.xml", "finger.*"}, {"two_arms", "two_arms.urdf", ""}};
+constexpr Arm kArms[] = {{"arm6", "arm6.xml", ""},
+                         {"arm7", "arm7.xml", "finger.*"},
+                         {"two_arms", "two_arms.urdf", ""},
+                         {"arm7_with_gripper", "arm7.xml", ""}};  // a finger follows the other
 void PrintTo(const Arm& arm, std::ostream* out) {
   *out << arm.name;
 }
@@ -37,7 +40,7 @@ Model model_of(const Arm& arm) {
 // the largest |B qdd + bias + F + tau_ext - tau|, B and bias by our own dynamics
 template <int N>
 double residual(const Trace& t, const Model& model) {
-  const TreeModel<N> arm = tree_model<N>(model);
+  const AnyTree<N> arm = any_tree<N>(model);
   double worst = 0;
   for (int k = 0; k < t.size(); ++k) {
     const Vec<N> q = t.q.col(k), qd = t.qd.col(k), qdd = t.qdd.col(k);
@@ -57,7 +60,9 @@ TEST_P(Generic, ObeysEquationThreeAtEverySample) {
   ASSERT_EQ(all.size(), 10U);
   for (const Scenario& s : all) {
     const Trace t = record(model, s);
-    const double worst = t.dof() == 6 ? residual<6>(t, model) : residual<7>(t, model);
+    const double worst = t.dof() == 6   ? residual<6>(t, model)
+                         : t.dof() == 7 ? residual<7>(t, model)
+                                        : residual<8>(t, model);
     EXPECT_LT(worst, 1e-9 * t.tau.cwiseAbs().maxCoeff()) << s.name;
     const bool touched = s.name == "blow" || s.name == "clamp" || s.name == "contact";
     EXPECT_EQ(std::count(t.contact.begin(), t.contact.end(), 1) > 0, touched) << s.name;

@@ -27,7 +27,7 @@
 #include "bench/score/degradation.h"
 #include "lcmtypes/receive/arrivals.h"
 #include "lcmtypes/wire.h"
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/trace/timed_rows.h"
 #include "mjcf/trace/trace.h"

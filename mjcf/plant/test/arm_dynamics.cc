@@ -18,60 +18,59 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 }  // namespace
 
-// rho are MuJoCo's coordinates, q = S rho + q0; forces of q are S^-T those of rho
+// rho = drho q + rho0 are MuJoCo's coordinates; forces of q are drho^T those of rho
 struct ArmDynamics::Workspace {
   explicit Workspace(Model m) : model(std::move(m)), data(initial_state(*model)) {
     const ArmTree tree = tree_of(model);  // of which it takes the coordinates and v_s alone
     const int n = model->nv;
-    S = tree.coordinates;
-    S_inv = S.inverse();  // once: steps below multiply, which allocates nothing
-    q0 = tree.offset;
+    drho = tree.drho;
+    rho0 = tree.rho0;
     damping = VectorXd::Map(model->dof_damping, n);
     dry = VectorXd::Map(model->dof_frictionloss, n);
     v_s = VectorXd::NullaryExpr(
         n, [&](auto i) { return tree.joints[static_cast<std::size_t>(i)].v_s; });
-    for (VectorXd* v : {&rho, &force, &at, &moved}) *v = VectorXd::Zero(n);
-    M = B_ahead = RowMajor::Zero(n, n);
-    half = MatrixXd::Zero(n, n);
+    for (VectorXd* v : {&rho, &force}) *v = VectorXd::Zero(n);
+    for (VectorXd* v : {&at, &moved}) *v = VectorXd::Zero(dof());
+    M = RowMajor::Zero(n, n);
+    B_ahead = RowMajor::Zero(dof(), dof());
+    half = MatrixXd::Zero(n, dof());
   }
+  int dof() const { return static_cast<int>(drho.cols()); }
 
   void move_to(const double* q, const double* qd) {
     const int n = model->nv;
-    moved = VectorXd::Map(q, n) - q0;
-    rho.noalias() = S_inv * moved;
+    rho = rho0;
+    rho.noalias() += drho * VectorXd::Map(q, dof());
     VectorXd::Map(data->qpos, n) = rho;
     if (qd == nullptr) {
       VectorXd::Map(data->qvel, n).setZero();
     } else {
-      VectorXd::Map(data->qvel, n).noalias() = S_inv * VectorXd::Map(qd, n);
+      VectorXd::Map(data->qvel, n).noalias() = drho * VectorXd::Map(qd, dof());
     }
     mj_kinematics(model.get(), data.get());
     mj_comPos(model.get(), data.get());
   }
 
-  // B = S^-T M S^-1
   void inertia(const double* q, double* B) {
-    const int n = model->nv;
     move_to(q, nullptr);
     mj_crb(model.get(), data.get());
     mj_fullM(model.get(), M.data(), data->qM);
-    half.noalias() = M * S_inv;
-    MatrixXd::Map(B, n, n).noalias() = S_inv.transpose() * half;
+    half.noalias() = M * drho;
+    MatrixXd::Map(B, dof(), dof()).noalias() = drho.transpose() * half;
   }
 
   void bias(const double* q, const double* qd, double* out) {
-    const int n = model->nv;
     move_to(q, qd);
     mj_comVel(model.get(), data.get());
     mj_rne(model.get(), data.get(), 0, force.data());
-    VectorXd::Map(out, n).noalias() = S_inv.transpose() * force;
+    VectorXd::Map(out, dof()).noalias() = drho.transpose() * force;
   }
 
   Model model;
   State data;
-  MatrixXd S, S_inv, half;
+  MatrixXd drho, half;
   RowMajor M, B_ahead;
-  VectorXd q0, v_s, damping, dry, rho, force, at, moved;
+  VectorXd rho0, v_s, damping, dry, rho, force, at, moved;
 };
 
 ArmDynamics::ArmDynamics(Model model) : work_(std::make_unique<Workspace>(std::move(model))) {}
@@ -79,7 +78,7 @@ ArmDynamics::ArmDynamics(const ArmDynamics& other) : ArmDynamics(other.work_->mo
 ArmDynamics::~ArmDynamics() = default;
 
 int ArmDynamics::dof() const noexcept {
-  return work_->model->nv;
+  return work_->dof();
 }
 
 void ArmDynamics::inertia(const double* q, double* B) const noexcept {
@@ -117,12 +116,11 @@ void ArmDynamics::momentum_bias(const double* q, const double* qd, double* out) 
 
 void ArmDynamics::friction(const double* qd, double* out) const noexcept {
   Workspace& s = *work_;
-  const int n = dof();
-  s.rho.noalias() = s.S_inv * VectorXd::Map(qd, n);
-  for (int j = 0; j < n; ++j) {
+  s.rho.noalias() = s.drho * VectorXd::Map(qd, dof());
+  for (int j = 0; j < s.model->nv; ++j) {
     s.force[j] = s.damping[j] * s.rho[j] + s.dry[j] * std::tanh(s.rho[j] / s.v_s[j]);
   }
-  VectorXd::Map(out, n).noalias() = s.S_inv.transpose() * s.force;
+  VectorXd::Map(out, dof()).noalias() = s.drho.transpose() * s.force;
 }
 
 }  // namespace tauext

@@ -16,7 +16,7 @@ namespace tauext {
 ///
 /// Coordinates: MuJoCo's own, one for each hinge or slide in the file's order, whatever gears its
 /// actuators have; but where motors on fixed tendons say what the joint coordinates are
-/// (mjcf/plant/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of
+/// (mjcf/mujoco/layout.h, wallmobot3), these. Friction is the file's damping and frictionloss of
 /// joints, the latter smooth as ArmTree says.
 class ArmDynamics {
  public:

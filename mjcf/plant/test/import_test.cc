@@ -12,6 +12,7 @@
 
 #include "mjcf/import/mjcf_text.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/simulated.h"
 #include "mjcf/plant/test/arm_dynamics.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
@@ -183,10 +184,13 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
       "link='a'/></joint><link name='b'><inertial><mass value='.1'/><inertia ixx='1e-3' "
       "iyy='1e-3' izz='1e-3'/></inertial></link><joint name='right' type='prismatic'><parent "
       "link='tool'/><child link='b'/><mimic joint='left'/></joint>";
-  has(error(fingers),
-      "joint 'right' is tied to 'left' by <equality> or <mimic>: not supported; --lock REGEX "
-      "fixes");
   EXPECT_EQ(error(fingers, "left|right"), "no error");
+  std::string geared = fingers;
+  geared.insert(geared.find("joint='left'/>"), "multiplier='-2' offset='.01' ");
+  const ArmTree arm = tree_of(load_mjcf(put(urdf(geared), "arm.urdf")));
+  ASSERT_EQ(arm.dof(), 4);
+  EXPECT_LT((arm.drho.col(3) - (Eigen::VectorXd(5) << 0, 0, 0, 1, -2).finished()).norm(), 1e-15);
+  EXPECT_LT((arm.rho0 - (Eigen::VectorXd(5) << 0, 0, 0, 0, .01).finished()).norm(), 1e-15);
   has(error("<joint name='x' type='fixed'><parent link='tool'/><child link='none'/></joint>"),
       "joint 'x': its child 'none' is no link");
   has(error("<link name='alone'/>"), "2 links are no child");
@@ -235,7 +239,6 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
   };
   const std::string path = put(arm(false));
-  has(error(path), "--lock");
   has(error(path, "finger"), "there are: shoulder, elbow, left_finger, right_finger");
   has(error(path, "left_finger"), "ties 'right_finger' to it: lock both");
   has(error(path, "("), "--lock '('");

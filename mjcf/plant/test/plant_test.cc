@@ -5,10 +5,9 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
+#include "mjcf/plant/mjcf_file.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -108,10 +107,7 @@ constexpr const char* kCoupled = R"(<mujoco>
 </mujoco>)";
 
 TEST(Plant, TheTruthOfAContactHoldsNeitherFrictionNorEqualityConstraints) {
-  const std::string path = testing::TempDir() + "coupled.xml";
-  std::ofstream(path) << kCoupled;
-  Plant plant(load_mjcf(path));
-  std::filesystem::remove(path);
+  Plant plant(load_files({{"coupled.xml", kCoupled}}));
   const double down = std::asin(0.455);  // the tip's sphere is 5 mm in the floor
   plant.set_state(Vector2d(down, down), Vector2d(0.1, 0.1));
   plant.set_input(Vector2d(0, 30), Vector2d::Zero());  // the coupling carries the difference

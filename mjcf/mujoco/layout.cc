@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/plant/layout.h"
+#include "mjcf/mujoco/layout.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -11,7 +10,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "mjcf/trace/printable.h"
+#include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
 
 namespace tauext {
 namespace {
@@ -39,11 +39,6 @@ bool is_screw(const mjModel& m, int i) {
   return on_spatial_tendon(m, i) && is_motor(m, i);
 }
 
-std::string name_of(const mjModel& m, mjtObj type, int id) {
-  const char* const name = mj_id2name(&m, type, id);
-  return name == nullptr ? "" : printable_name(name);
-}
-
 // the triangle of a spatial tendon between two sites that spans one hinge
 Screw triangle(const mjModel& m, const mjData& d, int actuator, int dof) {
   const int tendon = m.actuator_trnid[2 * actuator], first = m.tendon_adr[tendon];
@@ -52,7 +47,7 @@ Screw triangle(const mjModel& m, const mjData& d, int actuator, int dof) {
       m.wrap_type[first + 1] != mjWRAP_SITE || m.jnt_type[joint] != mjJNT_HINGE) {
     throw std::invalid_argument(
         fmt::format("tendon '{}': a screw runs between two sites across one hinge",
-                    name_of(m, mjOBJ_TENDON, tendon)));
+                    element_name(m, mjOBJ_TENDON, tendon)));
   }
   const Vector3d hinge = Vector3d::Map(d.xanchor + 3 * joint),
                  axis = Vector3d::Map(d.xaxis + 3 * joint);
@@ -69,24 +64,48 @@ Screw triangle(const mjModel& m, const mjData& d, int actuator, int dof) {
   return s;
 }
 
+// those that MuJoCo does not hold itself
+Ties rigid_ties(const mjModel& m) {
+  if (has_rigid_ties(m)) return ties_of(m);
+  Ties none{{}, Eigen::MatrixXd::Identity(m.nv, m.nv), Eigen::VectorXd::Zero(m.nv)};
+  for (int i = 0; i < m.nv; ++i) none.free.push_back(i);
+  return none;
+}
+
 // the joint coordinates, from the actuators at the head of the list
 void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
   while (l.dof < m.nu && is_coordinate(m, l.dof)) ++l.dof;
   const Eigen::Map<const RowMajor> moment(d.actuator_moment, m.nu, m.nv);
-  for (int j = 0; j < m.nv; ++j) {
-    if (!moment.topRows(l.dof).col(j).isZero(0)) l.arm.push_back(j);
+  const Ties ties = rigid_ties(m);
+  const Eigen::MatrixXd by_free = moment.topRows(l.dof) * ties.T;
+  std::vector<Eigen::Index> free;  // of ties.free, those that motors move
+  for (Eigen::Index k = 0; k < by_free.cols(); ++k) {
+    if (by_free.col(k).isZero(0)) continue;
+    free.push_back(k);
+    l.leaders.push_back(ties.free[static_cast<std::size_t>(k)]);
   }
-  if (l.dof == 0 || static_cast<int>(l.arm.size()) != l.dof) {
+  for (int j = 0; j < m.nv; ++j) {
+    const Eigen::RowVectorXd row = ties.T.row(j)(free);
+    if (!row.isZero(0)) l.arm.push_back(j);
+  }
+  if (l.dof == 0 || static_cast<int>(free.size()) != l.dof) {
     throw std::invalid_argument(fmt::format(
         "the first {} actuators move {} degrees of freedom; every joint coordinate needs its own "
         "<motor> of gain 1 on a joint or a fixed tendon{}",
-        l.dof, l.arm.size(),
-        l.dof < m.nu ? fmt::format(", and '{}' is none", name_of(m, mjOBJ_ACTUATOR, l.dof)) : ""));
+        l.dof, free.size(),
+        l.dof < m.nu ? fmt::format(", and '{}' is none", element_name(m, mjOBJ_ACTUATOR, l.dof))
+                     : ""));
   }
   l.S = moment.topRows(l.dof)(Eigen::all, l.arm);
-  if (Eigen::FullPivLU<Eigen::MatrixXd>(l.S).rank() < l.dof) {
+  const Eigen::MatrixXd T = ties.T(l.arm, free);
+  const Eigen::FullPivLU<Eigen::MatrixXd> q_to_free((l.S * T).transpose());
+  if (q_to_free.rank() < l.dof) {
     throw std::invalid_argument("the actuators' lengths do not determine every joint's position");
   }
+  const Eigen::VectorXd rho = Eigen::VectorXd::Map(d.qpos, m.nq)(l.arm);
+  l.q0 = Eigen::VectorXd::Map(d.actuator_length, l.dof) - l.S * rho;
+  l.T = q_to_free.solve(T.transpose()).transpose();
+  l.rho0 = ties.rho0(l.arm) - l.T * (l.q0 + l.S * ties.rho0(l.arm));
 }
 
 // what follows them
@@ -113,7 +132,7 @@ void find_scene(const mjModel& m, const mjData& d, Layout& l) {
     throw std::invalid_argument(fmt::format(
         "actuator {} ('{}') must be a <motor> of gain 1 on a joint or a fixed tendon: its "
         "length is a joint coordinate and its force that joint's torque",
-        i, name_of(m, mjOBJ_ACTUATOR, i)));
+        i, element_name(m, mjOBJ_ACTUATOR, i)));
   }
   // bodies of the scene must not hang in the arm's tree: B is the arm's alone
   for (int j = 0; j < m.nv; ++j) {
@@ -123,7 +142,7 @@ void find_scene(const mjModel& m, const mjData& d, Layout& l) {
         continue;
       throw std::invalid_argument(
           fmt::format("joint '{}' has no motor of its own, or hangs on one that has none",
-                      name_of(m, mjOBJ_JOINT, m.dof_jntid[j])));
+                      element_name(m, mjOBJ_JOINT, m.dof_jntid[j])));
     }
   }
 }
@@ -154,21 +173,7 @@ BodyPoint end_effector_of(const mjModel& m, int last) {
   const int body = m.dof_bodyid[last];
   return {body, Eigen::Vector3d::Map(m.body_ipos + 3 * body),
           fmt::format("the centre of mass of the body '{}', as there is no site 'end_effector'",
-                      name_of(m, mjOBJ_BODY, body))};
-}
-
-std::string first_tie(const mjModel& m) {
-  const bool joint = m.eq_type[0] == mjEQ_JOINT;
-  const bool bodies = m.eq_type[0] == mjEQ_CONNECT || m.eq_type[0] == mjEQ_WELD;
-  if (!joint && !bodies) return "an <equality> ties tendons: not supported; take it out";
-  const auto name = [&](int id) {
-    if (id < 0) return std::string("a number");
-    return fmt::format("'{}'", name_of(m, joint ? mjOBJ_JOINT : mjOBJ_BODY, id));
-  };
-  return fmt::format("{} {} is tied to {} by {}: not supported; {}", joint ? "joint" : "body",
-                     name(m.eq_obj1id[0]), name(m.eq_obj2id[0]),
-                     joint ? "<equality> or <mimic>" : "<equality>",
-                     joint ? "--lock REGEX fixes it" : "open the ring");
+                      element_name(m, mjOBJ_BODY, body))};
 }
 
 }  // namespace tauext

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "mjcf/plant/model.h"
+#include "mjcf/mujoco/handles.h"
 #include "mjcf/trace/screw.h"
 
 namespace tauext {
 
 /// Actuators, in this order:
 ///  - one motor of unit gain on a joint or a fixed tendon for each joint: its length is q_i, its
-///    force tau_i. So q = S rho + const, rho the positions of the arm's degrees of freedom.
+///    force tau_i. So q = S rho + const, rho the positions of the arm's degrees of freedom; Joints
+///    that rigidly follow others (mjcf/mujoco/ties.h) have no motor; rho = T q + const holds for all.
 ///  - none, or one motor of unit gain on a spatial tendon for each joint: a linear screw, which is
 ///    never driven here but says what a loadcell at its end feels.
 ///  - with the scene "load", the switch of the tether.
@@ -23,7 +24,11 @@ namespace tauext {
 struct Layout {
   int dof = 0;                ///< joints
   std::vector<int> arm;       ///< the arm's degrees of freedom in the model
-  Eigen::MatrixXd S;          ///< [1] by joints and degrees of freedom of the arm
+  std::vector<int> leaders;   ///< those of them that follow no other
+  Eigen::MatrixXd S;          ///< dq/drho
+  Eigen::MatrixXd T;          ///< drho/dq; S T = 1
+  Eigen::VectorXd q0;         ///< [rad] or [m] q at rho = 0
+  Eigen::VectorXd rho0;       ///< [rad] or [m] rho at q = 0
   std::vector<Screw> screws;  ///< of the joints; empty if the robot has none
   int load_dof = -1;          ///< first of the load's three; -1: no load
   int tether = -1;            ///< its actuator
@@ -43,9 +48,6 @@ inline constexpr const char* kEndEffector = "end_effector";
 /// the site `attachment_site`, else the centre of mass of the body behind the last of the arm's
 /// degrees of freedom.
 BodyPoint end_effector_of(const mjModel& m, int last);
-
-/// What the first equality of a model that has some ties together, and what to do.
-std::string first_tie(const mjModel& m);
 
 /// @param d at any state of m, after mj_forward
 /// @throws std::invalid_argument if the model is not laid out like that, naming what is not

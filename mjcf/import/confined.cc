@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/plant/confined.h"
+#include "mjcf/import/confined.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// One type for arms of N coordinates that are read at run time. Whether joints follow others is
+/// decided then, too, so that every estimator is compiled once.
+#pragma once
+
+#include <memory>
+
+#include "estimators/tree/tree_model.h"
+
+namespace tauext {
+
+/// The most coordinates of an arm from a file.
+inline constexpr int kMostCoordinates = 8;
+/// The most joints of it that follow others.
+inline constexpr int kMostFollowers = 8;
+
+/// An arm of any size, filled up to this one: each missing coordinate turns a rotor of 1 kg m^2
+/// that stands alone on the base; each missing joint has no mass and never moves.
+using TiedTree = TreeModel<kMostCoordinates, double, kMostCoordinates + kMostFollowers>;
+
+extern template class TreeModel<kMostCoordinates, double, kMostCoordinates + kMostFollowers>;
+
+/// A TreeModel<N>, or a TiedTree of N coordinates.
+template <int N>
+class AnyTree {
+  static_assert(N <= kMostCoordinates && detail::kPadded<kMostCoordinates> == kMostCoordinates);
+
+ public:
+  static constexpr int kDof = N;
+  using VecN = Vec<N>;  ///< a number of each coordinate
+  using MatN = Mat<N>;  ///< over the coordinates
+
+  /// One without tied joints.
+  explicit AnyTree(const TreeModel<N>& arm) : arm_(arm) {}
+  /// One with tied joints.
+  explicit AnyTree(const TiedTree& arm)
+      : arm_(typename TreeModel<N>::Parameters()), tied_(std::make_shared<const TiedTree>(arm)) {}
+
+  // as TreeModel has them, with units and signs
+
+  MatN inertia(const VecN& q) const noexcept {  ///< B(q) [kg m^2]
+    if (tied_) [[unlikely]]
+      return tied<MatN>([&](const auto& arm) { return arm.inertia(wide(q)); });
+    return arm_.inertia(q);
+  }
+  VecN gravity(const VecN& q) const noexcept {  ///< g(q) [N m]
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&](const auto& arm) { return arm.gravity(wide(q)); });
+    return arm_.gravity(q);
+  }
+  VecN bias(const VecN& q, const VecN& qd) const noexcept {  ///< C qd + g [N m]
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&](const auto& arm) { return arm.bias(wide(q), wide(qd)); });
+    return arm_.bias(q, qd);
+  }
+  VecN momentum_bias(const VecN& q, const VecN& qd) const noexcept {  ///< C^T qd - g [N m]
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&](const auto& arm) { return arm.momentum_bias(wide(q), wide(qd)); });
+    return arm_.momentum_bias(q, qd);
+  }
+  VecN friction(const VecN& qd) const noexcept {  ///< F(qd) [N m]
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&](const auto& arm) { return arm.friction(wide(qd)); });
+    return arm_.friction(qd);
+  }
+  /// inertia and bias, sharing the pose.
+  Dynamics<N> dynamics(const VecN& q, const VecN& qd) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>([&](const auto& arm) { return arm.dynamics(wide(q), wide(qd)); });
+    return arm_.dynamics(q, qd);
+  }
+  /// inertia and momentum_bias, sharing the pose.
+  Dynamics<N> momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>(
+          [&](const auto& arm) { return arm.momentum_dynamics(wide(q), wide(qd)); });
+    return arm_.momentum_dynamics(q, qd);
+  }
+  /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians.
+  ForwardDynamics<N> forward_dynamics(const VecN& q, const VecN& qd, const VecN& u) const noexcept {
+    const auto f = padded_dynamics(q, qd, u);
+    return {f.qdd.template head<N>(), narrow(f.by_q), narrow(f.by_qd), narrow(f.by_tau_ext), f.ok};
+  }
+  /// The same as it comes, with inertia(q).
+  detail::PaddedDynamics<N> padded_dynamics(const VecN& q, const VecN& qd,
+                                            const VecN& u) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<detail::PaddedDynamics<N>>(
+          [&](const auto& arm) { return arm.padded_dynamics(wide(q), wide(qd), wide(u)); });
+    return arm_.padded_dynamics(q, qd, u);
+  }
+
+ private:
+  using Wide = Vec<kMostCoordinates>;
+
+  static Wide wide(const VecN& v) noexcept {
+    Wide w = Wide::Zero();
+    w.template head<N>() = v;
+    return w;
+  }
+  static VecN narrow(const Wide& v) noexcept { return v.template head<N>(); }
+  template <int P>
+  static MatN narrow(const Mat<P>& m) noexcept {
+    return m.template topLeftCorner<N, N>();
+  }
+  static Dynamics<N> narrow(const Dynamics<kMostCoordinates>& d) noexcept {
+    return {narrow(d.B), narrow(d.bias)};
+  }
+  static detail::PaddedDynamics<N> narrow(
+      const detail::PaddedDynamics<kMostCoordinates>& f) noexcept {
+    const auto padded = [](const Mat<kMostCoordinates>& m) {
+      return detail::pad_matrix<N>(narrow(m));
+    };
+    return {detail::pad_vector<N>(narrow(f.qdd)),
+            padded(f.by_q),
+            padded(f.by_qd),
+            padded(f.by_tau_ext),
+            padded(f.B),
+            f.ok};
+  }
+
+  // out of the way of an arm without tied joints
+  template <class Result, class Ask>
+  [[gnu::noinline]] Result tied(Ask ask) const noexcept {
+    return narrow(ask(*tied_));
+  }
+
+  TreeModel<N> arm_;
+  std::shared_ptr<const TiedTree> tied_;
+};
+
+}  // namespace tauext

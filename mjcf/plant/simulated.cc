@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/plant/simulated.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "estimators/friction.h"
+#include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
+
+namespace tauext {
+namespace {
+
+// to MuJoCo's passive forces; v_s stands where its own friction, switched off, has a constant
+void add_smooth_friction(const mjModel* m, mjData* d) {
+  if ((m->opt.disableflags & kSimulated) == 0) return;
+  for (int i = 0; i < m->nv; ++i) {
+    const CoulombFriction dry{m->dof_frictionloss[i], m->dof_solref[mjNREF * i]};
+    d->qfrc_passive[i] -= dry.torque(d->qvel[i]);
+  }
+}
+
+// when MuJoCo asks for the motors' torques, all else is known
+void hold_ties(const mjModel* m, mjData* d) {
+  if (has_rigid_ties(*m)) keep_ties(*m, *d);
+}
+
+}  // namespace
+
+Model simulated(const Model& model) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    *detail::mujoco().mjcb_passive = add_smooth_friction;
+    *detail::mujoco().mjcb_control = hold_ties;
+  });
+  const ArmTree tree = tree_of(model);
+  return changed(model, [&](mjModel& m) {
+    for (int i = 0; i < m.nv; ++i)
+      m.dof_solref[mjNREF * i] = tree.joints[static_cast<std::size_t>(i)].v_s;
+    m.opt.integrator = mjINT_RK4;
+    m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | mjDSBL_EQUALITY | kSimulated;
+    const bool on_joints = std::all_of(m.actuator_trntype, m.actuator_trntype + m.nu,
+                                       [](int type) { return type == mjTRN_JOINT; });
+    if (m.nu != tree.dof() || !on_joints) return;
+    for (int i = 0; i < m.nu; ++i) {
+      m.actuator_trnid[2 * i] = tree.leaders[static_cast<std::size_t>(i)];
+      m.actuator_gear[6 * i] = m.actuator_gainprm[i * mjNGAIN] = 1;
+      m.actuator_ctrllimited[i] = m.actuator_forcelimited[i] = 0;
+    }
+  });
+}
+
+std::string too_stiff(const Model& model) {
+  const ArmTree tree = tree_of(model);
+  for (int i = 0; i < model->nv; ++i) {
+    const double damping = tree.joints[static_cast<std::size_t>(i)].viscous;
+    const double rate = tree.friction_rate[i];  // [1/s]
+    if (rate <= kQuickestFriction || damping == 0) continue;
+    return fmt::format(
+        "{}: a damping of {:.3g} stops its inertia of {:.2g} within {:.2g} ms, faster than samples "
+        "of 1 ms show; add its motor's inertia behind the gear, armature=\"{:.2g}\" or more, to "
+        "its <joint> in MJCF, to its <dynamics> in URDF",
+        joint_name(*model, i), damping, 1 / tree.mobility[i], 1000 / rate,
+        1.05 * (rate / kQuickestFriction - 1) / tree.mobility[i]);
+  }
+  return "";
+}
+
+}  // namespace tauext

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// An arm as its ArmTree has it, made fit for MuJoCo.
+#pragma once
+
+#include <string>
+
+#include "mjcf/plant/tree.h"
+
+namespace tauext {
+
+/// Whether the damping of some joint is too quick for samples of 1 ms, and for RK4: stops the joint
+/// faster than 500 1/s. Then why, and what helps; else "".
+/// @throws std::invalid_argument as tree_of does
+std::string too_stiff(const Model& model);
+
+/// The arm to be simulated as its ArmTree has it: by RK4, ideal motors of gain 1 on the joints
+/// that follow no other, in their order, rigid ties, and the same smooth dry friction, so that
+/// nothing is left to the estimators but what a scenario or a model error hides from them. Without
+/// contacts, which shapes that somebody drew would have with each other: what touches it is a
+/// scenario's force.
+Model simulated(const Model& model);
+
+}  // namespace tauext
