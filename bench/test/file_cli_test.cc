@@ -58,8 +58,7 @@ TEST_F(FilePrograms, AFingerFollowsTheOtherOneInEveryProgram) {
   EXPECT_EQ(o.code, 0) << o.text;
   std::map<std::string, double> rmse;
   const auto results = nlohmann::json::parse(content("r.json"));
-  for (const auto& row : results.at("benchmarks"))
-    rmse[row.at("name")] = row.at("rmse_Nm");
+  for (const auto& row : results.at("benchmarks")) rmse[row.at("name")] = row.at("rmse_Nm");
   ASSERT_EQ(rmse.size(), 4u) << o.text;
   EXPECT_LT(rmse.at("arm7/step/ekf"), 1.5 * rmse.at("arm7/step/mo2"));
   EXPECT_LT(rmse.at("arm7/in_motion/mo2"), 0.01) << "nothing acts on it";

@@ -49,8 +49,8 @@ class TreeModel {
  public:
   static constexpr int kDof = N;
   static constexpr int kJoints = M;  ///< that the coordinates move
-  using VecN = Vec<N, Scalar>;  ///< a number of each coordinate
-  using MatN = Mat<N, Scalar>;  ///< over the coordinates
+  using VecN = Vec<N, Scalar>;       ///< a number of each coordinate
+  using MatN = Mat<N, Scalar>;       ///< over the coordinates
 
   /// What it is made of.
   struct Parameters {
