@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/npy_writer.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/read/numpy/inflater.h"
+
+namespace tauext {
+namespace {
+
+constexpr const char* kDouble = std::endian::native == std::endian::little ? "<f8" : ">f8";
+constexpr std::uint64_t kMostZip = 0xFFFFFFFF;  // [bytes] beyond which a ZIP needs 64 bits
+constexpr std::size_t kMostArrays = 65535;      // likewise
+
+std::string little(std::uint64_t number, int count) {
+  std::string bytes;
+  for (int i = 0; i < count; ++i) bytes += static_cast<char>(number >> 8 * i & 255);
+  return bytes;
+}
+
+std::size_t width_of(const NpyArray& a) {
+  return a.columns == 0 ? 1 : a.columns;
+}
+
+std::string_view bytes_of(const NpyArray& a) {
+  return {reinterpret_cast<const char*>(a.data), a.rows * width_of(a) * sizeof(double)};
+}
+
+std::string quoted(const std::string& name) {
+  std::string s = "'";
+  for (const char c : name) s += c == '\'' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return s + "'";
+}
+
+std::string type_of(const std::vector<std::string>& fields) {
+  if (fields.empty()) return quoted(kDouble);
+  std::string types;
+  for (const std::string& f : fields) {
+    types += fmt::format("{}({}, '{}')", types.empty() ? "" : ", ", quoted(f), kDouble);
+  }
+  return fmt::format("[{}]", types);
+}
+
+std::string header_of(const NpyArray& a, const std::vector<std::string>& fields) {
+  const bool matrix = a.columns > 0 && fields.empty();
+  std::string text =
+      fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({},{}), }}", type_of(fields),
+                  a.rows, matrix ? fmt::format(" {}", a.columns) : "");
+  // the elements begin at a multiple of 64 bytes
+  constexpr std::size_t kBegin = 10, kAlign = 64;
+  text.resize((kBegin + text.size() + kAlign) / kAlign * kAlign - kBegin, ' ');
+  text.back() = '\n';
+  return "\x93NUMPY" + little(1, 2) + little(text.size(), 2) + text;
+}
+
+// what is the same in the local header of a member and in the directory
+struct Member {
+  std::string name, header;
+  std::uint64_t offset = 0, size = 0;  // [bytes]
+  std::uint32_t crc = 0;
+
+  std::string common() const {
+    constexpr int kVersion = 20, kFlags = 0, kStored = 0, kTime = 0, kDay = 33;  // 1980-01-01
+    return little(kVersion, 2) + little(kFlags, 2) + little(kStored, 2) + little(kTime, 2) +
+           little(kDay, 2) + little(crc, 4) + little(size, 4) + little(size, 4) +
+           little(name.size(), 2) + little(0, 2);
+  }
+  std::string local() const { return "PK\3\4" + common() + name + header; }
+  std::string entry() const {
+    constexpr std::uint64_t kUnix = 3, kMode = 0600;
+    return "PK\1\2" + little(kUnix << 8 | 20, 2) + common() + little(0, 6) +
+           little(kMode << 16, 4) + little(offset, 4) + name;
+  }
+};
+
+// both throw before anything is written
+void refuse_too_large(const std::string& path, const std::vector<NpyArray>& arrays) {
+  double size = 0;  // [bytes], which a double holds whatever they are
+  for (const NpyArray& a : arrays) {
+    size += 8.0 * static_cast<double>(a.rows) * static_cast<double>(width_of(a)) +
+            2.0 * static_cast<double>(a.name.size()) + 1000;
+  }
+  if (size < static_cast<double>(kMostZip) && arrays.size() <= kMostArrays) return;
+  throw std::runtime_error(
+      fmt::format("{}: a .npz of ours has at most 4 GiB and {} arrays: write a .npy, or a .csv",
+                  path, kMostArrays));
+}
+
+}  // namespace
+
+void write_npy(const std::string& path, const NpyArray& array,
+               const std::vector<std::string>& fields) {
+  if (!fields.empty() && fields.size() != width_of(array)) {
+    throw std::runtime_error(
+        fmt::format("{}: {} names of {} columns", path, fields.size(), width_of(array)));
+  }
+  const std::string header = header_of(array, fields);
+  if (header.size() > 65535) throw std::runtime_error(fmt::format("{}: too many columns", path));
+  AtomicFile file(path);
+  file.write(header);
+  file.write(bytes_of(array));
+  file.commit();
+}
+
+void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
+  require_zlib();
+  refuse_too_large(path, arrays);
+  AtomicFile file(path);
+  std::string directory;
+  std::uint64_t at = 0;
+  for (const NpyArray& a : arrays) {
+    const std::string_view data = bytes_of(a);
+    Member m{a.name + ".npy", header_of(a, {}), at, 0, 0};
+    m.size = m.header.size() + data.size();
+    m.crc = crc32_of(crc32_of(0, m.header.data(), m.header.size()), data.data(), data.size());
+    const std::string local = m.local();
+    file.write(local);
+    file.write(data);
+    directory += m.entry();
+    at += local.size() + data.size();
+  }
+  const std::string count = little(arrays.size(), 2);
+  file.write(directory);
+  file.write("PK\5\6" + little(0, 4) + count + count + little(directory.size(), 4) + little(at, 4) +
+             little(0, 2));
+  file.commit();
+}
+
+}  // namespace tauext

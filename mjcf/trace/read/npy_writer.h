@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Writes what numpy.load reads.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tauext {
+
+/// Numbers to be written, row after row as they lie in memory: those of a column-major
+/// Eigen::MatrixXd are its columns one after the other.
+struct NpyArray {
+  std::string name;         ///< in a .npz
+  const double* data;       ///< rows * columns of them; rows, if it has 1 dimension
+  std::size_t rows = 0;     ///< of them
+  std::size_t columns = 0;  ///< 0: an array of 1 dimension, of shape (rows,)
+};
+
+/// Writes a .npy, to standard output if the path is "-". The file appears whole or not at all.
+/// @param fields names of the columns, as many as there are: they make a structured array of 1
+/// dimension, in which numpy.load(path)['q1'] finds a column; none: an array of shape (rows,
+/// columns)
+/// @throws std::runtime_error naming the path
+void write_npy(const std::string& path, const NpyArray& array,
+               const std::vector<std::string>& fields = {});
+
+/// Writes a .npz, not compressed, as write_npy() does.
+/// @throws std::runtime_error naming the path, also if it had more than 4 GiB or 65535 arrays, or
+/// if zlib was missing at build
+void write_npz(const std::string& path, const std::vector<NpyArray>& arrays);
+
+}  // namespace tauext
