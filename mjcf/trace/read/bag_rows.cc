@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/bag_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/bag_messages.h"
+#include "mjcf/trace/read/joint_state.h"
+
+namespace tauext {
+namespace {
+
+// nullptr, or why not
+const char* read_message(const BagMessage& message, JointState& state) {
+  if (message.size > BagMessages::kMost) return "it is longer than 1 MB";
+  return read_joint_state(message.bytes, state);
+}
+
+}  // namespace
+
+BagRows::BagRows(const std::string& path, const std::string& topic)
+    : messages_(std::make_unique<BagMessages>(path, topic)) {
+  look_ahead();
+  columns_.emplace_back("t");
+  for (const char* what : {"position", "velocity", "effort"}) {
+    for (const std::string& joint : joints_) columns_.push_back(fmt::format("{}.{}", what, joint));
+  }
+}
+
+BagRows::~BagRows() = default;
+
+// for the joints, and for the first stamp that is not 0
+void BagRows::look_ahead() {
+  BagMessage message;
+  JointState state;
+  const char* first = "there is none";
+  for (bool begin = true; !use_stamps_ && messages_->next(message); begin = false) {
+    const char* const why = read_message(message, state);
+    if (begin && why != nullptr) first = why;
+    if (why != nullptr) continue;
+    if (joints_.empty()) joints_ = state.name;
+    use_stamps_ = state.stamp != 0;
+  }
+  messages_->rewind();
+  if (!joints_.empty()) return;
+  throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}",
+                                       messages_->path(), printable_name(messages_->topic()),
+                                       first));
+}
+
+bool BagRows::next(std::vector<double>& row, SkippedRows& skipped) {
+  BagMessage message;
+  JointState state;
+  while (messages_->next(message)) {
+    ++number_;
+    const char* const why = read_message(message, state);
+    if (why != nullptr) {
+      ++skipped.wrong_field_count;
+      skipped.say(number_, why);
+      continue;
+    }
+    if (!fill(row, state)) continue;
+    row[0] = use_stamps_ ? state.stamp : message.received;
+    return true;
+  }
+  note_strangers(skipped);
+  return false;
+}
+
+// whether the message has any of our joints
+bool BagRows::fill(std::vector<double>& row, const JointState& state) {
+  row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
+  std::size_t ours = 0;
+  for (std::size_t i = 0; i < state.name.size(); ++i) {
+    const auto joint = std::find(joints_.begin(), joints_.end(), state.name[i]);
+    if (joint == joints_.end()) {
+      if (stranger_.empty()) stranger_ = printable_name(state.name[i]);
+      continue;
+    }
+    ++ours;
+    auto at = row.begin() + 1 + (joint - joints_.begin());
+    for (const auto* numbers : {&state.position, &state.velocity, &state.effort}) {
+      if (!numbers->empty()) *at = (*numbers)[i];
+      at += static_cast<std::ptrdiff_t>(joints_.size());
+    }
+  }
+  if (ours < state.name.size()) ++with_strangers_;
+  return ours > 0;
+}
+
+void BagRows::note_strangers(SkippedRows& skipped) {
+  if (with_strangers_ == 0) return;
+  skipped.notes.push_back(
+      fmt::format("{} messages name joints that the first one does not, like '{}': these are left "
+                  "out",
+                  with_strangers_, stranger_));
+  with_strangers_ = 0;
+}
+
+}  // namespace tauext

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Recordings of ROS 2: bags of the storage sqlite3, that is .db3 files.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mjcf/trace/read/row_source.h"
+
+namespace tauext {
+
+class BagMessages;
+struct JointState;
+
+/// The messages of a topic of sensor_msgs/msg/JointState in a bag, each a row.
+///
+/// The first column is "t" [s], the stamp of the header or, where that is 0 throughout, the time at
+/// which the message was recorded. Then follow "position.NAME" [rad], "velocity.NAME" [rad/s] and
+/// "effort.NAME" [N m], of each joint that the first good message names and in its order. Later
+/// messages may have another order; what one does not have is NaN. A message without any of these
+/// joints is no row; where messages name other joints, a note says so once, at the end.
+///
+/// The file is not believed: it is opened to be read alone, nothing is written beside it, a message
+/// may have 1 MB and 64 joints. Messages that are longer, cut off, or no CDR are skipped, and are
+/// counted in SkippedRows::wrong_field_count.
+class BagRows : public RowSource {
+ public:
+  /// @param topic "": the only one of that type
+  /// @throws std::runtime_error naming the path and what is wrong: unreadable, no such bag, no such
+  /// topic, several to choose from, no good message; or that SQLite was missing at build
+  explicit BagRows(const std::string& path, const std::string& topic = "");
+  ~BagRows() override;
+
+  const std::vector<std::string>& columns() const override { return columns_; }
+  /// @throws std::runtime_error naming the path, where the file is damaged
+  bool next(std::vector<double>& row, SkippedRows& skipped) override;
+  /// Which message of the topic it was.
+  long number() const override { return number_; }
+
+ private:
+  void look_ahead();
+  bool fill(std::vector<double>& row, const JointState& state);
+  void note_strangers(SkippedRows& skipped);
+
+  std::unique_ptr<BagMessages> messages_;
+  std::vector<std::string> joints_, columns_;
+  bool use_stamps_ = false;
+  long number_ = 0, with_strangers_ = 0;
+  std::string stranger_;  // the first joint that the first good message does not name
+};
+
+}  // namespace tauext

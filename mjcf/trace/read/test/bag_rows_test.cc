@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/bag_rows.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "mjcf/trace/read/joint_state.h"
+#include "mjcf/trace/read/test/recording.h"
+#include "mjcf/trace/read/test/some_bag.h"
+
+namespace tauext::test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// stamp 1700000000.25, joints j1 and joint2, position 0.5 -1, velocity 0 2, effort 10 -20.5; bytes
+// put together by hand from Fast-CDR's rules
+const std::string kAll = bytes_of_hex(
+    "00 01 00 00 00 f1 53 65 80 b2 e6 0e 05 00 00 00 62 61 73 65 00 00 00 00 02 00 00 00 03 00 00 "
+    "00 6a 31 00 00 07 00 00 00 6a 6f 69 6e 74 32 00 00 02 00 00 00 00 00 00 00 00 00 e0 3f 00 00 "
+    "00 00 00 00 f0 bf 02 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 40 02 "
+    "00 00 00 00 00 00 00 00 00 00 00 00 00 24 40 00 00 00 00 00 80 34 c0");
+// the same without a frame and without velocities
+const std::string kSome = bytes_of_hex(
+    "00 01 00 00 00 f1 53 65 80 b2 e6 0e 01 00 00 00 00 00 00 00 02 00 00 00 03 00 00 00 6a 31 00 "
+    "00 07 00 00 00 6a 6f 69 6e 74 32 00 00 02 00 00 00 00 00 00 00 00 00 00 00 00 00 e0 3f 00 00 "
+    "00 00 00 00 f0 bf 00 00 00 00 02 00 00 00 00 00 00 00 00 00 24 40 00 00 00 00 00 80 34 c0");
+
+SomeMessage message(unsigned nanoseconds, const Names& names, bool big = false) {
+  return SomeMessage(big).stamp(5, nanoseconds).text("base").texts(names);
+}
+
+std::string one_joint(unsigned nanoseconds, double position, const std::string& name = "a") {
+  return message(nanoseconds, {name}).numbers({position}).numbers({}).numbers({}).bytes();
+}
+
+class Bag : public Recording {
+ protected:
+  // one topic with these messages
+  std::string with(const std::vector<std::string>& messages) const {
+    return with_topic("/joint_states", "sensor_msgs/msg/JointState", "cdr", messages);
+  }
+  std::string with_topic(const std::string& name, const std::string& type,
+                         const std::string& format,
+                         const std::vector<std::string>& messages) const {
+    put("", "x.db3");
+    SomeBag bag(path("x.db3"));
+    bag.make_tables();
+    bag.add_topic(name, type, format);
+    long long t = 0;
+    for (const std::string& m : messages) bag.add_message(1, t += 500000000, m);
+    return path("x.db3");
+  }
+  std::string error_of_opening(const std::string& file, const std::string& topic = "") const {
+    const std::string error = error_of([&] { BagRows x(file, topic); });
+    EXPECT_TRUE(error.starts_with(file + ": ")) << error;
+    return error.substr(error.find(": ") + 2);
+  }
+};
+
+void expect_rows(const Rows& is, const Rows& want) {
+  ASSERT_EQ(is.size(), want.size());
+  for (std::size_t k = 0; k < is.size(); ++k) {
+    ASSERT_EQ(is[k].size(), want[k].size());
+    for (std::size_t i = 0; i < is[k].size(); ++i) {
+      const bool both_missing = std::isnan(is[k][i]) && std::isnan(want[k][i]);
+      EXPECT_TRUE(both_missing || is[k][i] == want[k][i]) << k << " " << i << ": " << is[k][i];
+    }
+  }
+}
+
+TEST_F(Bag, AMessageIsARow) {
+  BagRows rows(with({kAll, kSome}));
+  EXPECT_EQ(rows.columns(), (Names{"t", "position.j1", "position.joint2", "velocity.j1",
+                                   "velocity.joint2", "effort.j1", "effort.joint2"}));
+  SkippedRows skipped;
+  expect_rows(rows_of(rows, skipped), {{1700000000.25, 0.5, -1, 0, 2, 10, -20.5},
+                                       {1700000000.25, 0.5, -1, NAN, NAN, 10, -20.5}});
+  EXPECT_EQ(rows.number(), 2);
+  EXPECT_EQ(skipped.total(), 0);
+  EXPECT_TRUE(skipped.notes.empty());
+}
+
+TEST_F(Bag, TheHighByteMayBeTheFirst) {
+  const std::string big =
+      message(750000000, {"a", "bc"}, true).numbers({1, 2}).numbers({3, 4}).numbers({5, 6}).bytes();
+  expect_rows(rows_of(BagRows(with({big}))), {{5.75, 1, 2, 3, 4, 5, 6}});
+}
+
+TEST_F(Bag, TheNamesSayWhichJointANumberBelongsTo) {
+  const std::string first =
+      message(0, {"a", "b"}).numbers({1, 2}).numbers({}).numbers({3, 4}).bytes();
+  const std::string turned =
+      message(1, {"b", "a"}).numbers({1, 2}).numbers({5, 6}).numbers({3, 4}).bytes();
+  const std::string with_others =
+      message(2, {"grip", "b"}).numbers({1, 2}).numbers({}).numbers({}).bytes();
+  const std::string others = message(3, {"grip"}).numbers({1}).numbers({}).numbers({}).bytes();
+  BagRows rows(with({first, turned, with_others, others}));
+  SkippedRows skipped;
+  expect_rows(rows_of(rows, skipped), {{5, 1, 2, NAN, NAN, 3, 4},
+                                       {5 + 1e-9, 2, 1, 6, 5, 4, 3},
+                                       {5 + 2e-9, NAN, 2, NAN, NAN, NAN, NAN}});
+  EXPECT_EQ(skipped.total(), 0);
+  EXPECT_EQ(skipped.notes, (Names{"2 messages name joints that the first one does not, like "
+                                  "'grip': these are left out"}));
+}
+
+TEST_F(Bag, WhereNoStampIsGivenTheTimeOfRecordingIsTaken) {
+  const auto unstamped = [](double q) {
+    return SomeMessage().stamp(0, 0).text("").texts({"a"}).numbers({q}).numbers({}).numbers({});
+  };
+  const std::string one = unstamped(1).bytes(), two = unstamped(2).bytes();
+  expect_rows(rows_of(BagRows(with({one, two}))), {{0.5, 1, NAN, NAN}, {1, 2, NAN, NAN}});
+  expect_rows(rows_of(BagRows(with({one, one_joint(0, 3)}))), {{0, 1, NAN, NAN}, {5, 3, NAN, NAN}});
+}
+
+TEST_F(Bag, MessagesComeInTheOrderInWhichTheyWereRecorded) {
+  {
+    put("", "y.db3");
+    SomeBag bag(path("y.db3"));
+    bag.make_newer_tables();
+    bag.run("PRAGMA journal_mode = WAL");  // as the preset "resilient" does
+    bag.add_topic("/tf", "tf2_msgs/msg/TFMessage");
+    bag.add_topic("/arm");
+    bag.add_message(2, 30, one_joint(3, 3));
+    bag.add_message(2, 10, one_joint(1, 1));
+    bag.add_message(1, 15, "no joint state");
+    bag.add_message(2, 20, one_joint(2, 2));
+  }
+  const Rows r = rows_of(BagRows(path("y.db3"), "/arm"));
+  ASSERT_EQ(r.size(), 3u);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(r[k][1], k + 1);
+  std::set<std::string> beside;
+  for (const auto& e : std::filesystem::directory_iterator(folder_)) {
+    beside.insert(e.path().filename().string());
+  }
+  EXPECT_EQ(beside, std::set<std::string>{"y.db3"});  // nothing was written
+}
+
+TEST_F(Bag, MessagesThatCannotBeReadAreSkippedAndCounted) {
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {kAll.substr(0, 100), "it is cut off"},
+      {"", "it is cut off"},
+      {std::string("\0\3\0\0", 4) + kAll.substr(4), "it is no plain CDR"},
+      {"\x28\xB5\x2F\xFD" + kAll,
+       "it is compressed: write the bag without compression by ros2 bag convert"},
+      {std::string(1 << 20, '\0') + "x", "it is longer than 1 MB"},
+      {message(0, {}).numbers({}).numbers({}).numbers({}).bytes(), "it names no joint"},
+      {message(0, {"a", "a"}).bytes(), "it names a joint twice"},
+      {message(0, {"a"}).numbers({1, 2}).bytes(), "it has not as many numbers as names"},
+      {message(0, {"a"}).numbers({1}).numbers({}).number(0xFFFFFFFF, 4).bytes(),
+       "it has not as many numbers as names"},
+      {SomeMessage().stamp(5, 0).text("").number(65, 4).bytes(), "it has more than 64 joints"},
+      {SomeMessage().stamp(5, 0).number(0xFFFFFFFF, 4).bytes(), "it is cut off"}};
+  for (const auto& [bytes, why] : bad) {
+    BagRows rows(with({one_joint(0, 1), bytes, one_joint(1, 2)}));
+    SkippedRows skipped;
+    EXPECT_EQ(rows_of(rows, skipped).size(), 2u) << why;
+    EXPECT_EQ(skipped.wrong_field_count, 1);
+    EXPECT_EQ(skipped.first, Names{"line 2: " + why});
+    EXPECT_EQ(error_of_opening(with({bytes})),
+              "no message on topic /joint_states can be read; of the first: " + why);
+  }
+}
+
+TEST_F(Bag, ATopicIsChosenByItsName) {
+  put("", "x.db3");
+  {
+    SomeBag bag(path("x.db3"));
+    bag.make_tables();
+    bag.add_topic("/left");
+    bag.add_topic("/right", "sensor_msgs/JointState");
+    bag.add_topic("/tf", "tf2_msgs/msg/TFMessage");
+    bag.add_message(1, 1, one_joint(0, 1));
+    bag.add_message(2, 2, one_joint(0, 2));
+  }
+  const std::string file = path("x.db3");
+  EXPECT_EQ(rows_of(BagRows(file, "/right"))[0][1], 2);
+  EXPECT_EQ(error_of_opening(file), "choose one of its topics of joint states: /left, /right");
+  EXPECT_EQ(error_of_opening(file, "/tf"),
+            "has no joint states on topic /tf; known: /left, /right");
+}
+
+TEST_F(Bag, ErrorsNameTheRemedy) {
+  EXPECT_EQ(error_of_opening(with_topic("/tf", "tf2_msgs/msg/TFMessage", "cdr", {})),
+            "has no topic of sensor_msgs/msg/JointState; it has /tf (tf2_msgs/msg/TFMessage)");
+  EXPECT_EQ(
+      error_of_opening(with_topic("/a", "sensor_msgs/msg/JointState", "fory", {})),
+      "topic /a is serialized as 'fory', and not as 'cdr': write it anew by ros2 bag convert");
+  EXPECT_EQ(error_of_opening(with({})),
+            "no message on topic /joint_states can be read; of the first: there is none");
+  const std::string mcap = put("\x89MCAP0\r\n and more", "x.mcap");
+  EXPECT_EQ(
+      error_of_opening(mcap),
+      "is a bag of the storage mcap, which is not read: write it anew by ros2 bag convert -i " +
+          mcap +
+          " -o o.yaml, where o.yaml has output_bags: [{uri: new_bag, storage_id: sqlite3, "
+          "all: true}]");
+  const std::string zstd = put("\x28\xB5\x2F\xFD and more", "x.db3.zstd");
+  EXPECT_EQ(error_of_opening(zstd), "is compressed: unpack it by zstd -d " + zstd);
+  EXPECT_EQ(error_of_opening(put("t,q1\n", "x.csv")), "begins as no bag of ROS 2 does (.db3)");
+  EXPECT_EQ(error_of_opening(folder_.string()), "is a folder: name the .db3 file in it");
+  EXPECT_EQ(error_of_opening(path("none")), "No such file or directory");
+  const std::string file = with({kAll}), wal = put("x", "x.db3-wal");
+  EXPECT_EQ(error_of_opening(file),
+            fmt::format("was not closed, and {} holds a part of it: bring them together by sqlite3 "
+                        "{} 'PRAGMA quick_check'",
+                        wal, file));
+}
+
+TEST_F(Bag, ADatabaseThatComputesIsNone) {
+  put("", "x.db3");
+  {
+    SomeBag bag(path("x.db3"));
+    bag.make_tables();
+    bag.add_topic("/a");
+    bag.run("DROP TABLE messages");
+    bag.run(
+        "CREATE VIEW messages AS WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r)"
+        " SELECT n AS id, 1 AS topic_id, n AS timestamp, x'00' AS data FROM r");
+  }
+  EXPECT_EQ(error_of_opening(path("x.db3")),
+            "is no bag of ROS 2: it lacks the tables topics and messages");
+}
+
+TEST_F(Bag, ItsPathMayHaveAnyCharacter) {
+  const std::string odd = path("a b?mode=rw#%41'\xC3\xA9.db3");
+  std::filesystem::rename(with({kAll}), odd);
+  EXPECT_EQ(rows_of(BagRows(odd)).size(), 1u);
+}
+
+TEST_F(Bag, ADamagedFileEndsInAnError) {
+  const std::string bytes = get(with({kAll, kSome, kAll, kSome, kAll, one_joint(1, 2), kSome}));
+  for (std::size_t n = 0; n < bytes.size(); ++n) {
+    const std::string file = put(bytes.substr(0, n), "y.db3");
+    const std::string error = error_of([&] { rows_of(BagRows(file)); });
+    EXPECT_TRUE(error.starts_with(file + ": ")) << n << " of " << bytes.size() << ": " << error;
+  }
+  EXPECT_EQ(error_of_opening(put(bytes.substr(0, bytes.size() - 1), "y.db3")),
+            fmt::format("is cut off: {} of {} bytes", bytes.size() - 1, bytes.size()));
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0xFF);
+    const std::string file = put(changed, "y.db3");  // whatever becomes of it, it ends
+    error_of([&] { rows_of(BagRows(file)); });
+  }
+}
+
+TEST_F(Bag, AMessageIsRefusedWhereverItEnds) {
+  for (const std::string& whole : {kAll, kSome}) {
+    JointState state;
+    EXPECT_EQ(read_joint_state(whole, state), nullptr);
+    EXPECT_EQ(read_joint_state(whole + std::string(3, '\0'), state), nullptr);
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      const std::vector<char> exact(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+      EXPECT_STREQ(read_joint_state({exact.data(), n}, state), "it is cut off") << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tauext::test
