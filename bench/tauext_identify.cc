@@ -75,12 +75,14 @@ int main(int argc, char** argv) {
       "tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd).\n\n"
       "  tauext-identify log.csv\n",
       "tauext-identify");
-  std::string log, channel, out;
+  std::string log, channel, columns, out;
   std::vector<std::string> names = {"inertia", "gravity_cos", "gravity_sin", "coulomb"};
   Windows windows;
   bool list = false;
-  app.add_option("log", log, "log to read: CSV or LCM");
-  app.add_option("--channel", channel, "of an LCM log with several that hold measurements");
+  app.add_option("log", log, "log to read: CSV, .npy, .npz, .db3 or LCM");
+  app.add_option("--channel", channel, "of an LCM log, or topic of a bag, with several of them");
+  app.add_option("--columns", columns, "what the log's columns mean (see tauext-replay --help)")
+      ->type_name("PRESET|FILE.toml");
   app.add_option("--terms", names, "terms of the model, separated by commas (see --list)")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -98,7 +100,7 @@ int main(int argc, char** argv) {
     }
     if (log.empty()) throw std::invalid_argument("a log is required; see tauext-identify --help");
     const std::vector<Term> model = find_terms(names);
-    const RecordedLog recorded = read_log_or_csv(log, channel);
+    const RecordedLog recorded = read_any_log(log, {channel, columns});
     const Identification id = identify(recorded.trace, model, windows);
     if (!out.empty()) {
       AtomicFile file(out);

@@ -28,11 +28,14 @@ void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
       ->type_name("REGEX")
       ->check(not_empty);
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
-  app.add_option("--from", o.from, "log to play instead: CSV or LCM")->type_name("LOG");
+  app.add_option("--from", o.from, "log to play instead, of any kind that tauext-replay reads")
+      ->type_name("LOG");
   app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
       ->type_name("CHANNEL");
   app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
-  app.add_option("--channel", o.channel, "with --from x.lcm: which of its channels");
+  app.add_option("--channel", o.channel, "with --from: which channel, or topic of a bag");
+  app.add_option("--columns", o.columns, "with --from: what its columns mean")
+      ->type_name("PRESET|FILE.toml");
   app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
 }
 
@@ -103,7 +106,7 @@ int main(int argc, char** argv) {
     }
     o.stream = app.count("--lcm") > 0;
     require_mode(app, !o.scenario.empty(), "--scenario", of_scenarios);
-    require_mode(app, !o.from.empty(), "--from", {"--channel"});
+    require_mode(app, !o.from.empty(), "--from", {"--channel", "--columns"});
     require_mode(app, !o.subscribe.empty(), "--subscribe", {"--type"});
     require_mode(app, o.subscribe.empty() && !listen, "--scenario and --from",
                  {"--speed", "--loop"});

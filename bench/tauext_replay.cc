@@ -82,15 +82,18 @@ void warn_of_torque(const Robot& r, const Trace& trace, bool assumed_instant) {
 }
 
 struct Flags {
-  std::string log, channel, robot, lock, detector, torque, wrench, out;
+  std::string log, channel, columns, robot, lock, detector, torque, wrench, out;
   std::vector<std::string> estimators;
   double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("log", f.log, "log to read: CSV or LCM");
-  app.add_option("--channel", f.channel, "of an LCM log with several that hold measurements");
+  app.add_option("log", f.log, "log to read: CSV, .npy, .npz, .db3 (ROS 2) or LCM");
+  app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
+  app.add_option("--columns", f.columns,
+                 "what the log's columns mean: a map, or libfranka, ur_rtde, kuka_fri, ..")
+      ->type_name("PRESET|FILE.toml");
   app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
@@ -135,7 +138,7 @@ int replay(Flags& f) {
   }
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
-  const RecordedLog recorded = read_log_or_csv(f.log, f.channel);
+  const RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns});
   const Trace& trace = recorded.trace;
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(

@@ -52,7 +52,7 @@ DetectorsOf thresholds_of(const Options& o) {
 
 // the samples to play: simulated with everything that reacts in it, or read
 RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
-  if (!o.from.empty()) return read_log_or_csv(o.from, o.channel);
+  if (!o.from.empty()) return read_any_log(o.from, {o.channel, o.columns});
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {

@@ -15,7 +15,7 @@ namespace tauext::live {
 
 /// What the command line says.
 struct Options {
-  std::string robot, lock, scenario, from, channel, subscribe, type = "tauext";
+  std::string robot, lock, scenario, from, channel, columns, subscribe, type = "tauext";
   std::vector<std::string> estimators;
   std::string detector, thresholds;
   std::string wrench;   ///< the point at which forces are looked for; "": none

@@ -8,12 +8,12 @@
 
 #include "bench/logs/lcm_trace.h"
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/timed_rows.h"
+#include "mjcf/trace/read/recording.h"
 
 namespace tauext {
 namespace {
 
-// what read_csv left out, if anything
+// what was left out, if anything
 void report_skipped(const SkippedRows& s, const std::string& log) {
   for (const std::string& note : s.notes) say(log + ": " + note);
   if (s.total() == 0) return;
@@ -25,28 +25,30 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
 }
 
-RecordedLog read_either(const std::string& path, const std::string& channel) {
-  if (is_lcm_log(path)) {
-    LogReport report;
-    Trace trace = read_lcm(path, channel, &report);
-    if (const std::string faults = report.in_words(); !faults.empty()) {
-      say(fmt::format("{}: channel {}: {}", path, report.channel, faults));
-    }
-    return {std::move(trace), report.rejected + report.out_of_order};
-  }
-  if (!channel.empty()) {
-    throw std::invalid_argument(fmt::format("{}: CSV has no channel '{}'", path, channel));
-  }
+RecordedLog read_lcm_log(const std::string& path, const LogOptions& o) {
+  if (!o.columns.empty())
+    throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
+  LogReport report;
+  Trace trace = read_lcm(path, o.channel, &report);
+  if (const std::string faults = report.in_words(); !faults.empty())
+    say(fmt::format("{}: channel {}: {}", path, report.channel, faults));
+  return {std::move(trace), report.rejected + report.out_of_order};
+}
+
+RecordedLog read_rows(const std::string& path, const LogOptions& o) {
   SkippedRows skipped;
-  Trace trace = read_csv(path, &skipped);
+  Regularity regularity;
+  Trace trace =
+      read_recording(path, {.columns = o.columns, .topic = o.channel}, &skipped, &regularity);
   report_skipped(skipped, path);
+  if (!o.columns.empty() || regularity.gaps > 0) say(path + ": " + regularity.in_words());
   return {std::move(trace), skipped.total()};
 }
 
 }  // namespace
 
-RecordedLog read_log_or_csv(const std::string& path, const std::string& channel) {
-  RecordedLog log = read_either(path, channel);
+RecordedLog read_any_log(const std::string& path, const LogOptions& o) {
+  RecordedLog log = is_lcm_log(path) ? read_lcm_log(path, o) : read_rows(path, o);
   if (!log.usable()) {
     say(fmt::format("{}: most of it could not be used: {} skipped, {} used", path, log.skipped,
                     log.trace.size()));

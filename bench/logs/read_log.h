@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A recorded log of either kind.
+/// A recorded log of any kind.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,17 @@ struct RecordedLog {
   bool usable() const { return skipped <= trace.size(); }
 };
 
-/// A recorded log, CSV or LCM; what was skipped goes to standard error.
-/// @param channel of an LCM log; "": the only one that holds measurements
-/// @throws std::runtime_error naming the path and the reason
-RecordedLog read_log_or_csv(const std::string& path, const std::string& channel = "");
+/// How a log is to be read.
+struct LogOptions {
+  /// of an LCM log the channel, of a ROS 2 bag the topic; "": the only one that holds measurements
+  std::string channel;
+  /// of any other log a preset or a TOML file of mjcf/trace/read/column_map.h; "": ours
+  std::string columns;
+};
+
+/// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag. What was skipped, and what is irregular in
+/// it, goes to standard error.
+/// @throws std::runtime_error or std::invalid_argument naming the path and the reason
+RecordedLog read_any_log(const std::string& path, const LogOptions& options = {});
 
 }  // namespace tauext

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -16,7 +17,7 @@
 
 namespace tauext {
 
-/// Rows that read_csv left out, by the reason.
+/// Rows of a recording that were left out, by the reason.
 struct SkippedRows {
   int not_finite = 0;              ///< a field was NaN or infinite
   int wrong_field_count = 0;       ///< too few or too many fields
@@ -35,7 +36,8 @@ struct SkippedRows {
 };
 
 /// Keeps the rows whose time is the next one, and those of a new clock. Where that was set back,
-/// time goes on a second later, since that of a trace increases.
+/// time goes on a second later, since that of a trace increases. A row comes out when those behind
+/// it cannot change it any more.
 class TimedRows {
  public:
   /// @param t the column of the time
@@ -54,14 +56,24 @@ class TimedRows {
     waiting_.erase(waiting_.begin());
   }
 
-  /// Those that were kept.
-  std::vector<std::vector<double>> finish() {
+  /// No more rows follow.
+  void finish() {
     skip_waiting();
-    return std::move(rows_);
+    finished_ = true;
+  }
+
+  /// The next one of those that are kept; false if there is none yet.
+  bool next(std::vector<double>& row) {
+    if (kept_.empty() || (!finished_ && kept_.size() <= kUnsure)) return false;
+    row = std::move(kept_.front().first);
+    kept_.pop_front();
+    return true;
   }
 
  private:
-  using Row = std::pair<std::vector<double>, long>;
+  using Row = std::pair<std::vector<double>, long>;  // with its line
+
+  static constexpr std::size_t kUnsure = 3;  // the last two may be left out, beside the one before
 
   void skip(long line) {
     ++skipped_.time_order;
@@ -75,38 +87,36 @@ class TimedRows {
     for (Row& r : waiting_) {
       r.first[t_] += shift_;
       // beside a shift of 1e17 s a step is lost in the last digit
-      if (!rows_.empty() && r.first[t_] <= rows_.back()[t_]) {
+      if (!kept_.empty() && r.first[t_] <= kept_.back().first[t_]) {
         skip(r.second);
         continue;
       }
-      rows_.push_back(std::move(r.first));
-      lines_.push_back(r.second);
+      kept_.push_back(std::move(r));
     }
     waiting_.clear();
   }
   // at a clock that the rows waiting have agreed on
   void restart(double now) {
     const double begin = waiting_.empty() ? now : waiting_.front().first[t_];
-    std::size_t good = rows_.size();  // unless the last two were ahead of their time
-    while (good > 0 && rows_.size() - good < 2 && begin + shift_ <= rows_[good - 1][t_]) --good;
-    if (good == 0 || begin + shift_ > rows_[good - 1][t_]) {
-      for (std::size_t i = good; i < rows_.size(); ++i) skip(lines_[i]);
-      rows_.resize(good);
-      lines_.resize(good);
+    std::size_t good = kept_.size();  // unless the last two were ahead of their time
+    const auto follows = [&] { return begin + shift_ > kept_[good - 1].first[t_]; };
+    while (good > 0 && kept_.size() - good < 2 && !follows()) --good;
+    if (good == 0 || follows()) {
+      for (; kept_.size() > good; kept_.pop_back()) skip(kept_.back().second);
       return;
     }
-    const double shift = rows_.back()[t_] + 1 - begin;
+    const double last = kept_.back().first[t_], shift = last + 1 - begin;
     skipped_.notes.push_back(fmt::format(
         "line {}: its clock was set back by {:g} s; {:g} s are added to the times from there on",
-        waiting_.front().second, rows_.back()[t_] - shift_ - begin, shift));
+        waiting_.front().second, last - shift_ - begin, shift));
     shift_ = shift;
   }
 
   Clock clock_{std::numeric_limits<double>::infinity()};
   int t_;
   SkippedRows& skipped_;
-  std::vector<std::vector<double>> rows_;
-  std::vector<long> lines_;  // of the file, of each of them
+  std::deque<Row> kept_;
+  bool finished_ = false;
   std::vector<Row> waiting_;
   double shift_ = 0;  // [s]
 };

@@ -59,19 +59,10 @@ struct Trace {
 /// The samples of these indices alone, in increasing order.
 Trace select_samples(const Trace& trace, const std::vector<int>& samples);
 
-/// Rows that read_csv left out: timed_rows.h.
-struct SkippedRows;
-
 /// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to
 /// standard output if the path is "-". A tau read at instants is called tau_instant1... The file
-/// appears whole or not at all.
+/// appears whole or not at all. mjcf/trace/read/ reads it.
 /// @throws std::runtime_error naming the path
 void write_csv(const Trace& trace, const std::string& path);
-
-/// Reads such a file; columns are found by name, tau_ext* and contact may be missing, other columns
-/// are ignored. Bad rows are skipped and counted; time stamps are judged as an estimator's are
-/// (estimators/samples/clock.h), but for gaps, which may be of any length.
-/// @throws std::runtime_error naming path and reason: unreadable, no usable header, no usable row
-Trace read_csv(const std::string& path, SkippedRows* skipped);
 
 }  // namespace tauext

@@ -29,8 +29,8 @@
 #include "lcmtypes/wire.h"
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/plant/model.h"
-#include "mjcf/trace/timed_rows.h"
-#include "mjcf/trace/trace.h"
+#include "mjcf/trace/read/column_map_file.h"
+#include "mjcf/trace/read/recording.h"
 #include "regression/accuracy/golden_file.h"
 #include "regression/counts/counts.h"
 
@@ -78,13 +78,26 @@ void demand_trace(const Trace& t, bool finite) {
   }
 }
 
-void csv(Bytes input) {
+// CSV, .npy, .npz or a bag, as it begins
+void recording(Bytes input) {
   const std::string path = file_of(input);
   refused_or(path, [&] {
     SkippedRows skipped;
-    demand_trace(read_csv(path, &skipped), true);
+    demand_trace(read_recording(path, {}, &skipped), true);
     demand(static_cast<int>(skipped.first.size()) <= skipped.total(), "what is named is counted");
   });
+}
+
+void map(Bytes input) {
+  const std::string_view text{reinterpret_cast<const char*>(input.data()), input.size()};
+  try {
+    column_map_of(text, "map.toml").mapped({"t", "q1", "q2"}, "log.csv");
+  } catch (const std::exception& e) {
+    const std::string_view what = e.what();
+    demand(what.starts_with("map.toml: ") || what.starts_with("log.csv: "),
+           "an error names the file");
+    demand(what.find('\n') == what.npos, "an error is one line");
+  }
 }
 
 // every byte is of an event or junk, but for an event that is cut off
@@ -224,8 +237,9 @@ void mjcf(Bytes input) {
 }
 
 const std::map<std::string_view, void (*)(Bytes)> kTargets{
-    {"csv", csv},   {"log", log},           {"wire", wire}, {"datagrams", datagrams},
-    {"json", json}, {"baseline", baseline}, {"mjcf", mjcf}};
+    {"csv", recording},     {"npy", recording}, {"bag", recording},       {"map", map},
+    {"log", log},           {"wire", wire},     {"datagrams", datagrams}, {"json", json},
+    {"baseline", baseline}, {"mjcf", mjcf}};
 
 void (*target)(Bytes) = nullptr;
 

@@ -23,6 +23,8 @@ class RowSource {
   /// @returns false at the end
   /// @throws std::runtime_error naming the path and what is wrong, where no further row can be read
   virtual bool next(std::vector<double>& row, SkippedRows& skipped) = 0;
+  /// Columns that matter, by their numbers from 0: the others may be NaN, and are not judged.
+  virtual void read_only([[maybe_unused]] const std::vector<int>& wanted) {}
   /// Where that row stands in the file, from 1, as a user counts.
   virtual long number() const = 0;
 };

@@ -190,12 +190,5 @@ TEST_F(Files, JsonThatWouldEndItsParserIsRefused) {
   EXPECT_NE(error_of([&] { read_whole(path("none")); }).find("No such file"), std::string::npos);
 }
 
-TEST_F(Files, ACsvWithoutLineEndsIsNotTakenWhole) {
-  put("t,q1,qd1,tau1\n0,1,2," + std::string(1 << 20, '1'), "long.csv");
-  SkippedRows skipped;
-  EXPECT_NE(error_of([&] { read_csv(path("long.csv"), &skipped); }).find("line 2 is longer than"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace tauext::test

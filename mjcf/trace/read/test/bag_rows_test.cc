@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/bag_rows.h"
+#include "mjcf/trace/read/bag/bag_rows.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "mjcf/trace/read/joint_state.h"
+#include "mjcf/trace/read/bag/joint_state.h"
 #include "mjcf/trace/read/test/recording.h"
 #include "mjcf/trace/read/test/some_bag.h"
 

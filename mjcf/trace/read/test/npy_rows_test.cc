@@ -9,7 +9,7 @@
 //         o + k) for o in '<>' for k in 'i1 i2 i4 i8 f2 f4 f8 u2 u4 u8'.split()] + [('u1', 'u1'),
 //         ('b1', '?')]))
 //     np.save('objects.npy', np.array([1.5, 'x'], object))
-#include "mjcf/trace/read/npy_rows.h"
+#include "mjcf/trace/read/numpy/npy_rows.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "mjcf/trace/read/npy_rows.h"
+#include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/npy_writer.h"
 #include "mjcf/trace/read/test/recording.h"
 

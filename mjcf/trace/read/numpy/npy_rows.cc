@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/npy_rows.h"
+#include "mjcf/trace/read/numpy/npy_rows.h"
 
 #include <fmt/format.h>
 

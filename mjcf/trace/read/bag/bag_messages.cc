@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/bag_messages.h"
+#include "mjcf/trace/read/bag/bag_messages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

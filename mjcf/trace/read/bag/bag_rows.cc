@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/bag_rows.h"
+#include "mjcf/trace/read/bag/bag_rows.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/bag_messages.h"
-#include "mjcf/trace/read/joint_state.h"
+#include "mjcf/trace/read/bag/bag_messages.h"
+#include "mjcf/trace/read/bag/joint_state.h"
 
 namespace tauext {
 namespace {

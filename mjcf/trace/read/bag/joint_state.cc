@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/joint_state.h"
+#include "mjcf/trace/read/bag/joint_state.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/column_map.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <numbers>
+#include <regex>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+// of each unit one of ours
+constexpr std::pair<std::string_view, double> kUnits[] = {
+    {"s", 1},     {"ms", 1e-3},   {"us", 1e-6},
+    {"ns", 1e-9}, {"rad", 1},     {"deg", std::numbers::pi / 180},
+    {"m", 1},     {"mm", 1e-3},   {"rad/s", 1},
+    {"m/s", 1},   {"mm/s", 1e-3}, {"deg/s", std::numbers::pi / 180},
+    {"Nm", 1},    {"Nmm", 1e-3},  {"rpm", std::numbers::pi / 30},
+    {"N", 1},     {"A", 1},       {"mA", 1e-3},
+    {"1", 1},
+};
+
+double factor_of(std::string_view unit) {
+  return std::find_if(std::begin(kUnits), std::end(kUnits),
+                      [&](const auto& u) { return u.first == unit; })
+      ->second;
+}
+
+// one for each, or the same for all
+template <class T>
+T each(const std::vector<T>& all, std::size_t i, const T& otherwise) {
+  return all.empty() ? otherwise : all[all.size() == 1 ? 0 : i];
+}
+
+template <class List>
+void require_one_or_each(const List& list, std::size_t count, const char* what,
+                         std::string_view quantity, const std::string& path) {
+  if (list.size() <= 1 || list.size() == count) return;
+  throw std::runtime_error(fmt::format("{}: [{}] has {} columns, and the map {} {}s for it", path,
+                                       quantity, count, list.size(), what));
+}
+
+// the number in the first group that has matched, by which joints are in order
+int number_in(const std::smatch& match, int otherwise) {
+  for (std::size_t i = 1; i < match.size(); ++i) {
+    if (match[i].matched) return std::atoi(match[i].str().c_str());
+  }
+  return otherwise;
+}
+
+}  // namespace
+
+std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
+                                 const std::vector<std::string>& columns,
+                                 const std::string& path) const {
+  std::vector<int> found;
+  if (!w.expression.empty()) {
+    const std::regex expression(w.expression);
+    std::vector<std::pair<int, int>> numbered;  // by joint
+    for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
+      std::smatch match;
+      if (std::regex_match(columns[static_cast<std::size_t>(i)], match, expression))
+        numbered.emplace_back(number_in(match, i), i);
+    }
+    std::sort(numbered.begin(), numbered.end());
+    for (const auto& [joint, column] : numbered) found.push_back(column);
+  }
+  for (const std::string& name : w.names) {
+    const auto at = std::find(columns.begin(), columns.end(), name);
+    if (at == columns.end())
+      throw std::runtime_error(
+          fmt::format("{}: no column '{}' for [{}]; there are: {}", path, name, quantity,
+                      printable_name(fmt::format("{}", fmt::join(columns, ", ")))));
+    found.push_back(static_cast<int>(at - columns.begin()));
+  }
+  for (const int n : w.numbers) {
+    if (n > static_cast<int>(columns.size()))
+      throw std::runtime_error(fmt::format("{}: no column {} for [{}]: there are {}", path, n,
+                                           quantity, columns.size()));
+    found.push_back(n - 1);
+  }
+  for (const int c : found) {
+    const std::string& name = columns[static_cast<std::size_t>(c)];
+    if (w.numbers.empty() && std::count(columns.begin(), columns.end(), name + "#2") > 0)
+      throw std::runtime_error(
+          fmt::format("{}: column '{}' appears twice", path, printable_name(name)));
+  }
+  return found;
+}
+
+void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
+                             const std::string& path) const {
+  if (order_.empty()) return;
+  MappedQuantity ordered;
+  for (const int j : order_) {
+    if (j > static_cast<int>(m.columns.size()))
+      throw std::runtime_error(fmt::format("{}: [{}] has {} columns, and `order` names joint {}",
+                                           path, quantity, m.columns.size(), j));
+    ordered.columns.push_back(m.columns[static_cast<std::size_t>(j - 1)]);
+    ordered.gain.push_back(m.gain[static_cast<std::size_t>(j - 1)]);
+  }
+  m = std::move(ordered);
+}
+
+MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
+                                const std::string& path) const {
+  MappedColumns all;
+  for (const Quantity& q : kQuantities) {
+    const auto wanted = wanted_.find(q.name);
+    if (wanted == wanted_.end()) continue;
+    const Wanted& w = wanted->second;
+    MappedQuantity m{find(q.name, w, columns, path), {}};
+    if (m.columns.empty()) continue;
+    const std::size_t count = m.columns.size();
+    if (q.name == "current" && w.gain.empty())
+      throw std::runtime_error(
+          path +
+          ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
+    require_one_or_each(w.units, count, "unit", q.name, path);
+    require_one_or_each(w.gain, count, "gain", q.name, path);
+    require_one_or_each(w.sign, count, "sign", q.name, path);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string ours(q.units.substr(0, q.units.find(' ')));
+      m.gain.push_back(factor_of(each(w.units, i, ours)) * each(w.gain, i, 1.) *
+                       each(w.sign, i, 1.));
+    }
+    if (q.of_joints) put_in_order(q.name, m, path);
+    all.emplace(q.name, std::move(m));
+  }
+  return all;
+}
+
+}  // namespace tauext

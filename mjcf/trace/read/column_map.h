@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the columns of somebody's recording mean: which of them are t, q, qd and so on, in which
+/// unit, with which sign, in which order of the joints.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mjcf/trace/read/csv_rows.h"
+
+namespace tauext {
+
+/// A quantity of a recording, in the words of a map.
+struct Quantity {
+  std::string_view name;   ///< of its table
+  std::string_view units;  ///< that it can have, apart by blanks; the first one is ours
+  bool of_joints;          ///< a column for each joint
+  std::string_view help;   ///< what it is
+};
+
+/// All of them.
+inline constexpr Quantity kQuantities[] = {
+    {"t", "s ms us ns", false, "time; several columns are added up"},
+    {"q", "rad deg m mm", true, "position"},
+    {"qd", "rad/s deg/s rpm m/s mm/s", true,
+     "velocity; without it q is filtered and differentiated"},
+    {"tau", "Nm Nmm N", true, "torque of the link's side, held until the next sample"},
+    {"tau_instant", "Nm Nmm N", true, "the same, read at t; instead of tau"},
+    {"current", "A mA", true, "of the drives; `gain` [N m/A] makes it tau_instant"},
+    {"tau_ext", "Nm Nmm N", true, "true external torque, sign of equation (3)"},
+    {"driver", "Nm Nmm N", true, "the robot maker's own estimate of it, the same sign"},
+    {"contact", "1", false, "label: not 0 while a collision acts"},
+};
+
+/// Columns of a source that make a quantity: number i of it is `gain[i]` times column `columns[i]`.
+struct MappedQuantity {
+  std::vector<int> columns;  ///< from 0
+  std::vector<double> gain;  ///< to SI units and the sign of equation (3)
+};
+
+/// Those of a recording, by their names.
+using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
+
+/// A map, as its file has it (column_map_file.h).
+///
+/// A table of TOML for each quantity that there is: `columns`, a regular expression for their whole
+/// names (joints in the order of the number in it), a list of names, or a list of numbers from 1;
+/// `unit`, `gain` and `sign`, one for all or one for each of these columns. Above the tables:
+/// `preset`, a map to begin with, `separator`, `header` (false: no line of names), `order` (which
+/// joint of the recording each joint of the robot is, from 1), `velocity_filter` [rad/s].
+class ColumnMap {
+ public:
+  /// Which columns of a source make which quantity; those that it does not have are missing.
+  /// @throws std::runtime_error naming the path, the quantity and what was looked for
+  MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path) const;
+
+  const CsvFormat& csv() const { return csv_; }  ///< how its text is written
+  /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
+  double velocity_filter() const { return velocity_filter_; }
+
+ private:
+  friend class MapReader;
+
+  // what one table says
+  struct Wanted {
+    std::string expression;          // or
+    std::vector<std::string> names;  // or
+    std::vector<int> numbers;        // from 1
+    std::vector<std::string> units;  // one, or one of each
+    std::vector<double> gain, sign;  // likewise
+  };
+
+  std::vector<int> find(std::string_view quantity, const Wanted& w,
+                        const std::vector<std::string>& columns, const std::string& path) const;
+  void put_in_order(std::string_view quantity, MappedQuantity& m, const std::string& path) const;
+
+  std::map<std::string, Wanted, std::less<>> wanted_;
+  std::vector<int> order_;
+  CsvFormat csv_;
+  double velocity_filter_ = 100;
+};
+
+}  // namespace tauext

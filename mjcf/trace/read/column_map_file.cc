@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/column_map_file.h"
+
+#include <fmt/format.h>
+#ifdef TAUEXT_TOML
+#include <toml++/toml.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <stdexcept>
+
+#include "mjcf/trace/input_file.h"
+#include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/presets.h"
+
+namespace tauext {
+
+namespace {
+
+const detail::ColumnPreset& preset_of(const std::string& name) {
+  return find_known(detail::kColumnPresets, "preset of columns", name,
+                    [](const auto& p) { return p.name; });
+}
+
+}  // namespace
+
+#ifdef TAUEXT_TOML
+
+// reads one map over what is there
+class MapReader {
+ public:
+  MapReader(ColumnMap& map, const std::string& name) : map_(map), name_(name) {}
+
+  void read(std::string_view text) {
+    const toml::table all = parsed(text);
+    if (const toml::node* preset = all.get("preset")) {
+      read(preset_of(string(*preset, "preset")));
+    }
+    for (const auto& [key, value] : all) {
+      if (const toml::table* t = value.as_table()) {
+        read_quantity(key.str(), *t);
+      } else {
+        read_option(key.str(), value);
+      }
+    }
+  }
+
+  void read(const detail::ColumnPreset& p) {
+    for (const auto& [quantity, expression] : p.names)
+      map_.wanted_[std::string(quantity)].expression = expression;
+    if (!p.toml.empty()) MapReader(map_, std::string(p.name)).read(p.toml);
+  }
+
+ private:
+  toml::table parsed(std::string_view text) const {
+    try {
+      return toml::parse(text);
+    } catch (const toml::parse_error& e) {
+      throw std::invalid_argument(one_line(fmt::format(
+          "{}: line {}: {}", name_, e.source().begin.line, std::string(e.description()))));
+    }
+  }
+
+  [[noreturn]] void fail(const toml::node& at, const std::string& what) const {
+    throw std::invalid_argument(
+        one_line(fmt::format("{}: line {}: {}", name_, at.source().begin.line, what)));
+  }
+
+  std::string string(const toml::node& value, std::string_view key) const {
+    if (const auto s = value.value_exact<std::string>()) return *s;
+    fail(value, fmt::format("{} must be a text", key));
+  }
+  double number(const toml::node& value, std::string_view key) const {
+    const auto x = value.value<double>();
+    if (x && std::isfinite(*x)) return *x;
+    fail(value, fmt::format("{} must be a number", key));
+  }
+  int counted(const toml::node& value, std::string_view key) const {
+    const auto n = value.value_exact<std::int64_t>();
+    if (n && *n >= 1 && *n <= 100000) return static_cast<int>(*n);
+    fail(value, fmt::format("{} must be a number from 1", key));
+  }
+
+  // one, or a list of them
+  template <class Read>
+  auto list(const toml::node& value, Read&& read) const {
+    std::vector<decltype(read(value))> all;
+    const toml::array* const many = value.as_array();
+    if (many == nullptr) return std::vector{read(value)};
+    for (const toml::node& one : *many) all.push_back(read(one));
+    if (all.empty()) fail(value, "an empty list");
+    return all;
+  }
+
+  void read_option(std::string_view key, const toml::node& value) {
+    if (key == "preset") return;
+    if (key == "separator") {
+      const std::string s = string(value, key);
+      if (s.size() != 1) fail(value, "separator must be one character, like \",\" or \" \"");
+      map_.csv_.separator = s[0];
+    } else if (key == "header") {
+      const auto has = value.value_exact<bool>();
+      if (!has) fail(value, "header must be true or false");
+      map_.csv_.has_header = *has;
+    } else if (key == "order") {
+      map_.order_ = list(value, [&](const toml::node& n) { return counted(n, key); });
+    } else if (key == "velocity_filter") {
+      map_.velocity_filter_ = number(value, key);
+      if (!(map_.velocity_filter_ > 0)) fail(value, "velocity_filter must be positive [rad/s]");
+    } else {
+      fail(value, unknown("key", key,
+                          {"preset", "separator", "header", "order", "velocity_filter",
+                           "and tables of quantities"})
+                      .what());
+    }
+  }
+
+  void read_quantity(std::string_view name, const toml::table& table) {
+    const auto known = std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                                    [&](const Quantity& q) { return q.name == name; });
+    if (known == std::end(kQuantities)) {
+      std::vector<std::string> names;
+      for (const Quantity& q : kQuantities) names.emplace_back(q.name);
+      fail(table, unknown("quantity", name, names).what());
+    }
+    ColumnMap::Wanted& w = map_.wanted_[std::string(name)];
+    for (const auto& [key, value] : table) read_key(*known, key.str(), value, w);
+    if (w.expression.empty() && w.names.empty() && w.numbers.empty())
+      fail(table, fmt::format("[{}] names no columns", name));
+  }
+
+  void read_key(const Quantity& q, std::string_view key, const toml::node& value,
+                ColumnMap::Wanted& w) {
+    if (key == "columns") {
+      read_columns(value, w);
+    } else if (key == "unit") {
+      w.units = list(value, [&](const toml::node& n) { return unit(q, n); });
+    } else if (key == "gain") {
+      w.gain = list(value, [&](const toml::node& n) { return number(n, key); });
+    } else if (key == "sign") {
+      w.sign = list(value, [&](const toml::node& n) {
+        const double s = number(n, key);
+        if (s != 1 && s != -1) fail(n, "sign must be 1 or -1");
+        return s;
+      });
+    } else {
+      fail(value, unknown("key", key, {"columns", "unit", "gain", "sign"}).what());
+    }
+  }
+
+  std::string unit(const Quantity& q, const toml::node& value) const {
+    const std::string u = string(value, "unit");
+    if (fmt::format(" {} ", q.units).find(fmt::format(" {} ", u)) != std::string::npos) return u;
+    fail(value, fmt::format("[{}] cannot be in '{}'; it may be in: {}", q.name, u, q.units));
+  }
+
+  void read_columns(const toml::node& value, ColumnMap::Wanted& w) {
+    w.expression.clear(), w.names.clear(), w.numbers.clear();
+    if (const auto text = value.value_exact<std::string>()) {
+      try {
+        const std::regex tried(*text);
+      } catch (const std::regex_error& e) {
+        fail(value, fmt::format("columns '{}': {}", *text, e.what()));
+      }
+      w.expression = *text;
+      return;
+    }
+    const toml::array* const many = value.as_array();
+    const bool by_name = many != nullptr && !many->empty() && (*many)[0].is_string();
+    if (by_name) {
+      w.names = list(value, [&](const toml::node& n) { return string(n, "columns"); });
+    } else {
+      w.numbers = list(value, [&](const toml::node& n) { return counted(n, "columns"); });
+    }
+  }
+
+  ColumnMap& map_;
+  std::string name_;
+};
+
+#else
+
+class MapReader {
+ public:
+  MapReader(ColumnMap& map, const std::string& name) : map_(map), name_(name) {}
+  void read(std::string_view) {
+    throw std::runtime_error(
+        name_ +
+        ": maps of columns are left out of this build: install Debian's libtomlplusplus-dev, "
+        "and build again");
+  }
+  void read(const detail::ColumnPreset& p) {
+    for (const auto& [quantity, expression] : p.names)
+      map_.wanted_[std::string(quantity)].expression = expression;
+    if (!p.toml.empty()) read(p.toml);
+  }
+
+ private:
+  ColumnMap& map_;
+  std::string name_;
+};
+
+#endif
+
+ColumnMap column_map_of(std::string_view toml, const std::string& name) {
+  ColumnMap map;
+  MapReader(map, name).read(toml);
+  return map;
+}
+
+ColumnMap column_map(const std::string& name) {
+  constexpr std::size_t kMost = 1 << 20;  // [bytes]
+  if (name.ends_with(".toml")) return column_map_of(read_whole(name, kMost), name);
+  ColumnMap map;
+  MapReader(map, name).read(preset_of(name));
+  return map;
+}
+
+std::string list_column_presets() {
+  std::string all;
+  for (const auto& p : detail::kColumnPresets) all += fmt::format("{:12} {}\n", p.name, p.what);
+  return all;
+}
+
+}  // namespace tauext

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Maps of columns by their names: presets, and files of TOML.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "mjcf/trace/read/column_map.h"
+
+namespace tauext {
+
+/// @param name a preset (list_column_presets), or the path of a TOML file (it ends in .toml)
+/// @throws std::invalid_argument for an unknown preset, listing the known ones, and for a map that
+/// is none, naming the path, the line and what is wrong; std::runtime_error for a file that cannot
+/// be read, and where toml++ was missing at build, naming the package
+ColumnMap column_map(const std::string& name);
+
+/// The map of this text.
+/// @param name of it, for what is thrown
+/// @throws as column_map
+ColumnMap column_map_of(std::string_view toml, const std::string& name);
+
+/// The presets: their names, and what each one is for.
+std::string list_column_presets();
+
+}  // namespace tauext

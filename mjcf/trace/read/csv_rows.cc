@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/csv_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "mjcf/trace/input_file.h"
+
+namespace tauext {
+namespace {
+
+constexpr std::size_t kLongest = (1 << 16) - 1;  // [bytes] of a thousand numbers
+constexpr std::size_t kChunk = 1 << 20;          // [bytes] read at once
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+std::string_view trimmed(std::string_view s) {
+  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  if (s.size() >= 2 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
+  return s;
+}
+
+// NaN and infinity, too; what is too large is infinite
+bool number_of(std::string_view s, double& value) {
+  if (!s.empty() && s.front() == '+') s.remove_prefix(1);
+  const char* const end = s.data() + s.size();
+  const auto [at, error] = std::from_chars(s.data(), end, value);
+  if (error == std::errc::result_out_of_range) {
+    value = std::numeric_limits<double>::infinity();
+    return true;
+  }
+  if (error == std::errc() && at == end) return true;
+  const bool yes = s == "True" || s == "true";
+  if (!yes && s != "False" && s != "false") return false;
+  value = yes ? 1 : 0;
+  return true;
+}
+
+// the one that the line has, of those that are usual
+char separator_of(std::string_view line) {
+  for (const char c : {',', ';', '\t'}) {
+    if (line.find(c) != line.npos) return c;
+  }
+  return ' ';
+}
+
+}  // namespace
+
+CsvRows::CsvRows(const std::string& path, const CsvFormat& format)
+    : path_(path), format_(format), file_(nullptr, std::fclose), buffer_(kChunk + kLongest + 1) {
+  claim_input(path);
+  file_.reset(std::fopen(path.c_str(), "rbe"));
+  if (!file_) throw std::runtime_error(fmt::format("{}: {}", path, std::strerror(errno)));
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+  read_header();
+  wanted_.assign(columns_.size(), true);
+}
+
+// false at the end of the file
+bool CsvRows::refill() {
+  if (at_end_) return false;
+  std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
+            buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
+  end_ -= begin_;
+  begin_ = 0;
+  errno = 0;
+  const std::size_t got = std::fread(buffer_.data() + end_, 1, kChunk, file_.get());
+  if (std::ferror(file_.get()) != 0)
+    throw std::runtime_error(fmt::format("{}: {}", path_, std::strerror(errno)));
+  end_ += got;
+  at_end_ = got == 0;
+  return !at_end_;
+}
+
+bool CsvRows::next_line(std::string_view& line) {
+  std::size_t seen = 0;  // of what is left, without a line end
+  for (;;) {
+    const char* const from = buffer_.data() + begin_;
+    const void* const found = std::memchr(from + seen, '\n', end_ - begin_ - seen);
+    const std::size_t size = found == nullptr
+                                 ? end_ - begin_
+                                 : static_cast<std::size_t>(static_cast<const char*>(found) - from);
+    if (size > kLongest) {
+      throw std::runtime_error(fmt::format("{}: line {} is longer than {} bytes: no CSV of ours",
+                                           path_, number_ + 1, kLongest));
+    }
+    if (found == nullptr && refill()) {
+      seen = size;
+      continue;
+    }
+    if (found == nullptr && size == 0) return false;
+    cut_off_ = found == nullptr;
+    line = {buffer_.data() + begin_, size};
+    begin_ += size + (cut_off_ ? 0 : 1);
+    ++number_;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return true;
+  }
+}
+
+// the next field; whether another one follows
+bool CsvRows::take_field(std::string_view& rest, std::string_view& field) const {
+  const bool blanks = format_.separator == ' ';
+  if (blanks) rest = trimmed(rest);
+  const std::size_t end = blanks ? rest.find_first_of(" \t") : rest.find(format_.separator);
+  field = trimmed(rest.substr(0, end));
+  if (end == rest.npos) return false;
+  rest.remove_prefix(end + 1);
+  return true;
+}
+
+void CsvRows::read_header() {
+  std::string_view line;
+  do {
+    if (!next_line(line)) throw std::runtime_error(path_ + ": is empty");
+    if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  } while (trimmed(line).empty());
+  if (format_.separator == 0) format_.separator = separator_of(line);
+  std::string_view rest = trimmed(line);
+  if (format_.has_header && rest.starts_with('#')) rest = trimmed(rest.substr(1));
+  std::map<std::string, int> times;
+  std::string_view field;
+  for (bool more = true; more;) {
+    more = take_field(rest, field);
+    const int before = times[std::string(field)]++;
+    columns_.push_back(!format_.has_header ? fmt::format("{}", columns_.size() + 1)
+                       : before > 0        ? fmt::format("{}#{}", field, before + 1)
+                                           : std::string(field));
+  }
+  double value = 0;
+  if (format_.has_header && number_of(columns_.front(), value)) {
+    throw std::runtime_error(fmt::format(
+        "{}: begins with numbers: the first line must name the columns, like t,q1,qd1,tau1",
+        path_));
+  }
+  if (format_.has_header) return;
+  begin_ = static_cast<std::size_t>(line.data() - buffer_.data());  // it is a row, too
+  --number_;
+}
+
+void CsvRows::read_only(const std::vector<int>& wanted) {
+  wanted_.assign(columns_.size(), false);
+  for (const int c : wanted) wanted_[static_cast<std::size_t>(c)] = true;
+}
+
+// the row's numbers, or why it cannot be used
+const char* CsvRows::parse(std::string_view line, std::vector<double>& row,
+                           SkippedRows& skipped) const {
+  bool all_numbers = true, all_finite = true;
+  std::size_t fields = 0;
+  for (bool more = true; more; ++fields) {
+    std::string_view field;
+    more = take_field(line, field);
+    if (fields >= columns_.size() || !wanted_[fields]) continue;
+    double& value = row[fields];
+    if (!number_of(field, value)) all_numbers = false;
+    if (!std::isfinite(value)) all_finite = false;
+  }
+  if (fields != columns_.size()) {
+    ++skipped.wrong_field_count;
+    return "wrong number of fields";
+  }
+  if (!all_numbers) {
+    ++skipped.not_a_number;
+    return "a field is not a number";
+  }
+  if (all_finite) return nullptr;
+  ++skipped.not_finite;
+  return "a field is not finite";
+}
+
+bool CsvRows::next(std::vector<double>& row, SkippedRows& skipped) {
+  row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::string_view line; next_line(line);) {
+    if (line.empty() || line.front() == '#') continue;
+    const char* reason = parse(line, row, skipped);
+    if (reason == nullptr && cut_off_) {  // the last number may be
+      ++skipped.wrong_field_count;
+      reason = "the last line is incomplete";
+    }
+    if (reason == nullptr) return true;
+    skipped.say(number_, reason);
+  }
+  return false;
+}
+
+}  // namespace tauext

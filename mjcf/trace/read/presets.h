@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Maps of recordings that many people have (column_map.h), as TOML.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace tauext::detail {
+
+/// A quantity and the regular expression of its columns.
+struct NamedQuantity {
+  std::string_view quantity;    ///< of kQuantities
+  std::string_view expression;  ///< for whole names
+};
+
+/// A map that somebody can ask for.
+struct ColumnPreset {
+  std::string_view name;                 ///< by which it is asked for
+  std::string_view what;                 ///< it reads
+  std::span<const NamedQuantity> names;  ///< the map, if there is no more to say
+  std::string_view toml;                 ///< else this
+};
+
+/// What quantities are called in our own files.
+inline constexpr NamedQuantity kTauext[] = {{"t", "t"},
+                                            {"q", R"(q(\d+))"},
+                                            {"qd", R"(qd(\d+))"},
+                                            {"tau", R"(tau(\d+))"},
+                                            {"tau_instant", R"(tau_instant(\d+))"},
+                                            {"tau_ext", R"(tau_ext(\d+))"},
+                                            {"driver", R"(driver(\d+))"},
+                                            {"contact", "contact"}};
+
+/// tau_J has gravity in it; tau_ext_hat_filtered is tau_J less the model, so the sign of (3).
+inline constexpr std::string_view kLibfranka = R"(
+[t]
+columns = 'time|duration'
+unit = "ms"
+[q]
+columns = '(?:state\.)?q\[(\d)\]'
+[qd]
+columns = '(?:state\.)?dq\[(\d)\]'
+[tau_instant]
+columns = '(?:state\.)?tau_J\[(\d)\]'
+[driver]
+columns = '(?:state\.)?tau_ext_hat_filtered\[(\d)\]'
+)";
+
+/// The robot measures no torque: whoever uses it says the gain of each drive.
+inline constexpr std::string_view kUrRtde = R"(
+[t]
+columns = "timestamp"
+[q]
+columns = 'actual_q_(\d)'
+[qd]
+columns = 'actual_qd_(\d)'
+[current]
+columns = 'actual_current_(\d)'
+)";
+
+/// External torque of KUKA has the opposite sign.
+inline constexpr std::string_view kKukaFri = R"(
+[t]
+columns = ["tsec", "tnsec"]
+unit = ["s", "ns"]
+[q]
+columns = 'mp(\d)|.*measured_joint_position.*?(\d)\D*'
+[tau_instant]
+columns = 'mt(\d)|.*measured_torque.*?(\d)\D*'
+[driver]
+columns = 'et(\d)|.*external_torque.*?(\d)\D*'
+sign = -1
+)";
+
+/// In a bag of ROS 2 (bag_rows.h).
+inline constexpr NamedQuantity kJointState[] = {{"t", "t"},
+                                                {"q", R"(position\..*)"},
+                                                {"qd", R"(velocity\..*)"},
+                                                {"tau_instant", R"(effort\..*)"}};
+
+/// The first one is what is taken if nobody says.
+inline constexpr ColumnPreset kColumnPresets[] = {
+    {"tauext", "CSV, .npy and .npz of tauext", kTauext, ""},
+    {"libfranka", "franka::logToCSV of libfranka (Panda, FR3), old and new", {}, kLibfranka},
+    {"ur_rtde", "Universal Robots' RTDE (record.py, ur_rtde); wants [current] gain", {}, kUrRtde},
+    {"kuka_fri", "KUKA's FRI as pyfri writes it, and exports of LBRState", {}, kKukaFri},
+    {"joint_state", "sensor_msgs/JointState of ROS 2 bags (.db3)", kJointState, ""},
+};
+
+}  // namespace tauext::detail

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "mjcf/trace/read/bag/bag_rows.h"
+#include "mjcf/trace/read/column_map_file.h"
+#include "mjcf/trace/read/csv_rows.h"
+#include "mjcf/trace/read/numpy/npy_rows.h"
+#include "mjcf/trace/read/sample_layout.h"
+
+namespace tauext {
+namespace {
+
+using Eigen::VectorXd;
+
+// the first bytes of a file, which tell its format
+std::string magic_of(const std::string& path) {
+  std::string bytes(16, '\0');
+  if (const auto file = std::unique_ptr<std::FILE, int (*)(std::FILE*)>(
+          std::fopen(path.c_str(), "rbe"), std::fclose))
+    bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  return bytes;
+}
+
+bool is_bag(const std::string& path) {
+  return magic_of(path).starts_with("SQLite format 3");
+}
+
+std::unique_ptr<RowSource> rows_of(const std::string& path, const RecordingOptions& options,
+                                   const CsvFormat& csv) {
+  if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic);
+  if (!options.topic.empty())
+    throw std::invalid_argument(fmt::format("{}: no ROS 2 bag, and so without topics", path));
+  const std::string magic = magic_of(path);
+  if (magic.starts_with("\x93NUMPY") || magic.starts_with("PK\x03\x04"))
+    return std::make_unique<NpyRows>(path);
+  return std::make_unique<CsvRows>(path, csv);
+}
+
+// q through two poles at w [rad/s], then its difference: what stands for a velocity that nobody
+// measured, some 2 / w late
+class VelocityFilter {
+ public:
+  explicit VelocityFilter(double w) : w_(w) {}
+
+  VectorXd operator()(double t, const VectorXd& q) {
+    if (once_.size() == 0) {
+      once_ = twice_ = q;
+      t_ = t;
+      return VectorXd::Zero(q.size());
+    }
+    const double h = t - t_, a = std::exp(-w_ * h);
+    t_ = t;
+    once_ = a * once_ + (1 - a) * q;
+    const VectorXd before = twice_;
+    twice_ = a * twice_ + (1 - a) * once_;
+    return (twice_ - before) / h;
+  }
+
+ private:
+  double w_;  // [rad/s]
+  double t_ = 0;
+  VectorXd once_, twice_;
+};
+
+}  // namespace
+
+struct RecordingReader::Impl {
+  Impl(const std::string& path, const RecordingOptions& o)
+      : map(column_map(!o.columns.empty() ? o.columns
+                       : is_bag(path)     ? "joint_state"
+                                          : "tauext")),
+        rows(rows_of(path, o, map.csv())),
+        layout(layout_of(known(path), rows->columns(), path)),
+        timed(0, skipped),
+        filter(map.velocity_filter()) {
+    rows->read_only(layout.columns());
+    if (layout.qd < 0) {
+      skipped.notes.push_back(fmt::format(
+          "no qd: it is made of q by two poles at {:g} rad/s and a difference (velocity_filter)",
+          map.velocity_filter()));
+    }
+  }
+
+  // what the map finds; in a bag, whose messages may leave fields empty, what the first one has
+  MappedColumns known(const std::string& path) {
+    MappedColumns all = map.mapped(rows->columns(), path);
+    if (!is_bag(path)) return all;
+    has_first = rows->next(raw, skipped);
+    std::erase_if(all, [&](const auto& q) {
+      const auto& columns = q.second.columns;
+      return std::all_of(columns.begin(), columns.end(),
+                         [&](int c) { return std::isnan(raw[static_cast<std::size_t>(c)]); });
+    });
+    return all;
+  }
+
+  // false if the source is at its end
+  bool take_row() {
+    if (!std::exchange(has_first, false) && !rows->next(raw, skipped)) return false;
+    std::vector<double> values(static_cast<std::size_t>(layout.size), 0.);
+    for (const auto& [c, gain] : layout.t) values[0] += gain * raw[static_cast<std::size_t>(c)];
+    for (std::size_t i = 0; i < layout.rest.size(); ++i) {
+      const auto& [c, gain] = layout.rest[i];
+      values[i + 1] = gain * raw[static_cast<std::size_t>(c)];
+    }
+    if (std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) {
+      timed.take(std::move(values), rows->number());
+    } else {
+      ++skipped.not_finite;
+      skipped.say(rows->number(), "a field is not finite");
+    }
+    return true;
+  }
+
+  void fill(RecordedSample& s) {
+    const auto part = [&](int at) -> VectorXd {
+      if (at < 0) return {};
+      return VectorXd::Map(row.data() + at, layout.dof);
+    };
+    s.t = row[0];
+    s.q = part(layout.q);
+    s.qd = layout.qd < 0 ? filter(s.t, s.q) : part(layout.qd);
+    s.tau = part(layout.tau);
+    s.tau_ext = part(layout.tau_ext);
+    s.driver = part(layout.driver);
+    s.contact = layout.contact >= 0 && row[static_cast<std::size_t>(layout.contact)] != 0;
+    counter.take(s.t, s.q, s.qd, s.tau);
+  }
+
+  SkippedRows skipped;
+  std::vector<double> raw, row;
+  bool has_first = false, ended = false;
+  ColumnMap map;
+  std::unique_ptr<RowSource> rows;
+  SampleLayout layout;
+  TimedRows timed;
+  VelocityFilter filter;
+  RegularityCounter counter;
+};
+
+RecordingReader::RecordingReader(const std::string& path, const RecordingOptions& options)
+    : impl_(std::make_unique<Impl>(path, options)) {}
+RecordingReader::~RecordingReader() = default;
+
+int RecordingReader::dof() const {
+  return impl_->layout.dof;
+}
+bool RecordingReader::torque_at_instants() const {
+  return impl_->layout.instants;
+}
+bool RecordingReader::has_truth() const {
+  return impl_->layout.tau_ext >= 0;
+}
+bool RecordingReader::has_driver() const {
+  return impl_->layout.driver >= 0;
+}
+bool RecordingReader::has_contact() const {
+  return impl_->layout.contact >= 0;
+}
+const SkippedRows& RecordingReader::skipped() const {
+  return impl_->skipped;
+}
+const Regularity& RecordingReader::regularity() const {
+  return impl_->counter.so_far();
+}
+
+bool RecordingReader::next(RecordedSample& s) {
+  Impl& r = *impl_;
+  while (!r.timed.next(r.row)) {
+    if (r.ended) return false;
+    if (r.take_row()) continue;
+    r.timed.finish();
+    r.ended = true;
+  }
+  r.fill(s);
+  return true;
+}
+
+Trace read_recording(const std::string& path, const RecordingOptions& options, SkippedRows* skipped,
+                     Regularity* regularity) {
+  RecordingReader reader(path, options);
+  Trace trace;
+  std::vector<double> q, qd, tau, tau_ext, driver;
+  const auto append = [](std::vector<double>& to, const VectorXd& v) {
+    to.insert(to.end(), v.begin(), v.end());
+  };
+  for (RecordedSample s; reader.next(s);) {
+    trace.t.push_back(s.t);
+    append(q, s.q), append(qd, s.qd), append(tau, s.tau);
+    append(tau_ext, s.tau_ext), append(driver, s.driver);
+    if (reader.has_contact()) trace.contact.push_back(s.contact);
+  }
+  *skipped = reader.skipped();
+  if (regularity != nullptr) *regularity = reader.regularity();
+  if (trace.t.empty()) {
+    throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,
+                                         skipped->total(), skipped->first.empty() ? "" : "; ",
+                                         skipped->first.empty() ? "" : skipped->first[0]));
+  }
+  const auto matrix = [&](const std::vector<double>& all) -> Eigen::MatrixXd {
+    if (all.empty()) return {};
+    return Eigen::MatrixXd::Map(all.data(), reader.dof(), trace.size());
+  };
+  trace.q = matrix(q), trace.qd = matrix(qd), trace.tau = matrix(tau);
+  trace.tau_ext = matrix(tau_ext), trace.tau_ext_of_driver = matrix(driver);
+  trace.torque_at_instants = reader.torque_at_instants();
+  return trace;
+}
+
+}  // namespace tauext

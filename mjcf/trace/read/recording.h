@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Recordings of robots as people have them: CSV of any columns, .npy, .npz and ROS 2 bags.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mjcf/trace/read/regularity.h"
+#include "mjcf/trace/timed_rows.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// How a recording is to be read.
+struct RecordingOptions {
+  /// A preset or a TOML file of column_map.h; "": `joint_state` for a bag, else `tauext`.
+  std::string columns;
+  std::string topic;  ///< of a bag; "": the only one of JointState
+};
+
+/// A sample of a recording, and what else it says of that time. What it does not know is empty.
+struct RecordedSample : Sample {
+  Eigen::VectorXd tau_ext;  ///< [N m] true, sign of (3)
+  Eigen::VectorXd driver;   ///< [N m] the maker's own estimate of it, the same sign
+  bool contact = false;     ///< the label
+};
+
+/// Reads a recording sample by sample, in memory that does not grow with it.
+class RecordingReader {
+ public:
+  /// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong with the
+  /// file, or with its map
+  RecordingReader(const std::string& path, const RecordingOptions& options);
+  ~RecordingReader();
+
+  int dof() const;                       ///< joints
+  bool torque_at_instants() const;       ///< samples/options.h
+  bool has_truth() const;                ///< whether it knows tau_ext
+  bool has_driver() const;               ///< whether it knows the maker's estimate
+  bool has_contact() const;              ///< whether it has labels
+  bool next(RecordedSample& sample);     ///< false at the end; throws as the constructor does
+  const SkippedRows& skipped() const;    ///< rows that were left out so far
+  const Regularity& regularity() const;  ///< of the samples so far
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// All of a recording.
+/// @throws std::runtime_error as RecordingReader does, and if it has no usable row
+Trace read_recording(const std::string& path, const RecordingOptions& options, SkippedRows* skipped,
+                     Regularity* regularity = nullptr);
+
+}  // namespace tauext

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/regularity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tauext {
+
+std::string Regularity::in_words() const {
+  std::string all = fmt::format("{} samples in {:.6g} s, one every {:.4g} ms (+- {:.2g} ms)",
+                                samples, to - from, 1000 * step, 1000 * jitter);
+  if (gaps > 0) all += fmt::format(", {} gaps, the longest {:.3g} s", gaps, longest_gap);
+  if (repeats > 0) all += fmt::format(", {} of them repeat the one before", repeats);
+  return all;
+}
+
+void RegularityCounter::take(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+                             const Eigen::VectorXd& tau) {
+  if (r_.samples++ == 0) {
+    r_.from = t;
+  } else {
+    take_step(t - r_.to);
+    r_.repeats += q == q_ && qd == qd_ && tau == tau_;
+  }
+  r_.to = t;
+  q_ = q, qd_ = qd, tau_ = tau;
+}
+
+void RegularityCounter::take_step(double h) {
+  if (steps_ > 0 && h > 8 * r_.step) {
+    ++r_.gaps;
+    r_.longest_gap = std::max(r_.longest_gap, h);
+    return;
+  }
+  ++steps_;  // Welford's sums
+  const double off = h - r_.step;
+  r_.step += off / static_cast<double>(steps_);
+  squares_ += off * (h - r_.step);
+  r_.jitter = std::sqrt(squares_ / static_cast<double>(steps_));
+}
+
+}  // namespace tauext

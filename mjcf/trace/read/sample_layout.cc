@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/sample_layout.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string_view>
+
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+[[noreturn]] void fail_missing(const std::string& path, const char* what,
+                               const std::vector<std::string>& columns) {
+  std::string all;
+  for (const std::string& c : columns) all += (all.empty() ? "" : ", ") + printable_name(c);
+  constexpr std::size_t kMost = 200;
+  if (all.size() > kMost) all = all.substr(0, kMost) + " ..";
+  throw std::runtime_error(fmt::format(
+      "{}: no columns for {}; --columns says which they are. There are: {}", path, what, all));
+}
+
+class LayoutMaker {
+ public:
+  LayoutMaker(const MappedColumns& mapped, const std::vector<std::string>& columns,
+              const std::string& path)
+      : mapped_(mapped), columns_(columns), path_(path) {}
+
+  SampleLayout operator()() {
+    const MappedQuantity* const t = find("t");
+    if (t == nullptr) fail_missing(path_, "the time", columns_);
+    for (std::size_t i = 0; i < t->columns.size(); ++i)
+      l_.t.emplace_back(t->columns[i], t->gain[i]);
+    const MappedQuantity* const q = find("q");
+    if (q == nullptr) fail_missing(path_, "q", columns_);
+    l_.dof = static_cast<int>(q->columns.size());
+    l_.q = add("q");
+    l_.qd = add("qd");
+    l_.tau = add_torque();
+    l_.tau_ext = add("tau_ext");
+    l_.driver = add("driver");
+    if (find("contact") != nullptr) l_.contact = append(*find("contact"));
+    return std::move(l_);
+  }
+
+ private:
+  const MappedQuantity* find(std::string_view name) const {
+    const auto it = mapped_.find(name);
+    return it == mapped_.end() ? nullptr : &it->second;
+  }
+
+  int append(const MappedQuantity& m) {
+    const int at = l_.size;
+    for (std::size_t i = 0; i < m.columns.size(); ++i)
+      l_.rest.emplace_back(m.columns[i], m.gain[i]);
+    l_.size += static_cast<int>(m.columns.size());
+    return at;
+  }
+
+  int add(const char* name) {
+    const MappedQuantity* const m = find(name);
+    if (m == nullptr) return -1;
+    if (static_cast<int>(m->columns.size()) == l_.dof) return append(*m);
+    throw std::runtime_error(
+        fmt::format("{}: {} columns are q, and {} are {}", path_, l_.dof, m->columns.size(), name));
+  }
+
+  int add_torque() {
+    int at = -1;
+    for (const char* name : {"tau", "tau_instant", "current"}) {
+      if (find(name) == nullptr) continue;
+      if (at >= 0)
+        throw std::runtime_error(fmt::format(
+            "{}: has {}, and another torque, too: the map must choose one of them", path_, name));
+      at = add(name);
+      l_.instants = std::string_view(name) != "tau";
+    }
+    if (at < 0) fail_missing(path_, "tau", columns_);
+    return at;
+  }
+
+  const MappedColumns& mapped_;
+  const std::vector<std::string>& columns_;
+  const std::string& path_;
+  SampleLayout l_;
+};
+
+}  // namespace
+
+std::vector<int> SampleLayout::columns() const {
+  std::vector<int> all;
+  for (const auto& [c, gain] : t) all.push_back(c);
+  for (const auto& [c, gain] : rest) all.push_back(c);
+  return all;
+}
+
+SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,
+                       const std::string& path) {
+  return LayoutMaker(mapped, columns, path)();
+}
+
+}  // namespace tauext

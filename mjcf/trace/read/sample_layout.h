@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The quantities of a sample side by side, as they are taken from the rows of a recording.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjcf/trace/read/column_map.h"
+
+namespace tauext {
+
+/// Where they are, in SI units; t is the first.
+struct SampleLayout {
+  int dof = 0;  ///< joints
+  /// where each begins; -1: the recording does not have it
+  int q = -1, qd = -1, tau = -1, tau_ext = -1, driver = -1, contact = -1;
+  int size = 1;                              ///< numbers
+  bool instants = false;                     ///< tau was read at t
+  std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up
+  std::vector<std::pair<int, double>> rest;  ///< column and gain of each of the others
+
+  std::vector<int> columns() const;  ///< that matter
+};
+
+/// @throws std::runtime_error naming the path and what is missing, or does not fit
+SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,
+                       const std::string& path);
+
+}  // namespace tauext

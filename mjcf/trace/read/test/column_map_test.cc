@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings as other people's programs write them; the layouts are those of their sources.
+#include "mjcf/trace/read/column_map.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "mjcf/test/error_of.h"
+#include "mjcf/trace/read/recording.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Columns : public testing::Test {
+ protected:
+  Columns() : folder_(fs::temp_directory_path() / fmt::format("tauext_columns_{}", ::getpid())) {
+    fs::create_directories(folder_);
+  }
+  ~Columns() override { fs::remove_all(folder_); }
+
+  std::string put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+  Trace read(const std::string& text, const std::string& map) {
+    skipped_ = {};
+    return read_recording(put("log.csv", text), {.columns = map}, &skipped_, &regularity_);
+  }
+  // with a map of these lines
+  Trace read_by(const std::string& text, const std::string& toml) {
+    return read(text, put("map.toml", toml));
+  }
+  std::string error_of_map(const std::string& toml, const std::string& text = "a,b\n1,2\n") {
+    return error_of([&] { read_by(text, toml); });
+  }
+  static void expect_says(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+
+  fs::path folder_;
+  SkippedRows skipped_;
+  Regularity regularity_;
+};
+
+// "x[0]<between>x[1].." of seven
+std::string seven(const std::string& name, const std::string& between = ",") {
+  std::string all;
+  for (int i = 0; i < 7; ++i) all += fmt::format("{}{}[{}]", i > 0 ? between : "", name, i);
+  return all;
+}
+std::string numbers(int n, double first) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += fmt::format("{}{}", i > 0 ? "," : "", first + i);
+  return all;
+}
+
+// libfranka 0.9.1 and newer: src/logging/robot_state_log.cpp
+TEST_F(Columns, OfLibfrankaAreMillisecondsAndLinkSideTorques) {
+  std::string head = "time,success_rate";
+  for (const char* array : {"q", "q_d", "dq", "dq_d", "tau_J", "tau_ext_hat_filtered"})
+    head += "," + seven(fmt::format("state.{}", array));
+  head += "," + seven("cmd.q_d") + "," + seven("cmd.tau_J_d");
+  const std::string row = ",0.99," + numbers(42, 1) + "," + numbers(14, 100) + "\n";
+  const Trace t = read(head + "\n12345" + row + "12346" + row + "12348" + row, "libfranka");
+  ASSERT_EQ(t.size(), 3);
+  ASSERT_EQ(t.dof(), 7);
+  EXPECT_NEAR(t.t[2] - t.t[0], 0.003, 1e-12);
+  EXPECT_EQ(t.q(6, 0), 7);
+  EXPECT_EQ(t.qd(0, 0), 15);
+  EXPECT_EQ(t.tau(1, 1), 30);
+  EXPECT_EQ(t.tau_ext_of_driver(0, 2), 36) << "the sign of (3)";
+  EXPECT_TRUE(t.torque_at_instants);
+  EXPECT_FALSE(t.has_truth());
+}
+
+// up to 0.9.0: blanks, names that come twice, and a column without numbers
+TEST_F(Columns, OfOldLibfrankaAreThoseOfTheState) {
+  std::string head = "duration, success rate, " + seven("q", ", ");
+  for (const char* array : {"q_d", "dq", "dq_d", "tau_J", "tau_ext_hat_filtered"})
+    head += "," + seven(array, ", ");
+  head += ",sent commands," + seven("q_d", ", ") + "," + seven("tau_J_d", ", ");
+  const std::string row = ",0.99," + numbers(42, 1) + ",," + numbers(14, 100) + "\n";
+  const Trace t = read(head + "\n1" + row + "2" + row + "3" + row, "libfranka");
+  ASSERT_EQ(t.size(), 3);
+  EXPECT_EQ(t.q(0, 0), 1);
+  EXPECT_EQ(t.tau(6, 0), 35);
+  EXPECT_EQ(skipped_.total(), 0);
+}
+
+std::string six(const std::string& name, const char* between) {
+  std::string all;
+  for (int i = 0; i < 6; ++i) all += fmt::format("{}{}_{}", i > 0 ? between : "", name, i);
+  return all;
+}
+
+// record.py of RTDE_Python_Client_Library: blanks, CR LF, True and False
+TEST_F(Columns, OfRtdeWantTheGainsOfTheDrives) {
+  const std::string head = "timestamp " + six("actual_q", " ") + " " + six("actual_qd", " ") + " " +
+                           six("actual_current", " ") + " running\r\n";
+  std::string rows;
+  for (int k = 0; k < 4; ++k)
+    rows += fmt::format("{} 0.1 -1.5707963267948966 1e-05 0 0 0 1 2 3 4 5 6 1 -2 3 4 5 6 True\r\n",
+                        100 + 0.002 * k);
+  expect_says(error_of([&] { read(head + rows, "ur_rtde"); }), "[current] needs `gain` [N m/A]");
+  const std::string map = "preset = 'ur_rtde'\n[current]\ngain = [10, 10.7, 8.5, 9, 9.5, 10]\n";
+  const Trace t = read_by(head + rows, map);
+  ASSERT_EQ(t.size(), 4);
+  EXPECT_EQ(t.q(1, 3), -1.5707963267948966);
+  EXPECT_NEAR(t.tau(1, 0), -2 * 10.7, 1e-12);
+  EXPECT_TRUE(t.torque_at_instants);
+  EXPECT_NEAR(regularity_.step, 0.002, 1e-12);
+  EXPECT_EQ(regularity_.repeats, 3);
+}
+
+// pyfri's collect_data: no velocity, and external torque as KUKA has it
+TEST_F(Columns, OfFriMakeAVelocityAndTurnTheExternalTorque) {
+  std::string head = "index,time,record_time_nsec,tsec,tnsec", rows;
+  for (const char* array : {"mp", "ip", "mt", "et"}) {
+    for (int j = 1; j <= 7; ++j) head += fmt::format(",{}{}", array, j);
+  }
+  const auto q = [](double t) { return 0.3 * std::sin(2 * t); };
+  for (int k = 0; k < 2000; ++k) {
+    const double t = 0.002 * k;
+    rows += fmt::format("{},{},0,{},{}", k, t, 1700000000 + k / 500, k % 500 * 2000000);
+    for (int j = 0; j < 28; ++j) rows += fmt::format(",{:.17g}", j < 7 ? q(t) : j < 14 ? 0. : j);
+    rows += ",0.002\n";
+  }
+  const Trace t = read(head + ",dt\n" + rows, "kuka_fri");
+  ASSERT_EQ(t.size(), 2000);
+  EXPECT_NEAR(t.t[1999] - t.t[0], 3.998, 1e-6);
+  EXPECT_EQ(t.tau(0, 0), 14);
+  EXPECT_EQ(t.tau_ext_of_driver(0, 0), -21);
+  ASSERT_EQ(skipped_.notes.size(), 1U);
+  EXPECT_EQ(skipped_.notes[0],
+            "no qd: it is made of q by two poles at 100 rad/s and a difference (velocity_filter)");
+  double worst = 0;  // two poles at 100 rad/s are 20 ms late, and half a sample
+  for (int k = 500; k < 2000; ++k)
+    worst = std::max(worst, std::abs(t.qd(3, k) - 0.6 * std::cos(2 * (0.002 * k - 0.021))));
+  EXPECT_LT(worst, 0.003);
+}
+
+TEST_F(Columns, ByNumbersInAnyUnitAndOrder) {
+  const Trace t = read_by(
+      "0;90;180;-2;1500\n10;90;180;-2;1500\n20;0;0;0;0\n",
+      "separator = ';'\nheader = false\norder = [2, 1]\n[t]\ncolumns = [1]\nunit = 'ms'\n[q]\n"
+      "columns = [2, 3]\nunit = 'deg'\nsign = [1, -1]\n[tau]\ncolumns = [4, 5]\n"
+      "unit = ['Nm', 'Nmm']\n");
+  ASSERT_EQ(t.size(), 3);
+  EXPECT_NEAR(t.t[1], 0.01, 1e-15);
+  EXPECT_FALSE(t.torque_at_instants);
+  // joint 1 of the robot is the second one of the recording; its sign and unit go with it
+  EXPECT_NEAR(t.q(0, 0), -std::numbers::pi, 1e-15);
+  EXPECT_NEAR(t.q(1, 0), std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(t.tau(0, 0), 1.5, 1e-12);
+  EXPECT_EQ(t.tau(1, 0), -2);
+}
+
+TEST_F(Columns, ThatNobodyWantsMayHoldAnything) {
+  const Trace t = read_by("t,q1,qd1,tau1,note\n0,1,2,3,a word\n1,1,2,3,\n", "preset = 'tauext'\n");
+  EXPECT_EQ(t.size(), 2);
+  EXPECT_EQ(skipped_.total(), 0);
+}
+
+TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
+  expect_says(error_of_map("[q"), "map.toml: line 1: ");
+  expect_says(error_of_map("seperator = ','"), "line 1: unknown key 'seperator'; known: preset, ");
+  expect_says(error_of_map("preset = 'franka'"),
+              "unknown preset of columns 'franka'; known: tauext");
+  expect_says(error_of_map("\n[velocity]\ncolumns='v'"), "line 2: unknown quantity 'velocity'");
+  expect_says(error_of_map("[q]\ncolumns='('"), "line 2: columns '(': ");
+  expect_says(error_of_map("[q]\nunit='deg'"), "line 1: [q] names no columns");
+  expect_says(error_of_map("[q]\ncolumns='q'\nunit='ms'"),
+              "line 3: [q] cannot be in 'ms'; it may be in: rad deg m mm");
+  expect_says(error_of_map("[q]\ncolumns=[0]"), "line 2: columns must be a number from 1");
+  expect_says(error_of_map("[q]\ncolumns='q'\nsign=2"), "sign must be 1 or -1");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=['c']"), "no column 'c' for [q]");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[3]"), "no column 3 for [q]");
+  expect_says(error_of_map("order=[1,2]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),
+              "[q] has 1 columns, and `order` names joint 2");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1,2]\ngain=[1,2,3]"),
+              "[q] has 2 columns, and the map 3 gains");
+  expect_says(error_of([&] { read("a,b\n", "nowhere.toml"); }), "nowhere.toml: No such file");
+}
+
+TEST_F(Columns, GapsAndJitterAreCounted) {
+  std::string rows = "t,q1,qd1,tau1\n";
+  for (int k = 0; k < 100; ++k)
+    rows += fmt::format("{},{},0,0\n", 0.01 * k + (k % 2 == 0 ? 0.001 : 0) + (k >= 50 ? 3 : 0), k);
+  read(rows, "tauext");
+  EXPECT_EQ(regularity_.samples, 100);
+  EXPECT_EQ(regularity_.gaps, 1);
+  EXPECT_NEAR(regularity_.longest_gap, 3.011, 1e-9);
+  EXPECT_NEAR(regularity_.step, 0.01, 1e-4);
+  EXPECT_NEAR(regularity_.jitter, 0.001, 1e-5) << "steps of 9 and 11 ms in turn";
+  EXPECT_EQ(regularity_.repeats, 0);
+}
+
+}  // namespace
+}  // namespace tauext::test
