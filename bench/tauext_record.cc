@@ -12,6 +12,7 @@
 #include "bench/run/scenario_file.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/npy_writer.h"
 
 namespace {
 
@@ -32,9 +33,10 @@ tauext::Supervisor supervisor_of(const tauext::Robot& robot, const std::string& 
   return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
 }
 
-// as CSV, or as an LCM log
+// as its name ends
 void write(const tauext::Trace& trace, tauext::MessageType type, const std::string& out) {
   using namespace tauext;
+  if (out.ends_with(".npz")) return write_npz(out, trace);
   if (!is_lcm_log(out)) return write_csv(trace, out);
   LogBuffer log;
   append_samples(readings_of(trace), type, log);
@@ -50,7 +52,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Records a scenario on a simulated robot with its true tau_ext, 1 kHz, as CSV:\n"
       "t,q1..,qd1..,tau1..,tau_ext1..,contact  [s, rad, rad/s, N m; sign: see README];\n"
-      "or, to a file that ends in .lcm, as an LCM log with simulated times.\n\n"
+      "or, to a file that ends in .npz, as NumPy's arrays t, q, .., or in .lcm, as an LCM log.\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
   std::string robot_name, lock, scenario_name, scenario_file, out, stop, type = "tauext";

@@ -203,5 +203,47 @@ TEST_F(Programs, LcmSpyDecodesAnEntrysLogAsWeDo) {
 #endif
 }
 
+// the same log in other words gives the same errors
+TEST_F(Programs, ReplayReadsALogByAMapOfItsColumns) {
+  ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario sine --out log.csv").code, 0);
+  ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario sine --out log.npz").code, 0);
+  write("map.toml", R"(
+separator = ";"
+[t]
+columns = "ms"
+unit = "ms"
+[q]
+columns = 'angle (\d)'
+unit = "deg"
+[qd]
+columns = 'speed (\d)'
+sign = -1
+[current]
+columns = 'drive (\d)'
+gain = 25
+[tau_ext]
+columns = 'load (\d)'
+)");
+  const char* const other =
+      R"(awk -F, 'NR == 1 { print "ms;angle 1;angle 2;angle 3;speed 1;speed 2;speed 3;drive 1;drive 2;drive 3;load 1;load 2;load 3;note"; next }
+        { printf "%.9g;%.17g;%.17g;%.17g;%.17g;%.17g;%.17g;%.17g;%.17g;%.17g;%s;%s;%s;at rest\n", 1000 * $1,
+          $2 * 57.295779513082323, $3 * 57.295779513082323, $4 * 57.295779513082323, -$5, -$6, -$7, $8 / 25, $9 / 25, $10 / 25,
+          $11, $12, $13 }' log.csv >other.csv)";
+  ASSERT_EQ(run_system(other).code, 0);
+  const std::string how = " --robot wallmobot3 --estimator mo2 --torque held --out est.csv";
+  const Outcome ours = run("tauext-replay log.csv" + how), npz = run("tauext-replay log.npz" + how),
+                theirs = run("tauext-replay other.csv --columns map.toml" + how);
+  EXPECT_EQ(ours.code, 0) << ours.text;
+  EXPECT_EQ(npz.text, ours.text);
+  EXPECT_EQ(theirs.code, 0) << theirs.text;
+  EXPECT_TRUE(theirs.says("30000 samples in 29.999 s, one every 1 ms")) << theirs.text;
+  const auto table = [](const Outcome& o) { return o.text.substr(o.text.find("estimator ")); };
+  EXPECT_EQ(table(theirs), table(ours));
+  const Outcome none = run("tauext-replay other.csv --columns ur" + how);
+  EXPECT_EQ(none.code, 2);
+  EXPECT_TRUE(none.says("unknown preset of columns 'ur'; known: tauext, libfranka, ur_rtde"))
+      << none.text;
+}
+
 }  // namespace
 }  // namespace tauext::test

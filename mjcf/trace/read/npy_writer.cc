@@ -132,4 +132,18 @@ void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
   file.commit();
 }
 
+void write_npz(const std::string& path, const Trace& trace) {
+  const auto samples = static_cast<std::size_t>(trace.size());
+  const auto joints = static_cast<std::size_t>(trace.dof());
+  std::vector<NpyArray> arrays{
+      {"t", trace.t.data(), samples},
+      {"q", trace.q.data(), samples, joints},
+      {"qd", trace.qd.data(), samples, joints},
+      {trace.torque_at_instants ? "tau_instant" : "tau", trace.tau.data(), samples, joints}};
+  if (trace.has_truth()) arrays.push_back({"tau_ext", trace.tau_ext.data(), samples, joints});
+  const std::vector<double> contact(trace.contact.begin(), trace.contact.end());
+  if (!contact.empty()) arrays.push_back({"contact", contact.data(), samples});
+  write_npz(path, arrays);
+}
+
 }  // namespace tauext

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mjcf/trace/trace.h"
+
 namespace tauext {
 
 /// Numbers to be written, row after row as they lie in memory: those of a column-major
@@ -30,5 +32,10 @@ void write_npy(const std::string& path, const NpyArray& array,
 /// @throws std::runtime_error naming the path, also if it had more than 4 GiB or 65535 arrays, or
 /// if zlib was missing at build
 void write_npz(const std::string& path, const std::vector<NpyArray>& arrays);
+
+/// A trace as a .npz: the arrays t, q, qd, tau (tau_instant, if it was read at instants), and
+/// tau_ext and contact where they are known.
+/// @throws as write_npz
+void write_npz(const std::string& path, const Trace& trace);
 
 }  // namespace tauext

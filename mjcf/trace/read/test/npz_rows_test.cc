@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/npy_writer.h"
+#include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/test/recording.h"
 
 namespace tauext::test {

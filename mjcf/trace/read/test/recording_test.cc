@@ -11,6 +11,7 @@
 
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/read/npy_writer.h"
 #include "mjcf/trace/test/same_trace.h"
 #include "mjcf/trace/test/some_trace.h"
 
@@ -53,6 +54,17 @@ TEST_F(TraceFile, ComesBackBitForBit) {
   const Trace r = read_csv(path(), &skipped);
   EXPECT_EQ(skipped.total(), 0);
   expect_same(r, t);
+}
+
+TEST_F(TraceFile, ComesBackFromNumPyBitForBit) {
+  Trace t = some_trace(3, 2000);
+  write_npz(path("t.npz"), t);
+  SkippedRows skipped;
+  expect_same(read_csv(path("t.npz"), &skipped), t);
+  EXPECT_EQ(skipped.total(), 0);
+  t.torque_at_instants = true;
+  write_npz(path("t.npz"), t);
+  EXPECT_TRUE(read_csv(path("t.npz"), &skipped).torque_at_instants);
 }
 
 TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
