@@ -85,8 +85,18 @@ Entry::Entry(std::string_view robot, std::string_view scenario, std::string_view
   robot_->check(estimator_, detector_);
 }
 
+Entry Entry::made_elsewhere(const std::string& group, const std::string& estimator,
+                            const std::string& detector, const Robot* robot) {
+  Entry e;
+  e.robot_ = robot;
+  e.estimator_ = estimator;
+  e.detector_ = detector;
+  e.group_ = group;
+  return e;
+}
+
 std::string Entry::group() const {
-  return robot_->label() + "/" + scenario_->name;
+  return !group_.empty() ? group_ : robot_->label() + "/" + scenario_->name;
 }
 
 std::string Entry::name() const {

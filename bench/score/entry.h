@@ -36,8 +36,15 @@ class Entry {
   Entry(std::string_view robot, std::string_view scenario, std::string_view estimator,
         std::string_view detector = "");
 
-  const Robot& robot() const { return *robot_; }               ///< that it runs on
-  const Scenario& scenario() const { return *scenario_; }      ///< what happens to the robot
+  /// One whose estimates were made elsewhere: it has a name, and cannot be run.
+  /// @param group ROBOT/SCENARIO, or the log's name
+  /// @param robot nullptr if nobody knows it
+  static Entry made_elsewhere(const std::string& group, const std::string& estimator,
+                              const std::string& detector, const Robot* robot);
+
+  const Robot& robot() const { return *robot_; }           ///< that it runs on, if it has_robot()
+  const Scenario& scenario() const { return *scenario_; }  ///< what happens to it, likewise
+  bool has_robot() const { return robot_ != nullptr; }     ///< whether it is known
   const std::string& estimator() const { return estimator_; }  ///< its specification
   const std::string& detector() const { return detector_; }    ///< its specification; "" for none
 
@@ -54,10 +61,12 @@ class Entry {
   friend std::vector<Entry> entries(const Selection& selection);
   Entry(const Robot& robot, const Scenario& scenario, const std::string& estimator)
       : robot_(&robot), scenario_(&scenario), estimator_(estimator) {}
+  Entry() = default;
 
-  const Robot* robot_;
-  const Scenario* scenario_;
+  const Robot* robot_ = nullptr;
+  const Scenario* scenario_ = nullptr;
   std::string estimator_, detector_;
+  std::string group_;  // made elsewhere; else ""
 };
 
 /// Every robot x scenario x estimator, and with a detector where it has something to detect (or to

@@ -21,7 +21,7 @@ double rounded(double value, int digits) {
 
 // more where an arm's torques are smaller than a wall robot's 1200 N m
 int digits_of(const Row& r, const MetricRow& m) {
-  if (!m.unit.starts_with("N")) return m.digits;
+  if (!m.unit.starts_with("N") || !r.entry.has_robot()) return m.digits;
   const double smaller = 5 / r.entry.robot().small_torque().maxCoeff();
   return m.digits + std::clamp(static_cast<int>(std::lround(std::log10(smaller))), 0, 6);
 }
@@ -144,7 +144,8 @@ std::string table_legend(const std::vector<Row>& rows) {
   std::string out =
       "Each row shows its worst joint. * is the best of a group; zero, truth and delayed_truth do "
       "not compete.\n";
-  if (std::any_of(rows.begin(), rows.end(), [](const Row& r) { return r.entry.robot().slides(); }))
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const Row& r) { return r.entry.has_robot() && r.entry.robot().slides(); }))
     out += "Where a joint slides, N m is N and rad is m.\n";
   for (const MetricRow* m : columns_of(rows)) {
     out += fmt::format("{:<10}  {}\n", m->title, m->meaning);

@@ -34,8 +34,10 @@ bool is_bag(const std::string& path) {
   return magic_of(path).starts_with("SQLite format 3");
 }
 
-std::unique_ptr<RowSource> rows_of(const std::string& path, const RecordingOptions& options,
-                                   const CsvFormat& csv) {
+}  // namespace
+
+std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOptions& options,
+                                     const CsvFormat& csv) {
   if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic);
   if (!options.topic.empty())
     throw std::invalid_argument(fmt::format("{}: no ROS 2 bag, and so without topics", path));
@@ -44,6 +46,8 @@ std::unique_ptr<RowSource> rows_of(const std::string& path, const RecordingOptio
     return std::make_unique<NpyRows>(path);
   return std::make_unique<CsvRows>(path, csv);
 }
+
+namespace detail {
 
 // q through two poles at w [rad/s], then its difference: what stands for a velocity that nobody
 // measured, some 2 / w late
@@ -71,14 +75,14 @@ class VelocityFilter {
   VectorXd once_, twice_;
 };
 
-}  // namespace
+}  // namespace detail
 
 struct RecordingReader::Impl {
   Impl(const std::string& path, const RecordingOptions& o)
       : map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
                                           : "tauext")),
-        rows(rows_of(path, o, map.csv())),
+        rows(open_rows(path, o, map.csv())),
         layout(layout_of(known(path), rows->columns(), path)),
         timed(0, skipped),
         filter(map.velocity_filter()) {
@@ -143,7 +147,7 @@ struct RecordingReader::Impl {
   std::unique_ptr<RowSource> rows;
   SampleLayout layout;
   TimedRows timed;
-  VelocityFilter filter;
+  detail::VelocityFilter filter;
   RegularityCounter counter;
 };
 

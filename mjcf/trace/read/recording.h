@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjcf/trace/read/csv_rows.h"
 #include "mjcf/trace/read/regularity.h"
 #include "mjcf/trace/timed_rows.h"
 #include "mjcf/trace/trace.h"
@@ -20,6 +21,12 @@ struct RecordingOptions {
   std::string columns;
   std::string topic;  ///< of a bag; "": the only one of JointState
 };
+
+/// The rows of a file of any of these formats, which its first bytes tell; else it is CSV.
+/// @param csv of a text
+/// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong
+std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOptions& options = {},
+                                     const CsvFormat& csv = {});
 
 /// A sample of a recording, and what else it says of that time. What it does not know is empty.
 struct RecordedSample : Sample {

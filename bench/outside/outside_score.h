@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What estimates that were made elsewhere are worth.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/outside/estimates_file.h"
+#include "bench/score/table.h"
+
+namespace tauext {
+
+/// The run of which they are estimates.
+struct OutsideRun {
+  const Trace* trace = nullptr;        ///< with its truth, or labels
+  std::string group;                   ///< ROBOT/SCENARIO, or the log's name
+  const Robot* robot = nullptr;        ///< nullptr if nobody knows it
+  const Scenario* scenario = nullptr;  ///< what the run is made of, likewise
+  double score_from = 0;               ///< [s] errors count from this time on
+};
+
+/// Their scores: errors where the truth is known, marks where contacts are, and with a scenario what
+/// that asks for. No time, no noise and no allocations.
+Row score_outside(const OutsideRun& run, const OutsideEstimates& estimates);
+
+/// The rows as tauext-bench writes them, a benchmark for each, with this line about the run.
+std::string results_json(const std::vector<Row>& rows, const std::string& about);
+
+}  // namespace tauext
