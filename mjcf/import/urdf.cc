@@ -116,7 +116,8 @@ class Urdf {
     placed_.insert(text(link, "name"));
     if (depth > 200) fail(link, "more than 200 links in a row");
     XMLElement& body = *parent.InsertNewChildElement("body");
-    body.SetAttribute("name", text(link, "name").c_str());
+    const std::string name = text(link, "name");
+    body.SetAttribute("name", name == "world" ? "world_link" : name.c_str());  // MuJoCo has a world
     if (joint != nullptr) {
       const XMLElement* const origin = joint->FirstChildElement("origin");
       const Vector3d at = vector(origin, "xyz", Vector3d::Zero());

@@ -150,6 +150,13 @@ TEST_F(Import, OfUrdfIsTheArmThatMuJoCosOwnReaderMakes) {
   EXPECT_GT(tree.friction(qd)[0], 0.5);
 }
 
+// as in many robots' URDF, where the world is a link
+TEST_F(Import, OfUrdfMayCallItsBaseTheWorld) {
+  std::string text = urdf();
+  for (std::size_t at; (at = text.find("'base'")) != text.npos;) text.replace(at, 6, "'world'");
+  EXPECT_EQ(tree_of(load_mjcf(put(text, "arm.urdf"))).dof(), 3);
+}
+
 // what a URDF cannot say otherwise
 TEST_F(Import, OfUrdfTakesAnArmatureAndALinkForTheEndEffector) {
   std::string text = urdf(
