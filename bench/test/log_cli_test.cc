@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -243,6 +244,37 @@ columns = 'load (\d)'
   EXPECT_EQ(none.code, 2);
   EXPECT_TRUE(none.says("unknown preset of columns 'ur'; known: tauext, libfranka, ur_rtde"))
       << none.text;
+}
+
+// mo2 by its file, by the suite and by the scorer itself
+TEST_F(Programs, ScoreOfAFileIsThatOfTheSuite) {
+  run("tauext-record --robot wallmobot3 --scenario collision --out log.csv");
+  run("tauext-replay log.csv --robot wallmobot3 --estimator mo2 --detector pan_tompkins --out "
+      "theirs.csv");
+  const std::string run_of = " --robot wallmobot3 --scenario collision";
+  const Outcome o = run("tauext-score theirs.csv --estimator mo1,mo2 --out s.json" + run_of);
+  ASSERT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("wallmobot3/collision/mo2+pan_tompkins") || o.says("+pan_tompkins")) << o.text;
+  ASSERT_EQ(run("tauext-bench --benchmark_filter='wallmobot3/collision/mo2([+]pan_tompkins)?$' "
+                "--benchmark_min_time=0.001 --benchmark_out=b.json")
+                .code,
+            0);
+  const auto scores = nlohmann::json::parse(content("s.json")).at("benchmarks");
+  const auto suite = nlohmann::json::parse(content("b.json")).at("benchmarks");
+  ASSERT_EQ(scores.size(), 3U);
+  ASSERT_EQ(suite.size(), 2U);
+  for (const char* key : {"rmse_Nm", "rmse_Nm_joint2", "bias_Nm", "max_Nm", "lag_s"}) {
+    const double theirs = scores[0].at(key);
+    EXPECT_NEAR(theirs, scores[2].at(key).get<double>(), 1e-9) << key;
+    EXPECT_NEAR(theirs, suite[0].at(key).get<double>(), 1e-9) << key;
+  }
+  for (const char* key : {"delay_s", "recall", "false_alarms"})
+    EXPECT_EQ(scores[0].at(key), suite[1].at(key)) << key;
+  const Outcome by_log = run("tauext-score theirs.csv --log log.csv --format csv");
+  EXPECT_EQ(by_log.code, 0) << by_log.text;
+  EXPECT_TRUE(by_log.says("log/mo2+pan_tompkins,")) << by_log.text;
+  EXPECT_EQ(run("tauext-score theirs.csv").code, 2);
+  EXPECT_EQ(run("tauext-score theirs.csv --log nothing.csv").code, 2);
 }
 
 }  // namespace

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "bench/outside/outside_score.h"
+#include "mjcf/test/error_of.h"
+#include "mjcf/trace/read/npy_writer.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Outside : public testing::Test {
+ protected:
+  Outside() : folder_(fs::temp_directory_path() / fmt::format("tauext_outside_{}", ::getpid())) {
+    fs::create_directories(folder_);
+    for (int k = 0; k < 1000; ++k) trace_.t.push_back(5 + 0.001 * k);
+    trace_.q = trace_.qd = trace_.tau = Eigen::MatrixXd::Zero(2, 1000);
+    trace_.tau_ext = Eigen::MatrixXd::Constant(2, 1000, 3);
+    trace_.contact.assign(1000, 0);
+    trace_.contact[500] = 1;
+  }
+  ~Outside() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  // rows of every sample that `row` has text for
+  template <class Line>
+  std::string put(const std::string& head, Line&& line) const {
+    std::ofstream file(path("e.csv"));
+    file << head << "\n";
+    for (int k = 0; k < 1000; ++k) file << line(k);
+    return path("e.csv");
+  }
+  std::vector<OutsideEstimates> read(const std::string& file) const {
+    return read_estimates(file, "theirs", trace_);
+  }
+  std::string error(const std::string& file) const {
+    return error_of([&] { read(file); });
+  }
+
+  fs::path folder_;
+  Trace trace_;
+};
+
+// 1 N m off on joint 2, a mark 20 ms after the touch and one before it
+TEST_F(Outside, EstimatesAndMarksAreScoredAsOursAre) {
+  const std::string file = put("mark,tau_ext2,tau_ext1,t", [](int k) {
+    return fmt::format("{},4,3,{}\n", k == 520 || k == 100 ? 1 : 0, 5 + 0.001 * k + 0.0003);
+  });
+  const std::vector<OutsideEstimates> all = read(file);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].estimator, "theirs");
+  EXPECT_EQ(all[0].detector, "marks");
+  const Row row = score_outside({.trace = &trace_, .group = "log"}, all[0]);
+  EXPECT_EQ(row.entry.name(), "log/theirs+marks");
+  EXPECT_EQ(row.score.error, "");
+  EXPECT_NEAR(row.score.joint(Metric::kRmse, 0), 0, 1e-12);
+  EXPECT_NEAR(row.score.joint(Metric::kRmse, 1), 1, 1e-12);
+  EXPECT_NEAR(*row.score.get(Metric::kDelay), 0.02, 1e-9);
+  EXPECT_EQ(row.score.get(Metric::kRecall), 1);
+  EXPECT_EQ(row.score.get(Metric::kFalseAlarms), 1);
+  EXPECT_FALSE(row.score.get(Metric::kNoise)) << "it cannot be known";
+  EXPECT_FALSE(row.score.get(Metric::kCpu));
+  const auto json = nlohmann::json::parse(results_json({row}, "here"));
+  EXPECT_EQ(json.at("benchmarks")[0].at("name"), "log/theirs+marks");
+  EXPECT_NEAR(json.at("benchmarks")[0].at("rmse_Nm").get<double>(), 1, 1e-12);
+  EXPECT_EQ(json.at("context").at("tauext"), "here");
+}
+
+TEST_F(Outside, SamplesWithoutAnEstimateKeepTheOneBefore) {
+  const std::string file = put("t,tau_ext1,tau_ext2", [](int k) {
+    return k % 10 == 3 ? std::string() : fmt::format("{},{},0\n", 5 + 0.001 * k, k);
+  });
+  const Output out = read(file)[0].output;
+  EXPECT_EQ(out.counts.of(Status::kBadTime), 100);
+  EXPECT_EQ(out.tau_ext(0, 13), 12);
+  EXPECT_EQ(out.tau_ext(0, 14), 14);
+}
+
+TEST_F(Outside, SeveralEstimatorsStandInAFileOfReplay) {
+  const std::string file =
+      put("t,ekf_tau_ext1,ekf_tau_ext2,ekf_status,ekf_high_pass_mark,mo2:bandwidth=9_tau_ext1,"
+          "mo2:bandwidth=9_tau_ext2,mo2:bandwidth=9_status",
+          [](int k) { return fmt::format("{},1,2,{},0,3,4,0\n", 5 + 0.001 * k, k == 0 ? 1 : 0); });
+  const std::vector<OutsideEstimates> all = read(file);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].estimator, "ekf");
+  EXPECT_EQ(all[0].detector, "high_pass");
+  EXPECT_EQ(all[0].output.counts.of(Status::kStarted), 1);
+  EXPECT_EQ(all[1].estimator, "mo2:bandwidth=9");
+  EXPECT_EQ(all[1].detector, "");
+  EXPECT_TRUE(all[1].output.marks.empty());
+  EXPECT_EQ(all[1].output.tau_ext(1, 700), 4);
+}
+
+TEST_F(Outside, NumPysArraysAreRowsOfTheSamples) {
+  const Eigen::MatrixXd estimate = Eigen::MatrixXd::Constant(2, 1000, 7);
+  write_npy(path("e.npy"), {"", estimate.data(), 1000, 2});
+  EXPECT_EQ(read(path("e.npy"))[0].output.tau_ext, estimate);
+  write_npz(path("e.npz"), {{"tau_ext", estimate.data(), 1000, 2}});
+  EXPECT_EQ(read(path("e.npz"))[0].output.tau_ext, estimate);
+  write_npy(path("short.npy"), {"", estimate.data(), 999, 2});
+  EXPECT_EQ(error(path("short.npy")), path("short.npy") +
+                                          ": 999 rows without times, and 1000 samples: a column t "
+                                          "says which belong together");
+}
+
+TEST_F(Outside, WhatDoesNotBelongToTheLogIsRefused) {
+  EXPECT_NE(error(put("t,tau_ext1,tau_ext2", [](int k) { return fmt::format("{},0,0\n", k); }))
+                .find("999 of the 1000 samples have no estimate of theirs; the log goes from 5 to "
+                      "5.999 s"),
+            std::string::npos);
+  EXPECT_NE(error(put("t,tau_ext1", [](int k) { return fmt::format("{},0\n", k); }))
+                .find("theirs has 1 columns of tau_ext, and the log 2 joints"),
+            std::string::npos);
+  EXPECT_NE(error(put("t,torque", [](int k) { return fmt::format("{},0\n", k); }))
+                .find("no columns tau_ext1"),
+            std::string::npos);
+}
+
+// one that is not finite fails, as ours would
+TEST_F(Outside, AnEstimateThatIsNoneFails) {
+  const std::string file = put("t,tau_ext1,tau_ext2", [](int k) {
+    return fmt::format("{},0,{}\n", 5 + 0.001 * k, k == 700 ? "nan" : "0");
+  });
+  const Row row = score_outside({.trace = &trace_, .group = "log"}, read(file)[0]);
+  EXPECT_NE(row.score.error.find("not finite at t = 5.7"), std::string::npos) << row.score.error;
+}
+
+}  // namespace
+}  // namespace tauext::test
