@@ -18,8 +18,8 @@ struct OutsideEstimates {
   Output output;          ///< a column for each sample; one without an estimate is kBadTime
 };
 
-/// The estimators of a file (bench/outside/README.md), each sample of the trace with the estimate of
-/// its time.
+/// The estimators of a file (bench/outside/README.md), each sample of the trace with the estimate
+/// of its time.
 /// @param name of an estimator that the file does not name
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, no tau_ext, another
 /// number of joints or samples, an estimator without estimates for most of the samples

@@ -20,8 +20,8 @@ struct OutsideRun {
   double score_from = 0;               ///< [s] errors count from this time on
 };
 
-/// Their scores: errors where the truth is known, marks where contacts are, and with a scenario what
-/// that asks for. No time, no noise and no allocations.
+/// Their scores: errors where the truth is known, marks where contacts are, and with a scenario
+/// what that asks for. No time, no noise and no allocations.
 Row score_outside(const OutsideRun& run, const OutsideEstimates& estimates);
 
 /// The rows as tauext-bench writes them, a benchmark for each, with this line about the run.

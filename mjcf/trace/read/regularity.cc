@@ -29,6 +29,12 @@ void RegularityCounter::take(double t, const Eigen::VectorXd& q, const Eigen::Ve
 }
 
 void RegularityCounter::take_step(double h) {
+  if (steps_ == 1 && 8 * h < r_.step) {  // the first one was a gap
+    ++r_.gaps;
+    r_.longest_gap = r_.step;
+    steps_ = 0;
+    r_.step = squares_ = 0;
+  }
   if (steps_ > 0 && h > 8 * r_.step) {
     ++r_.gaps;
     r_.longest_gap = std::max(r_.longest_gap, h);

@@ -11,7 +11,7 @@ namespace tauext {
 
 /// How regular the samples of a recording are.
 struct Regularity {
-  std::int64_t samples = 0;
+  std::int64_t samples = 0;  ///< all
   double from = 0, to = 0;   ///< [s] of t
   double step = 0;           ///< [s] mean, gaps left aside
   double jitter = 0;         ///< [s] standard deviation of it

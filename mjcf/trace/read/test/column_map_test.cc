@@ -201,6 +201,12 @@ TEST_F(Columns, GapsAndJitterAreCounted) {
   EXPECT_NEAR(regularity_.step, 0.01, 1e-4);
   EXPECT_NEAR(regularity_.jitter, 0.001, 1e-5) << "steps of 9 and 11 ms in turn";
   EXPECT_EQ(regularity_.repeats, 0);
+  RegularityCounter counter;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+  for (const double t : {-1., 300., 300.01, 300.02}) counter.take(t, none, none, none);
+  EXPECT_EQ(counter.so_far().gaps, 1) << "where the first step is the gap";
+  EXPECT_NEAR(counter.so_far().step, 0.01, 1e-9);
+  EXPECT_EQ(counter.so_far().longest_gap, 301);
 }
 
 }  // namespace
