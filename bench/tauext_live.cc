@@ -28,14 +28,13 @@ void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
       ->type_name("REGEX")
       ->check(not_empty);
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
-  app.add_option("--from", o.from, "log to play instead, of any kind that tauext-replay reads")
+  app.add_option("--from", o.from, "log to play instead, as tauext-replay reads it (--columns)")
       ->type_name("LOG");
   app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
       ->type_name("CHANNEL");
   app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
   app.add_option("--channel", o.channel, "with --from: which channel, or topic of a bag");
-  app.add_option("--columns", o.columns, "with --from: what its columns mean")
-      ->type_name("PRESET|FILE.toml");
+  app.add_option("--columns", o.columns)->group("");
   app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
 }
 

@@ -92,7 +92,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("log", f.log, "log to read: CSV, .npy, .npz, .db3 (ROS 2) or LCM");
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
   app.add_option("--columns", f.columns,
-                 "what the log's columns mean: a map, or libfranka, ur_rtde, kuka_fri, ..")
+                 "what the log's columns mean: a map, or libfranka, ur_rtde, ..")
       ->type_name("PRESET|FILE.toml");
   app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");

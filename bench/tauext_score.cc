@@ -32,10 +32,9 @@ struct Flags {
 
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("estimates", f.files, "files: CSV, .npy or .npz")->required();
-  app.add_option("--log", f.log, "log that they are made of, of any kind that tauext-replay reads");
-  app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
-  app.add_option("--columns", f.columns, "what the log's columns mean (see tauext-replay --help)")
-      ->type_name("PRESET|FILE.toml");
+  app.add_option("--log", f.log, "log that they are made of (--columns, --channel: tauext-replay)");
+  app.add_option("--channel", f.channel)->group("");
+  app.add_option("--columns", f.columns)->group("");
   app.add_option("--robot", f.robot, "robot, or a file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock)->group("")->check(not_empty);
@@ -116,9 +115,8 @@ int score(const Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Scores files of estimates (and marks) that were made elsewhere, by the metrics of ours: t,\n"
-      "tau_ext1.. or NAME_tau_ext1.., mark (bench/outside/README.md). Exit code 1 if one fails.\n\n"
-      "  tauext-score theirs.csv --log log.csv\n"
+      "Scores files of estimates made elsewhere: t, [NAME_]tau_ext1.., mark. Exit code 1: one "
+      "fails.\n\n"
       "  tauext-score theirs.npz --robot wallmobot3 --scenario step --estimator mo2,ekf\n",
       "tauext-score");
   Flags flags;

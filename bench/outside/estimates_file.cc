@@ -180,7 +180,7 @@ class Collector {
 
 std::vector<OutsideEstimates> read_estimates(const std::string& path, const std::string& name,
                                              const Trace& trace) {
-  const std::unique_ptr<RowSource> rows = open_rows(path);
+  const std::unique_ptr<RowSource> rows = open_rows(path, {}, {.finite = false});
   const Finder found(rows->columns(), trace.dof());
   if (found.all_.empty())
     throw std::runtime_error(path + ": no columns tau_ext1, tau_ext2, .. or NAME_tau_ext1, ..");

@@ -15,7 +15,7 @@ namespace {
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
   for (const std::string name :
        {"tauext-bench", "tauext-detect", "tauext-identify", "tauext-import", "tauext-live",
-        "tauext-record", "tauext-replay"}) {
+        "tauext-record", "tauext-render", "tauext-replay", "tauext-score"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;
@@ -177,7 +177,7 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
       {"tauext-live --robot testbed1 --scenario hold --estimator mo1 --thresholds t.json",
        "--thresholds goes with --detector"},
       {"tauext-replay log.csv --robot testbed1 --estimator mo1 --channel A --out e.csv",
-       "log.csv: CSV has no channel 'A'"}};
+       "log.csv: has no channel 'A'"}};
   for (const auto& [command, why] : refused) {
     const Outcome o = run(command);
     EXPECT_EQ(o.code, 2) << command;

@@ -175,7 +175,7 @@ const char* CsvRows::parse(std::string_view line, std::vector<double>& row,
     ++skipped.not_a_number;
     return "a field is not a number";
   }
-  if (all_finite) return nullptr;
+  if (all_finite || !format_.finite) return nullptr;
   ++skipped.not_finite;
   return "a field is not finite";
 }

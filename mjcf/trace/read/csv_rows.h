@@ -18,6 +18,7 @@ struct CsvFormat {
   char separator = 0;  ///< ' ': any number of blanks; 0: the comma, semicolon or tabulator of the
                        ///< first line, or else blanks
   bool has_header = true;  ///< else the columns are called 1, 2, ..
+  bool finite = true;      ///< a row with NaN or infinity cannot be read
 };
 
 /// The rows of such a file. Lines may end in CR and LF, and have up to 64 kB; empty ones, and those

@@ -40,7 +40,9 @@ std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOpt
                                      const CsvFormat& csv) {
   if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic);
   if (!options.topic.empty())
-    throw std::invalid_argument(fmt::format("{}: no ROS 2 bag, and so without topics", path));
+    throw std::invalid_argument(
+        fmt::format("{}: has no channel '{}', as LCM logs have, and no topic, as ROS 2 bags have",
+                    path, options.topic));
   const std::string magic = magic_of(path);
   if (magic.starts_with("\x93NUMPY") || magic.starts_with("PK\x03\x04"))
     return std::make_unique<NpyRows>(path);

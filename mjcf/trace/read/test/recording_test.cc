@@ -63,8 +63,8 @@ TEST_F(TraceFile, ComesBackFromNumPyBitForBit) {
   expect_same(read_csv(path("t.npz"), &skipped), t);
   EXPECT_EQ(skipped.total(), 0);
   t.torque_at_instants = true;
-  write_npz(path("t.npz"), t);
-  EXPECT_TRUE(read_csv(path("t.npz"), &skipped).torque_at_instants);
+  write_npz(path("instants.npz"), t);
+  EXPECT_TRUE(read_csv(path("instants.npz"), &skipped).torque_at_instants);
 }
 
 TEST_F(TraceFile, HasTheColumnsOfTheReadme) {
