@@ -2,7 +2,13 @@
 #include "mjcf/trace/read/column_map_file.h"
 
 #include <fmt/format.h>
+
+#include <stdexcept>
 #ifdef TAUEXT_TOML
+// what toml++ 3.3.0 asserts some texts do not keep, and without assertions it believes it
+#undef NDEBUG
+#define TOML_ASSERT(holds) \
+  (static_cast<bool>(holds) ? static_cast<void>(0) : throw std::runtime_error("this is no TOML"))
 #include <toml++/toml.h>
 #endif
 
@@ -56,12 +62,25 @@ class MapReader {
 
  private:
   toml::table parsed(std::string_view text) const {
+    refuse_other_letters(text);
     try {
       return toml::parse(text);
     } catch (const toml::parse_error& e) {
       throw std::invalid_argument(one_line(fmt::format(
           "{}: line {}: {}", name_, e.source().begin.line, std::string(e.description()))));
+    } catch (const std::runtime_error& e) {
+      throw std::invalid_argument(fmt::format("{}: {}", name_, e.what()));
     }
+  }
+
+  // toml++ 3.3.0 does not survive them everywhere
+  void refuse_other_letters(std::string_view text) const {
+    const auto plain = [](char c) { return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r'); };
+    const auto at = std::find_if_not(text.begin(), text.end(), plain);
+    if (at == text.end()) return;
+    throw std::invalid_argument(fmt::format(
+        "{}: line {}: a map is written in ASCII; in `columns`, .+ stands for any letters", name_,
+        1 + std::count(text.begin(), at, '\n')));
   }
 
   [[noreturn]] void fail(const toml::node& at, const std::string& what) const {

@@ -171,6 +171,8 @@ TEST_F(Columns, ThatNobodyWantsMayHoldAnything) {
 
 TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("[q"), "map.toml: line 1: ");
+  expect_says(error_of_map("[|]"), "map.toml: ");
+  expect_says(error_of_map("[q]\ncolumns='\xC3\xA4(.)'"), "line 2: a map is written in ASCII");
   expect_says(error_of_map("seperator = ','"), "line 1: unknown key 'seperator'; known: preset, ");
   expect_says(error_of_map("preset = 'franka'"),
               "unknown preset of columns 'franka'; known: tauext");
