@@ -47,6 +47,17 @@ void require_one_or_each(const List& list, std::size_t count, const char* what,
                                        quantity, count, list.size(), what));
 }
 
+constexpr std::size_t kLongestName = 200;  // std::regex goes as deep as a name is long
+
+bool matches(const std::string& name, const std::regex& expression, std::smatch& match,
+             std::string_view quantity, const std::string& path) {
+  try {
+    return std::regex_match(name, match, expression);
+  } catch (const std::regex_error& e) {  // too much work
+    throw std::runtime_error(fmt::format("{}: columns of [{}]: {}", path, quantity, e.what()));
+  }
+}
+
 // the number in the first group that has matched, by which joints are in order
 int number_in(const std::smatch& match, int otherwise) {
   for (std::size_t i = 1; i < match.size(); ++i) {
@@ -65,9 +76,10 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
     const std::regex expression(w.expression);
     std::vector<std::pair<int, int>> numbered;  // by joint
     for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
+      const std::string& name = columns[static_cast<std::size_t>(i)];
       std::smatch match;
-      if (std::regex_match(columns[static_cast<std::size_t>(i)], match, expression))
-        numbered.emplace_back(number_in(match, i), i);
+      if (name.size() > kLongestName || !matches(name, expression, match, quantity, path)) continue;
+      numbered.emplace_back(number_in(match, i), i);
     }
     std::sort(numbered.begin(), numbered.end());
     for (const auto& [joint, column] : numbered) found.push_back(column);

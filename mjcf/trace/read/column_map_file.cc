@@ -43,7 +43,7 @@ class MapReader {
   void read(std::string_view text) {
     const toml::table all = parsed(text);
     if (const toml::node* preset = all.get("preset")) {
-      read(preset_of(string(*preset, "preset")));
+      read(known_preset(*preset));
     }
     for (const auto& [key, value] : all) {
       if (const toml::table* t = value.as_table()) {
@@ -70,6 +70,16 @@ class MapReader {
           "{}: line {}: {}", name_, e.source().begin.line, std::string(e.description()))));
     } catch (const std::runtime_error& e) {
       throw std::invalid_argument(fmt::format("{}: {}", name_, e.what()));
+    }
+  }
+
+  const detail::ColumnPreset& known_preset(const toml::node& at) const {
+    try {
+      return preset_of(string(at, "preset"));
+    } catch (const std::invalid_argument& e) {
+      const std::string what = e.what();
+      if (what.starts_with(name_ + ": ")) throw;
+      fail(at, what);
     }
   }
 
