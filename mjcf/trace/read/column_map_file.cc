@@ -5,10 +5,15 @@
 
 #include <stdexcept>
 #ifdef TAUEXT_TOML
+namespace tauext::detail {
+[[gnu::noinline]] static void fail_toml() {
+  throw std::runtime_error("this is no TOML");
+}
+}  // namespace tauext::detail
 // what toml++ 3.3.0 asserts some texts do not keep, and without assertions it believes it
 #undef NDEBUG
 #define TOML_ASSERT(holds) \
-  (static_cast<bool>(holds) ? static_cast<void>(0) : throw std::runtime_error("this is no TOML"))
+  (static_cast<bool>(holds) ? static_cast<void>(0) : ::tauext::detail::fail_toml())
 #include <toml++/toml.h>
 #endif
 
