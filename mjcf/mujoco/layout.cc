@@ -86,7 +86,7 @@ void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
   }
   for (int j = 0; j < m.nv; ++j) {
     const Eigen::RowVectorXd row = ties.T.row(j)(free);
-    if (!row.isZero(0)) l.arm.push_back(j);
+    if (!row.isZero(0) || ties.T.row(j).isZero(0)) l.arm.push_back(j);  // or tied to a number
   }
   if (l.dof == 0 || static_cast<int>(free.size()) != l.dof) {
     throw std::invalid_argument(fmt::format(
@@ -147,6 +147,19 @@ void find_scene(const mjModel& m, const mjData& d, Layout& l) {
   }
 }
 
+// the last one up to `last` that neither follows nor is followed; `last` if there is none
+int last_alone(const mjModel& m, int last) {
+  if (!has_ties(m)) return last;
+  const Ties ties = ties_of(m);
+  for (int dof = last; dof >= 0; --dof) {
+    const auto at = std::find(ties.free.begin(), ties.free.end(), dof);
+    if (at == ties.free.end()) continue;
+    const auto moved = ties.T.col(at - ties.free.begin());
+    if ((moved.array() != 0).count() == 1) return dof;
+  }
+  return last;
+}
+
 }  // namespace
 
 Layout layout_of(const mjModel& m, const mjData& d) {
@@ -170,7 +183,7 @@ BodyPoint end_effector_of(const mjModel& m, int last) {
   if (const int id = mj_name2id(&m, mjOBJ_BODY, kEndEffector); id >= 0)
     return {id, Eigen::Vector3d::Zero(), fmt::format("the origin of the body '{}'", kEndEffector)};
   if (auto found = site("attachment_site")) return *found;
-  const int body = m.dof_bodyid[last];
+  const int body = m.dof_bodyid[last_alone(m, last)];
   return {body, Eigen::Vector3d::Map(m.body_ipos + 3 * body),
           fmt::format("the centre of mass of the body '{}', as there is no site 'end_effector'",
                       element_name(m, mjOBJ_BODY, body))};

@@ -46,7 +46,7 @@ inline constexpr const char* kEndEffector = "end_effector";
 
 /// The site `end_effector`, else the body of that name (a link of URDF, which has no sites), else
 /// the site `attachment_site`, else the centre of mass of the body behind the last of the arm's
-/// degrees of freedom.
+/// degrees of freedom that moves alone: joints that follow each other are a gripper's.
 BodyPoint end_effector_of(const mjModel& m, int last);
 
 /// @param d at any state of m, after mj_forward

@@ -169,6 +169,39 @@ TEST(Ties, ATiedArmMustStayOffItsLimits) {
   EXPECT_EQ(plant.joints_at_limits(), std::vector{0});
 }
 
+// held by a number, off its reference: a link that is bent, once and for all
+TEST(Ties, AJointThatIsHeldIsABentLink) {
+  const std::string hand =
+      "<body pos='0 0 .3'><joint name='wrist' axis='0 1 0'/><inertial pos='.1 0 "
+      ".1' mass='1' diaginertia='.1 .1 .1'/></body>";
+  const std::string bar = "<inertial pos='.2 0 .1' mass='2' diaginertia='.1 .1 .1'/>";
+  const std::string held = upper("<joint name='held' axis='0 1 0'/>" + bar + hand);
+  std::string bent = upper(bar + hand);
+  const std::string place = "<body pos='0 0 .5'>";
+  bent.replace(bent.find(place), place.size(), "<body pos='0 0 .5' euler='0 .5 0'>");
+  expect_one_motion(tied_model(held, "<joint joint1='held' polycoef='.5 0 0 0 0'/>"),
+                    tied_model(bent), 2);
+}
+
+// a blow is for the hand, not for a finger of it
+TEST(Ties, TheEndEffectorIsNoFinger) {
+  const std::string finger =
+      "<inertial pos='0 0 .1' mass='.1' diaginertia='.01 .01 .01'/><joint type='slide' ";
+  const std::string hand =
+      "<body name='hand' pos='0 0 .3'><joint name='wrist' axis='1 0 0'/><inertial pos='0 .1 "
+      "0' mass='1' diaginertia='.1 .1 .1'/><body>" +
+      finger + "name='l'/></body><body>" + finger + "name='r'/></body></body>";
+  const Model m =
+      tied_model(upper("<inertial pos='0 0 0' mass='1' diaginertia='.1 .1 .1'/>" + hand),
+                 "<joint joint1='l' joint2='r'/>");
+  const ArmTree arm = tree_of(m);
+  EXPECT_NE(arm.end_effector.find("body 'hand'"), std::string::npos) << arm.end_effector;
+  EXPECT_EQ(arm.point("end_effector").joint, 1);
+  Plant plant(simulated(m));
+  plant.set_state(VectorXd::Zero(3), VectorXd::Zero(3));
+  EXPECT_LT((plant.end_effector().position - Vec<3>(0, .1, .8)).norm(), 1e-12);
+}
+
 TEST(Ties, RangesOfFollowersAreRangesOfTheirLeader) {
   const std::string body = "<inertial pos='0 0 0' mass='1' diaginertia='.1 .1 .1'/><joint ";
   const std::string bodies = "<body>" + body + "name='a' limited='true' range='-1 2'/><body>" +
