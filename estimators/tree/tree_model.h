@@ -28,7 +28,6 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
-#include <tuple>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
@@ -138,20 +137,23 @@ class TreeModel {
     VecM slope;
     const VecM rest = bias(s, flow) + friction(rate, slope);
     detail::PaddedDynamics<N, Scalar> f;
-    over_bodies([&](Bodies& B) { B = passes_.inertia(s, c); }, f.B);
+    if constexpr (M == N) {
+      f.B = passes_.inertia(s, c);
+      to_q(f.B);
+    } else {
+      Bodies B = passes_.inertia(s, c);
+      f.B = to_q(B);
+    }
     const Factor factor = factorised(f.B);
     f.ok = factor.ok();
     const VecN qdd = factor.solve(VecN(u - forces(rest)));
     f.qdd = detail::pad_vector<N, Scalar>(qdd);
     f.by_tau_ext = factor.minus_inverse();
     passes_.accelerate(s, to_rate(qdd), flow);
-    Square by_q, by_qd;
-    over_bodies(
-        [&](Bodies& q_part, Bodies& qd_part) {
-          passes_.derivatives(s, flow, c, q_part, qd_part);
-          qd_part.diagonal().template head<M>() += slope;
-        },
-        by_q, by_qd);
+    Bodies q_part, qd_part;
+    passes_.derivatives(s, flow, c, q_part, qd_part);
+    qd_part.diagonal().template head<M>() += slope;
+    const Square &by_q = to_q(q_part), &by_qd = to_q(qd_part);
     f.by_q = times_transposed(f.by_tau_ext, by_q);
     f.by_qd = times_transposed(f.by_tau_ext, by_qd);
     return f;
@@ -196,9 +198,8 @@ class TreeModel {
 
   [[gnu::always_inline]] MatN inertia(const Pose& s,
                                       const typename Passes::Inertia& c) const noexcept {
-    Square B;
-    over_bodies([&](Bodies& of_rho) { of_rho = passes_.inertia(s, c); }, B);
-    return own(B);
+    Bodies B = passes_.inertia(s, c);
+    return own(to_q(B));
   }
 
   [[gnu::always_inline]] VecM bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
@@ -245,25 +246,17 @@ class TreeModel {
     return drho_.transpose() * of_rho;
   }
 
-  // what `fill` makes over the joints, over the coordinates; in place where these are as many
-  template <class Fill, class... Squares>
-  [[gnu::always_inline]] void over_bodies(Fill&& fill, Squares&... of_q) const noexcept {
+  // what is over the joints, over the coordinates; in place where these are as many
+  [[gnu::always_inline]] decltype(auto) to_q(Bodies& of_rho) const noexcept {
     if constexpr (M == N) {
-      fill(of_q...);
-      if (!direct_) (turn(of_q, of_q), ...);
+      if (!direct_) of_rho.template topLeftCorner<N, N>() = drho_.transpose() * own(of_rho) * drho_;
+      return (of_rho);
     } else {
-      std::array<Bodies, sizeof...(of_q)> all;
-      std::apply(
-          [&](auto&... of_rho) {
-            fill(of_rho...);
-            ((of_q.setZero(), turn(of_rho, of_q)), ...);
-          },
-          all);
+      Square of_q = Square::Zero();
+      of_q.template topLeftCorner<N, N>() =
+          drho_.transpose() * of_rho.template topLeftCorner<M, M>() * drho_;
+      return of_q;
     }
-  }
-  void turn(const Bodies& of_rho, Square& of_q) const noexcept {
-    of_q.template topLeftCorner<N, N>() =
-        (drho_.transpose() * of_rho.template topLeftCorner<M, M>() * drho_).eval();
   }
 
   static MatN own(const Square& m) noexcept { return m.template topLeftCorner<N, N>(); }
