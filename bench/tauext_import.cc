@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/program/program.h"
-#include "mjcf/import/mjcf_text.h"
+#include "mjcf/import/robot_file.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
@@ -74,17 +74,19 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
         "    j.axis = {};\n    j.rotation << {};\n    j.position = {};\n    j.zero = {:.17g};\n"
         "    j.mass = {:.17g};\n    j.center = {};\n    j.inertia << {};\n    j.armature = "
         "{:.17g};\n"
-        "    j.viscous = {:.17g};\n    j.dry = {:.17g};\n    j.v_s = {:.17g};\n  }}\n",
+        "    j.viscous = {:.17g};\n    j.viscous_skew = {:.17g};\n    j.dry = {:.17g};\n"
+        "    j.v_s = {:.17g};\n    j.offset = {:.17g};\n  }}\n",
         i, j.parent, j.kind == TreeJoint::Kind::kSlide ? "kSlide" : "kHinge", listed(j.axis),
         rows(j.rotation), listed(j.position), j.zero, j.mass, listed(j.center), rows(j.inertia),
-        j.armature, j.viscous, j.dry, j.v_s);
+        j.armature, j.viscous, j.viscous_skew, j.dry, j.v_s, j.offset);
   }
   return text +
          fmt::format("  p.gravity = {};\n  p.drho << {};\n  p.rho0 << {};\n  return {}(p);\n}}\n",
                      listed(arm.gravity), rows(arm.drho), rows(arm.rho0), type);
 }
 
-int import(const std::string& file, const ImportOptions& options, const std::string& out) {
+int import(const std::string& path, const ImportOptions& how, const std::string& out) {
+  const auto [file, options] = robot_file(path, how);
   const ArmTree arm = arm_of(file, options);
   const ImportedText text = import_mjcf(file, options);
   double mass = 0;
@@ -128,7 +130,9 @@ int main(int argc, char** argv) {
       "tauext-import");
   std::string file, out;
   ImportOptions options;
-  app.add_option("file", file, "MJCF or URDF file")->required()->type_name("FILE.xml|FILE.urdf");
+  app.add_option("file", file, "MJCF or URDF file, or robot file of ours (.json)")
+      ->required()
+      ->type_name("FILE.xml|FILE.urdf|FILE.json");
   app.add_option("--lock", options.lock,
                  "fix joints whose whole name matches where they are 0; mass stays")
       ->type_name("REGEX")

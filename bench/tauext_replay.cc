@@ -138,7 +138,8 @@ int replay(Flags& f) {
   }
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
-  const RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns});
+  RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns, true});
+  r.make_torques(recorded.trace);
   const Trace& trace = recorded.trace;
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(

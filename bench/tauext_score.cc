@@ -31,7 +31,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("estimates", f.files, "files: CSV, .npy or .npz")->required();
+  app.add_option("estimates", f.files, "files: CSV, .npy or .npz; or --estimator alone");
   app.add_option("--log", f.log, "log that they are made of (--columns, --channel: tauext-replay)");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--columns", f.columns)->group("");
@@ -77,6 +77,8 @@ int score(const Flags& f) {
     throw std::invalid_argument("a --log, or --robot and --scenario, are required");
   if (f.robot.empty() && (simulated || !f.ours.empty()))
     throw std::invalid_argument("--scenario and --estimator want a --robot");
+  if (f.files.empty() && f.ours.empty())
+    throw std::invalid_argument("files of estimates, or --estimator, are required");
   const TableFormat format = table_format(f.format);
   OutsideRun run;
   if (!f.robot.empty()) run.robot = &robot(with_lock(f.robot, f.lock));
@@ -90,14 +92,12 @@ int score(const Flags& f) {
         record(run.robot->load_for(*run.scenario, f.error), *run.scenario, sensors, f.recording);
     run.group = run.robot->label() + "/" + run.scenario->name;
   } else {
-    log = read_any_log(f.log, {f.channel, f.columns});
+    log = read_any_log(f.log, {f.channel, f.columns, true});
+    if (!f.ours.empty()) run.robot->make_torques(log.trace);
     run.group = std::filesystem::path(f.log).stem().string();
   }
   run.trace = &log.trace;
   run.score_from = simulated ? std::max(run.scenario->score_from, f.score_from) : f.score_from;
-  if (!log.trace.has_truth() && log.trace.contact.empty())
-    throw std::invalid_argument(f.log +
-                                ": knows neither tau_ext nor contacts, so nothing can be scored");
   const std::vector<Row> rows = scored(f, run);
   fmt::print("{}", format_table(rows, format));
   if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows));

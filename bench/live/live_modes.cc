@@ -52,7 +52,11 @@ DetectorsOf thresholds_of(const Options& o) {
 
 // the samples to play: simulated with everything that reacts in it, or read
 RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
-  if (!o.from.empty()) return read_any_log(o.from, {o.channel, o.columns});
+  if (!o.from.empty()) {
+    RecordedLog log = read_any_log(o.from, {o.channel, o.columns, true});
+    r.make_torques(log.trace);
+    return log;
+  }
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {

@@ -41,6 +41,9 @@ RecordedLog read_rows(const std::string& path, const LogOptions& o) {
   Trace trace =
       read_recording(path, {.columns = o.columns, .topic = o.channel}, &skipped, &regularity);
   report_skipped(skipped, path);
+  if (trace.tau_is_current && !o.currents)
+    throw std::runtime_error(
+        path + ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
   if (!o.columns.empty() || regularity.gaps > 0) say(path + ": " + regularity.in_words());
   return {std::move(trace), skipped.total()};
 }

@@ -24,6 +24,7 @@ struct LogOptions {
   std::string channel;
   /// of any other log a preset or a TOML file of mjcf/trace/read/column_map.h; "": ours
   std::string columns;
+  bool currents = false;  ///< whether tau may be currents, which Robot::make_torques() then mends
 };
 
 /// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag. What was skipped, and what is irregular in

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/outside/log_metrics.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
 #include "bench/score/suite.h"
@@ -18,14 +19,24 @@ Row score_outside(const OutsideRun& run, const OutsideEstimates& e) {
   score.error = bad_status(trace, e.output);
   score.counts = e.output.counts;
   score.set(Metric::kLeftOut, static_cast<double>(e.output.counts.left_out()));
-  if (trace.has_truth()) add_error_metrics(trace, e.output, run.score_from, score);
+  const std::vector<LogRun> log = {{&trace, &e.output, run.score_from}};
+  if (trace.has_truth()) {
+    add_error_metrics(trace, e.output, run.score_from, score);
+  } else {
+    add_floor_metrics(log, score);
+  }
+  add_maker_metrics(log, score);
   if (run.scenario != nullptr) add_response_metrics(trace, e.output, *run.scenario, score);
   if (run.robot != nullptr && trace.force.cols() > 0) {
     const auto arm = run.robot->forces_at(kEndEffector, false);
     const double force = metrics::force_rmse(*arm, trace, e.output.tau_ext, run.score_from);
     if (!std::isnan(force)) score.set(Metric::kForce, force);
   }
-  add_detection_metrics(trace, e.output, score);
+  if (trace.has_truth()) {
+    add_detection_metrics(trace, e.output, score);
+  } else {
+    add_label_metrics(log, score);
+  }
   return row;
 }
 

@@ -34,6 +34,8 @@ std::string fingerprint_of(const ArmTree& arm) {
   for (const TreeJoint& j : arm.joints) {
     text += fmt::format(" {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", j.parent,
                         static_cast<int>(j.kind), j.zero, j.mass, j.armature, j.viscous, j.dry);
+    if (j.offset != 0 || j.viscous_skew != 0)
+      text += fmt::format(" {:.9g} {:.9g}", j.offset, j.viscous_skew);
     for (const Vec<3>& v : {j.axis, j.position, j.center})
       text += fmt::format(" {:.9g}", fmt::join(v.data(), v.data() + v.size(), " "));
     for (const Mat<3>& m : {j.rotation, j.inertia})
@@ -54,7 +56,7 @@ bool is_robot_file(std::string_view name) {
   std::string path(name.substr(0, name.find(kLock)));
   std::transform(path.begin(), path.end(), path.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return path.ends_with(".xml") || path.ends_with(".urdf");
+  return path.ends_with(".xml") || path.ends_with(".urdf") || path.ends_with(".json");
 }
 
 Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
@@ -97,6 +99,10 @@ Model Robot::load_for(const Scenario& s, const ModelError& error) const {
 
 std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool moment) const {
   return arm_forces(model(), {.site = site, .moment = moment, .limits = small_torque()});
+}
+
+void Robot::make_torques(Trace& trace) const {
+  tauext::make_torques(trace, file_ ? tree_of(file_).gain : Eigen::VectorXd::Zero(dof_));
 }
 
 Model Robot::model() const {

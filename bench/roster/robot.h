@@ -67,6 +67,9 @@ class Robot {
   /// the link that is touched, where a torque exceeds small_torque().
   /// @throws std::invalid_argument for an unknown point, listing the known ones, and as arm_forces
   std::unique_ptr<const ArmForces> forces_at(const std::string& site, bool moment) const;
+  /// Makes torques of currents, by the gains of the robot's file.
+  /// @throws std::invalid_argument as tauext::make_torques()
+  void make_torques(Trace& trace) const;
   /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.
   Eigen::VectorXd home() const;
 

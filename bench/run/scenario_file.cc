@@ -2,18 +2,16 @@
 #include "bench/run/scenario_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "bench/score/degradation.h"
+#include "mjcf/import/json_object.h"
 #include "mjcf/scenarios/touch.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
@@ -22,79 +20,13 @@
 namespace tauext {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JsonObject::Json;
+using Object = JsonObject;
 
 template <class... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> words, Args&&... args) {
   throw std::invalid_argument(fmt::format(words, std::forward<Args>(args)...));
 }
-
-// an object of the file, of which every key is known
-class Object {
- public:
-  Object(const Json& json, std::string where, std::initializer_list<const char*> known)
-      : json_(json), where_(std::move(where)) {
-    if (!json.is_object()) fail("{} is {}, no object", where_, json.dump());
-    for (const auto& [key, value] : json.items()) {
-      if (std::find(known.begin(), known.end(), key) == known.end())
-        fail("{}: unknown key \"{}\"; known: {}", where_, key, fmt::join(known, ", "));
-    }
-  }
-
-  const std::string& where() const { return where_; }
-  bool has(const char* key) const { return json_.contains(key); }
-  const Json& at(const char* key) const {
-    if (!has(key)) fail("{} has no \"{}\"", where_, key);
-    return json_.at(key);
-  }
-  double number(const char* key, double least, double most) const {
-    const Json& j = at(key);
-    const double x = j.is_number() ? j.get<double>() : std::nan("");
-    if (x >= least && x <= most) return x;
-    fail("{}: \"{}\" is {}, and must be {:g} to {:g}", where_, key, j.dump(), least, most);
-  }
-  double number_or(const char* key, double otherwise, double least, double most) const {
-    return has(key) ? number(key, least, most) : otherwise;
-  }
-  Eigen::VectorXd vector(const char* key, int n) const {
-    const Json& j = at(key);
-    Eigen::VectorXd v(n);
-    bool good = j.is_array() && static_cast<int>(j.size()) == n;
-    for (int i = 0; good && i < n; ++i) {
-      good = j[static_cast<std::size_t>(i)].is_number();
-      if (good) v[i] = j[static_cast<std::size_t>(i)].get<double>();
-    }
-    if (!good || !(v.cwiseAbs().maxCoeff() <= kMost))
-      fail("{}: \"{}\" is {}, and must be {} numbers", where_, key, j.dump(), n);
-    return v;
-  }
-  std::string text(const char* key, const std::string& otherwise) const {
-    if (!has(key)) return otherwise;
-    if (!at(key).is_string()) fail("{}: \"{}\" is {}, no text", where_, key, at(key).dump());
-    return at(key).get<std::string>();
-  }
-  bool flag(const char* key) const {
-    if (!has(key)) return false;
-    if (!at(key).is_boolean())
-      fail("{}: \"{}\" is {}, no true or false", where_, key, at(key).dump());
-    return at(key).get<bool>();
-  }
-  // look(item, where it is) for each of a list
-  template <class Look>
-  void each(const char* key, Look&& look) const {
-    if (!has(key)) return;
-    const Json& list = at(key);
-    if (!list.is_array()) fail("{}: \"{}\" is {}, no list", where_, key, list.dump());
-    for (std::size_t i = 0; i < list.size(); ++i)
-      look(list[i], fmt::format("{}: {} {}", where_, key, i + 1));
-  }
-
-  static constexpr double kMost = 1e9;
-
- private:
-  const Json& json_;
-  std::string where_;
-};
 
 struct Wave {
   int joint;

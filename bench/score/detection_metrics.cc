@@ -41,6 +41,7 @@ DetectionScore detection_score(const std::vector<double>& t,
     if (first < end) {
       ++s.detected;
       s.delay = std::fmax(s.delay, t[first] - t[k]);
+      s.delays.push_back(t[first] - t[k]);
     }
     k = end - 1;
   }
@@ -71,7 +72,8 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];
 }
 
-double poisson_upper(int count) {
+// the mean with which at most `count` events are seen in this share of all trials
+static double poisson_mean(int count, double share) {
   // P(at most `count`) falls with the mean
   const auto probability = [&](double mean) {
     double sum = 0;
@@ -79,12 +81,28 @@ double poisson_upper(int count) {
       sum += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
     return sum;
   };
-  double least = count + 1e-9, most = count + 10 + 5 * std::sqrt(count + 1.);
+  double least = 0, most = count + 20 + 6 * std::sqrt(count + 1.);
   for (int i = 0; i < 60; ++i) {
     const double mean = (least + most) / 2;
-    (probability(mean) > 0.05 ? least : most) = mean;
+    (probability(mean) > share ? least : most) = mean;
   }
   return least;
+}
+
+double poisson_upper(int count) {
+  return poisson_mean(count, 0.05);
+}
+
+Interval count_interval(int count) {
+  return {count == 0 ? 0 : poisson_mean(count - 1, 0.975), poisson_mean(count, 0.025)};
+}
+
+Interval share_interval(int found, int all) {
+  if (all == 0) return {0, 1};
+  constexpr double z = 1.959963985;
+  const double n = all, p = found / n, middle = p + z * z / (2 * n), scale = 1 + z * z / n;
+  const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+  return {std::max((middle - half) / scale, 0.), std::min((middle + half) / scale, 1.)};
 }
 
 }  // namespace metrics

@@ -23,6 +23,7 @@ inline constexpr double kGrace = 0.2;
 struct DetectionScore {
   int collisions = 0;                ///< that the truth has
   int detected = 0;                  ///< of these
+  std::vector<double> delays;        ///< [s] of these
   int false_alarms = 0;              ///< marks outside of them
   double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
   double false_alarms_per_hour = 0;  ///< [1/h]
@@ -38,6 +39,18 @@ double overtravel(const Trace& trace);
 
 /// [N] the largest force of a contact; 0 without a sample.
 double peak(const std::vector<double>& force);
+
+/// An interval.
+struct Interval {
+  double low = 0;   ///< in the unit of what it is of
+  double high = 0;  ///< likewise
+};
+
+/// The share of which `found` of `all` leave 95 % likely (Wilson 1927); 0 to 1 for none.
+Interval share_interval(int found, int all);
+
+/// The mean number of events of which `count` leave 95 % likely (Garwood 1936).
+Interval count_interval(int count);
 
 /// Smallest of the values that at least `share` of them do not exceed; NaN without a value.
 double quantile(std::vector<double> values, double share);

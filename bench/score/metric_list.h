@@ -28,10 +28,20 @@ enum class Metric : std::uint8_t {
   kFinal,
   kLag,
   kBandwidth,
+  kFloor,
+  kDrift,
+  kMakerCorrelation,
+  kMakerGain,
+  kMakerLag,
   kDelay,
+  kDelayMedian,
   kRecall,
+  kRecallLow,
+  kRecallHigh,
   kFalseAlarms,
   kFalseAlarmsPerHour,
+  kFalseAlarmsLow,
+  kFalseAlarmsHigh,
   kPeakScore,
   kMeanScore,
   kContactShare,
@@ -85,7 +95,7 @@ using enum Metric;
 using enum Better;
 using enum WorstJoint;
 using enum MetricRow::Use;
-inline constexpr std::array kRows{
+inline constexpr std::array kRowsOfEstimates{
     MetricRow{kRmse, "rmse_Nm", "rmse", "N m", 3, kLess, kLargest, kUsual | kGateJoints,
               "The root of the mean squared error of the estimate."},
     MetricRow{kBias, "bias_Nm", "bias", "N m", 3, kLess, kLargest, kGate,
@@ -112,14 +122,37 @@ inline constexpr std::array kRows{
     MetricRow{kBandwidth, "bandwidth_rad_s", "bandwidth", "rad/s", 1, kMore, kSmallest,
               kTable | kGate | kNeverIsBest,
               "The frequency at which the estimate falls to 71 % (-3 dB) of the load."},
+    MetricRow{kFloor, "floor_Nm", "floor", "N m", 3, kLess, kLargest, kTable | kStar,
+              "Of a log: the root mean square of the estimate while nothing touches."},
+    MetricRow{kDrift, "drift_Nm", "drift", "N m", 3, kLess, kLargest, kTable | kStar,
+              "Of a log: how much the estimate's mean differs between its first and last third."},
+    MetricRow{kMakerCorrelation, "maker_correlation", "maker's", "corr.", 3, kMore, kSmallest,
+              kTable, "The correlation of the estimate with that of the robot's maker."},
+    MetricRow{kMakerGain, "maker_gain", "maker's", "gain", 3, kNeither, kNone, kTable,
+              "By what the estimate has to be multiplied to be closest to that of the maker."},
+    MetricRow{kMakerLag, "maker_lag_s", "maker's", "lag s", 3, kNeither, kNone, kTable,
+              "How much the estimate comes after that of the maker; negative: before it."},
+};
+
+inline constexpr std::array kRowsOfMarks{
     MetricRow{kDelay, "delay_s", "delay", "s", 3, kLess, kNone, kUsual,
               "The longest time from the first contact of a collision to its mark."},
+    MetricRow{kDelayMedian, "delay_median_s", "median", "s", 3, kLess, kNone, kTable | kStar,
+              "The median of these times, over the labelled contacts of logs."},
     MetricRow{kRecall, "recall", "recall", "", 2, kMore, kNone, kGate,
               "The share of the collisions that were marked."},
+    MetricRow{kRecallLow, "recall_low", "from", "95 %", 2, kMore, kNone, kTable,
+              "The least share that the labelled contacts of logs leave likely (Wilson, 95 %)."},
+    MetricRow{kRecallHigh, "recall_high", "to", "95 %", 2, kMore, kNone, kTable,
+              "The largest such share."},
     MetricRow{kFalseAlarms, "false_alarms", "false", "alarms", 0, kLess, kNone, kUsual,
               "The number of marks that belong to no collision."},
     MetricRow{kFalseAlarmsPerHour, "false_alarms_per_hour", "false alarms", "1/h", 1, kLess, kNone,
               0, "The number of marks in an hour that belong to no collision."},
+    MetricRow{kFalseAlarmsLow, "false_alarms_per_hour_low", "from", "1/h", 1, kLess, kNone, kTable,
+              "The least number in an hour that logs leave likely (Garwood, 95 %)."},
+    MetricRow{kFalseAlarmsHigh, "false_alarms_per_hour_high", "to", "1/h", 1, kLess, kNone, kTable,
+              "The largest such number."},
     MetricRow{kPeakScore, "peak_score", "peak score", "", 2, kNeither, kNone, kGate,
               "The largest score of the detector, which marks from 1 on."},
     MetricRow{kMeanScore, "mean_score", "mean score", "", 3, kNeither, kNone, kGate,
@@ -141,10 +174,18 @@ inline constexpr std::array kRows{
     MetricRow{kFailed, "failed", "failed", "", 0, kLess, kNone, kGate | kOneSeedIsWorse,
               "1 for an entry that failed, else 0."},
 };
+
+template <std::size_t N, std::size_t M>
+constexpr auto together(const std::array<MetricRow, N>& a, const std::array<MetricRow, M>& b) {
+  std::array<MetricRow, N + M> all;
+  for (std::size_t i = 0; i < N; ++i) all[i] = a[i];
+  for (std::size_t i = 0; i < M; ++i) all[N + i] = b[i];
+  return all;
+}
 }  // namespace detail
 
 /// The list.
-inline constexpr auto kMetrics = detail::kRows;
+inline constexpr auto kMetrics = detail::together(detail::kRowsOfEstimates, detail::kRowsOfMarks);
 
 /// Where something stands in the arm's way, so many times the tolerance.
 inline constexpr double kOfContacts = 1000;

@@ -66,13 +66,15 @@ bool failed(const Row& r) {
   return !r.score.error.empty();
 }
 
-// of the table's metrics those that some row has
-std::vector<const MetricRow*> columns_of(const std::vector<Row>& rows) {
+// of the table's metrics, and of these, those that some row has
+std::vector<const MetricRow*> columns_of(const std::vector<Row>& rows,
+                                         const std::vector<Metric>& also) {
   std::vector<const MetricRow*> columns;
   for (const MetricRow& m : kMetrics) {
     const auto has = [&](const Row& r) { return !failed(r) && r.score.get(m.metric); };
-    if (m.is(MetricRow::kTable) && std::any_of(rows.begin(), rows.end(), has))
-      columns.push_back(&m);
+    const bool wanted =
+        m.is(MetricRow::kTable) || std::count(also.begin(), also.end(), m.metric) > 0;
+    if (wanted && std::any_of(rows.begin(), rows.end(), has)) columns.push_back(&m);
   }
   return columns;
 }
@@ -113,8 +115,9 @@ const char* text_of(WorstJoint j) {
 
 }  // namespace
 
-std::string format_table(const std::vector<Row>& rows, TableFormat format) {
-  const std::vector<const MetricRow*> metrics = columns_of(rows);
+std::string format_table(const std::vector<Row>& rows, TableFormat format,
+                         const std::vector<Metric>& also) {
+  const std::vector<const MetricRow*> metrics = columns_of(rows, also);
   std::vector<TableWriter::Column> columns = {
       {.title = by_keys(format) ? "entry" : "robot/scenario/estimator", .left = true}};
   for (const MetricRow* m : metrics) columns.push_back(column_of(*m, format));
@@ -140,14 +143,14 @@ std::string format_table(const std::vector<Row>& rows, TableFormat format) {
   return table.format(format);
 }
 
-std::string table_legend(const std::vector<Row>& rows) {
+std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>& also) {
   std::string out =
       "Each row shows its worst joint. * is the best of a group; zero, truth and delayed_truth do "
       "not compete.\n";
   if (std::any_of(rows.begin(), rows.end(),
                   [](const Row& r) { return r.entry.has_robot() && r.entry.robot().slides(); }))
     out += "Where a joint slides, N m is N and rad is m.\n";
-  for (const MetricRow* m : columns_of(rows)) {
+  for (const MetricRow* m : columns_of(rows, also)) {
     out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
   }
   return out;

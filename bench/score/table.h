@@ -22,10 +22,12 @@ struct Row {
 /// best of a group's column (baselines do not compete), "never" for a metric without a value. A
 /// failed entry says why, as "FAILED: why" or in a column of its own. CSV and JSON name the columns
 /// by the metrics' keys.
-std::string format_table(const std::vector<Row>& rows, TableFormat format = TableFormat::kText);
+/// @param also columns that the suite's table does not have
+std::string format_table(const std::vector<Row>& rows, TableFormat format = TableFormat::kText,
+                         const std::vector<Metric>& also = {});
 
 /// What the columns of format_table(rows) mean, a line each.
-std::string table_legend(const std::vector<Row>& rows);
+std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>& also = {});
 
 /// The list of metrics as a table.
 std::string list_of_metrics(TableFormat format = TableFormat::kMarkdown);

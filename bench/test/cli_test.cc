@@ -14,7 +14,7 @@ namespace {
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
   for (const std::string name :
-       {"tauext-bench", "tauext-detect", "tauext-identify", "tauext-import", "tauext-live",
+       {"tauext-bench", "tauext-detect", "tauext-calibrate", "tauext-import", "tauext-live",
         "tauext-record", "tauext-render", "tauext-replay", "tauext-score"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
@@ -49,7 +49,7 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
 
 TEST_F(Programs, WrongFlagsExitWith2) {
   for (const std::string command :
-       {"tauext-bench --nonsense", "tauext-identify", "tauext-bench --help > /dev/full",
+       {"tauext-bench --nonsense", "tauext-calibrate", "tauext-bench --help > /dev/full",
         "tauext-bench --reliability --benchmark_out=r.json", "tauext-bench --benchmark_nonsense=1",
         "tauext-record", "tauext-replay", "tauext-bench --benchmark_format=csv",
         "tauext-bench --benchmark_out_format=csv",

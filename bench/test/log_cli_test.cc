@@ -45,7 +45,7 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
            {"log.csv", replay + "wallmobot3 --out hard.csv"},
            {"log.csv", replay + "wallmobot3 --out soft.csv"},
            {"arm.xml", replay + "arm.xml --out arm.xml"},
-           {"one.csv", "tauext-identify one.csv --out one.csv"},
+           {"one.csv", "tauext-calibrate one.csv --out one.csv"},
            {"log.lcm", live + "'file://log.lcm?mode=w'"},
            {"t.json", live + "'file://t.json?mode=w' --detector threshold --thresholds t.json"},
            {"t.json",
@@ -69,18 +69,18 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
 TEST_F(Programs, IdentifyPrintsTheParametersAndWritesThem) {
   run("tauext-record --robot testbed1 --scenario identify --loadcell noise=1 --out log.csv");
   const Outcome o = run(
-      "tauext-identify --terms inertia,gravity_cos,gravity_sin,coulomb log.csv --out theta.csv");
+      "tauext-calibrate --terms inertia,gravity_cos,gravity_sin,coulomb log.csv --out theta.csv");
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(o.says("condition number")) << o.text;
   EXPECT_TRUE(o.says("gravity_cos  kg m      11.66")) << o.text;
   const std::string csv = content("theta.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "term,unit,estimate,std_error,robust_std_error");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
-  const Outcome term = run("tauext-identify log.csv --terms magic --out t2.csv");
+  const Outcome term = run("tauext-calibrate log.csv --terms magic --out t2.csv");
   EXPECT_EQ(term.code, 2);
   EXPECT_TRUE(term.says("unknown term 'magic'; known: inertia, gravity_cos")) << term.text;
   run("tauext-record --robot wallmobot3 --scenario free --out three.csv");
-  const Outcome three = run("tauext-identify three.csv --out t2.csv");
+  const Outcome three = run("tauext-calibrate three.csv --out t2.csv");
   EXPECT_EQ(three.code, 2);
   EXPECT_TRUE(three.says("the log has 3 joints")) << three.text;
   EXPECT_FALSE(exists("t2.csv"));

@@ -28,7 +28,9 @@ struct RandomTree {
       j.inertia = half * half.transpose() + 0.1 * Mat<3>::Identity();
       j.armature = 0.2;
       j.viscous = 0.3;
+      j.viscous_skew = number(0.3);
       j.dry = 0.4;
+      j.offset = number(1);
       j.v_s = 0.5;
     }
     drho = Drho::Identity() + 0.2 * Drho::NullaryExpr([&] { return number(1); });

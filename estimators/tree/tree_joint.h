@@ -28,7 +28,9 @@ struct TreeJoint {
   Mat<3> inertia = Mat<3>::Zero();       ///< [kg m^2] about the center of mass
   double armature = 0;                   ///< [kg m^2] of the rotor, as the joint feels it
   double viscous = 0;                    ///< [N m s/rad] friction by speed
+  double viscous_skew = 0;               ///< [N m s/rad] more of it where qd > 0, less where qd < 0
   double dry = 0;                        ///< [N m] Coulomb friction
+  double offset = 0;                     ///< [N m] that tau is always too large by
   double v_s = 0.01;                     ///< [rad/s] of CoulombFriction
 };
 
@@ -53,6 +55,8 @@ inline void check_joint(const TreeJoint& j, int i) {
           "its inertia must be finite and symmetric");
   require(j.armature >= 0 && j.viscous >= 0 && j.dry >= 0 && j.v_s > 0,
           "armature and friction must be 0 or more, v_s above 0");
+  require(std::abs(j.viscous_skew) <= j.viscous, "viscous_skew must not exceed viscous");
+  require(std::isfinite(j.offset), "its offset must be finite");
 }
 
 }  // namespace detail

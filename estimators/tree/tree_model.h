@@ -218,11 +218,13 @@ class TreeModel {
     for (int i = 0; i < M; ++i) {
       const TreeJoint& j = p_.joints[static_cast<std::size_t>(i)];
       using std::tanh;
-      F[i] = Scalar(j.viscous) * rate[i], slope[i] = Scalar(j.viscous);
-      if (!(j.dry > 0)) continue;
+      F[i] = Scalar(j.viscous) * rate[i] + Scalar(j.offset), slope[i] = Scalar(j.viscous);
+      if (!(j.dry > 0) && j.viscous_skew == 0) continue;
       const Scalar share = tanh(rate[i] / Scalar(j.v_s));
-      F[i] += Scalar(j.dry) * share;
-      slope[i] += Scalar(j.dry / j.v_s) * (Scalar(1) - share * share);
+      const Scalar level = Scalar(j.dry) + Scalar(j.viscous_skew) * rate[i];
+      F[i] += level * share;
+      slope[i] +=
+          Scalar(j.viscous_skew) * share + level * Scalar(1 / j.v_s) * (Scalar(1) - share * share);
     }
     return F;
   }

@@ -66,6 +66,7 @@ class Import {
     set_compiler(root);
     root.InsertNewChildElement("option")->SetAttribute("integrator", "RK4");
     add_motors(root);
+    detail::put_measured(root, options_.measured);
     tinyxml2::XMLPrinter printer;
     doc_.Print(&printer);
     out_.xml = printer.CStr();
@@ -176,6 +177,8 @@ class Import {
         if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
         meshes.insert(text(e, "mesh"));
       }
+      if (name_of(e) == "numeric" && !text(e, "name").starts_with(detail::kMeasured))
+        return drop(e, "numeric", out_.dropped);
       keep_attributes(e, attributes);
       return true;
     });

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "mjcf/import/measured_terms.h"
+
 namespace tauext {
 
 /// What becomes of a robot's file.
@@ -13,6 +15,12 @@ struct ImportOptions {
   /// A regular expression (ECMAScript): joints whose whole name matches are fixed where they are 0,
   /// with the mass behind them. None if it is empty.
   std::string lock;
+  MeasuredTerms measured;  ///< in the place of what the file says
+
+  /// Whether the file is to be taken as it is.
+  bool changes_nothing() const {
+    return lock.empty() && measured.joints.empty() && !measured.payload;
+  }
 };
 
 /// A text, and what of the file is not in it.

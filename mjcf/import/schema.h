@@ -44,6 +44,8 @@ inline constexpr Kept kKept[] = {
     {"weld", " name class active body1 body2 relpose anchor torquescale solref solimp "},
     {"contact", " "},
     {"exclude", " name body1 body2 "},
+    {"custom", " "},
+    {"numeric", " name size data "},
 };
 
 /// Of <equality><joint>, which is another element than a body's.
@@ -76,7 +78,8 @@ inline constexpr Kept kLeftOut[] = {
 /// Elements that show things, are about contacts, actuators or sensors, or have no part in the
 /// dynamics that we take: left out with all that is in them. Any other one is an error.
 inline constexpr std::string_view kLeftOutElements =
-    " visual statistic size custom sensor keyframe actuator deformable extension flag lengthrange "
+    " visual statistic size text tuple sensor keyframe actuator deformable extension flag "
+    "lengthrange "
     "camera light pair material texture hfield skin model spatial distance flex flexvert "
     "flexstrain "
     "general motor position velocity intvelocity damper cylinder muscle adhesion dcmotor plugin ";

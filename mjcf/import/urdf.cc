@@ -186,9 +186,22 @@ class Urdf {
       if (all == nullptr) all = mujoco_.InsertNewChildElement("equality");
       XMLElement& tie = *all->InsertNewChildElement("joint");
       tie.SetAttribute("joint1", name.c_str());
-      tie.SetAttribute("joint2", text(*mimic, "joint").c_str());
+      tie.SetAttribute("joint2", leader_of(*mimic, name).c_str());
       set(tie, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
     }
+  }
+
+  // that moves, and is another one
+  std::string leader_of(const XMLElement& mimic, const std::string& follower) const {
+    const std::string leader = text(mimic, "joint");
+    for (const XMLElement* j : joints_) {
+      if (leader != follower && text(*j, "name") == leader && text(*j, "type") != "fixed")
+        return leader;
+    }
+    throw std::runtime_error(one_line(
+        fmt::format("line {}: joint '{}': its <mimic> follows '{}', which is no other joint that "
+                    "moves",
+                    mimic.GetLineNum(), follower, leader)));
   }
 
   XMLElement& mujoco_;

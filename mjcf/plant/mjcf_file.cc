@@ -166,7 +166,7 @@ Model loaded(const std::string& path, const ImportOptions& options) {
   const bool urdf = is_urdf(path);
   const Model m =
       urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
-  if (m && options.lock.empty() && has_motors(*m)) return m;
+  if (m && options.changes_nothing() && has_motors(*m)) return m;
   const std::string first = one_line(error.data());
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});

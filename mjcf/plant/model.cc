@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/import/robot_file.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/robots.h"
@@ -63,8 +64,9 @@ Model load_robot(std::string_view name, std::string_view scene) {
 }
 
 Model load_mjcf(const std::string& path, const ImportOptions& options) {
-  claim_input(path);
-  return load_files({{"robot.mjb", compiled_mjcf(path, {}, options)}});
+  const RobotFile robot = robot_file(path, options);
+  claim_input(robot.path);
+  return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options)}});
 }
 
 void register_mjcf(const std::string& name, const std::string& path) {

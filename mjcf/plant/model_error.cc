@@ -9,6 +9,7 @@
 
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/mujoco_functions.h"
+#include "mjcf/mujoco/ties.h"
 
 namespace tauext {
 namespace {
@@ -62,8 +63,9 @@ Model with_errors(const Model& robot, const ModelError& e) {
       m.dof_damping[dof] += e.viscous;
       m.dof_armature[dof] += e.armature;
       if (e.friction == 0) continue;
-      // as stiff as the testbed's: full friction above some mrad/s
       m.dof_frictionloss[dof] += e.friction;
+      if ((m.opt.disableflags & kSimulated) != 0) continue;  // these say something else there
+      // as stiff as the testbed's: full friction above some mrad/s
       m.dof_solref[mjNREF * dof] = 0.002;
       m.dof_solimp[mjNIMP * dof] = m.dof_solimp[mjNIMP * dof + 1] = 0.9999;
     }

@@ -13,12 +13,24 @@
 namespace tauext {
 namespace {
 
-// to MuJoCo's passive forces; v_s stands where its own friction, switched off, has a constant
+// where MuJoCo's own dry friction, switched off, has its constants
+double& v_s_of(const mjModel& m, int dof) {
+  return m.dof_solref[mjNREF * dof];
+}
+double& offset_of(const mjModel& m, int dof) {
+  return m.dof_solimp[mjNIMP * dof];
+}
+double& viscous_skew_of(const mjModel& m, int dof) {
+  return m.dof_solimp[mjNIMP * dof + 1];
+}
+
+// to MuJoCo's passive forces
 void add_smooth_friction(const mjModel* m, mjData* d) {
   if ((m->opt.disableflags & kSimulated) == 0) return;
   for (int i = 0; i < m->nv; ++i) {
-    const CoulombFriction dry{m->dof_frictionloss[i], m->dof_solref[mjNREF * i]};
-    d->qfrc_passive[i] -= dry.torque(d->qvel[i]);
+    const double qd = d->qvel[i];
+    const CoulombFriction dry{m->dof_frictionloss[i] + viscous_skew_of(*m, i) * qd, v_s_of(*m, i)};
+    d->qfrc_passive[i] -= dry.torque(qd) + offset_of(*m, i);
   }
 }
 
@@ -37,8 +49,10 @@ Model simulated(const Model& model) {
   });
   const ArmTree tree = tree_of(model);
   return changed(model, [&](mjModel& m) {
-    for (int i = 0; i < m.nv; ++i)
-      m.dof_solref[mjNREF * i] = tree.joints[static_cast<std::size_t>(i)].v_s;
+    for (int i = 0; i < m.nv; ++i) {
+      const TreeJoint& j = tree.joints[static_cast<std::size_t>(i)];
+      v_s_of(m, i) = j.v_s, offset_of(m, i) = j.offset, viscous_skew_of(m, i) = j.viscous_skew;
+    }
     m.opt.integrator = mjINT_RK4;
     m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | mjDSBL_EQUALITY | kSimulated;
     const bool on_joints = std::all_of(m.actuator_trntype, m.actuator_trntype + m.nu,

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "mjcf/mujoco/layout.h"
+#include "mjcf/mujoco/measured.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
 #include "mjcf/trace/known.h"
@@ -174,6 +175,11 @@ Mat<3> inertia_at(const Vec<3>& r) {
   return r.squaredNorm() * Mat<3>::Identity() - r * r.transpose();
 }
 
+std::string plain_name(const mjModel& m, mjtObj kind, int id) {
+  const char* const name = mj_id2name(&m, kind, id);
+  return name == nullptr ? "" : name;
+}
+
 // the joints of a body, one behind the other; moves its place behind the last of them
 void add_joints(const mjModel& m, int body, Place& at, ArmTree& tree) {
   for (int k = 0; k < m.body_jntnum[body]; ++k) {
@@ -189,7 +195,11 @@ void add_joints(const mjModel& m, int body, Place& at, ArmTree& tree) {
     j.armature = m.dof_armature[dof];
     j.viscous = m.dof_damping[dof];
     j.dry = m.dof_frictionloss[dof];
+    const Measured also = measured(m, i);
+    j.offset = also.offset, j.viscous_skew = also.viscous_skew;
     tree.joints.push_back(j);
+    tree.names.push_back(plain_name(m, mjOBJ_JOINT, i));
+    tree.bodies.push_back(plain_name(m, mjOBJ_BODY, body));
     at = {i, Mat<3>::Identity(), -anchor};
   }
 }
@@ -243,6 +253,9 @@ ArmTree tree_of(const Model& model) {
   set_usual(m, tree);
   tree.friction_rate =
       together(ties_of(m), VectorXd::Map(m.dof_damping, m.nv).cwiseProduct(tree.mobility));
+  tree.gain.resize(tree.dof());
+  for (int i = 0; i < tree.dof(); ++i)
+    tree.gain[i] = measured(m, tree.leaders[static_cast<std::size_t>(i)]).gain;
   std::vector<Place> places(static_cast<std::size_t>(m.nbody));
   std::vector<Mass> masses(static_cast<std::size_t>(m.nv));
   for (int body = 1; body < m.nbody; ++body) {

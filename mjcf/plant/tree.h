@@ -30,6 +30,8 @@ inline constexpr double kQuickestFriction = 500;
 /// kQuickestFriction. Bodies without a joint belong to the body that carries them.
 struct ArmTree {
   std::vector<TreeJoint> joints;    ///< in the file's order
+  std::vector<std::string> names;   ///< of these joints; "" without one
+  std::vector<std::string> bodies;  ///< likewise, of those behind them, in whose axes they are
   Vec<3> gravity = Vec<3>::Zero();  ///< [m/s^2]
   Eigen::MatrixXd drho;             ///< drho/dq, rho being MuJoCo's
   Eigen::VectorXd rho0;             ///< [rad] or [m] rho at q = 0
@@ -48,6 +50,8 @@ struct ArmTree {
   Eigen::VectorXd mobility;
   /// [1/s] how fast damping stops each of MuJoCo's joints, with those that move with it.
   Eigen::VectorXd friction_rate;
+  /// [N m/A] of the drive of each coordinate; 0 if nobody knows
+  Eigen::VectorXd gain;
   Vec<3> base = Vec<3>::Zero();  ///< [m] the tree's origin in the world, whose axes it has
   /// Sites, and origins of bodies, that joints move; and kEndEffector.
   std::map<std::string, ArmPoint> points;

@@ -26,6 +26,7 @@ struct Arm {
   const char* lock;
 };
 constexpr Arm kArms[] = {{"arm6", "arm6.xml", ""},
+                         {"arm6_as_measured", "arm6.json", ""},
                          {"arm7", "arm7.xml", "finger.*"},
                          {"two_arms", "two_arms.urdf", ""},
                          {"arm7_with_gripper", "arm7.xml", ""}};  // a finger follows the other

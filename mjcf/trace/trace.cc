@@ -35,6 +35,22 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
   return s;
 }
 
+void make_torques(Trace& trace, const Eigen::VectorXd& gain) {
+  if (!trace.tau_is_current) return;
+  if (trace.dof() != gain.size())
+    throw std::invalid_argument(
+        fmt::format("the log has {} joints, and the robot {}", trace.dof(), gain.size()));
+  for (Eigen::Index i = 0; i < gain.size(); ++i) {
+    if (gain[i] != 0) continue;
+    throw std::invalid_argument(fmt::format(
+        "the log has currents, and nobody knows the gain of drive {} [N m/A]: it stands in the map "
+        "of columns, or in a robot file, where tauext-calibrate writes it",
+        i + 1));
+  }
+  trace.tau = gain.asDiagonal() * trace.tau;
+  trace.tau_is_current = false;
+}
+
 void write_csv(const Trace& trace, const std::string& path) {
   const Eigen::MatrixXd* const matrices[] = {&trace.q, &trace.qd, &trace.tau, &trace.tau_ext};
   AtomicFile file(path);

@@ -31,6 +31,7 @@ struct Trace {
   Eigen::MatrixXd tau_ext;            ///< [N m] true; no columns if unknown
   std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
   bool torque_at_instants = false;    ///< tau was read at t and does not hold (samples/options.h)
+  bool tau_is_current = false;        ///< tau is in A, and make_torques() has to be asked
   /// [N m] what the robot's own controller estimated, as a driver's log has it; no columns if
   /// unknown. Never written to a CSV.
   Eigen::MatrixXd tau_ext_of_driver;
@@ -58,6 +59,11 @@ struct Trace {
 
 /// The samples of these indices alone, in increasing order.
 Trace select_samples(const Trace& trace, const std::vector<int>& samples);
+
+/// Makes torques of a trace whose tau is in A, by these gains [N m/A]; else does nothing.
+/// @throws std::invalid_argument for another number of joints, and for a gain of 0, which nobody
+/// knows, saying where it may stand
+void make_torques(Trace& trace, const Eigen::VectorXd& gain);
 
 /// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to
 /// standard output if the path is "-". A tau read at instants is called tau_instant1... The file

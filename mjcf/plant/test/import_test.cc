@@ -198,6 +198,11 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
   ASSERT_EQ(arm.dof(), 4);
   EXPECT_LT((arm.drho.col(3) - (Eigen::VectorXd(5) << 0, 0, 0, 1, -2).finished()).norm(), 1e-15);
   EXPECT_LT((arm.rho0 - (Eigen::VectorXd(5) << 0, 0, 0, 0, .01).finished()).norm(), 1e-15);
+  for (const char* leader : {"joint='lifft'", "jiont='left'", "joint='right'"}) {
+    std::string astray = fingers;
+    astray.replace(astray.find("joint='left'/>"), 12, leader);
+    has(error(astray), "joint 'right': its <mimic> follows");
+  }
   has(error("<joint name='x' type='fixed'><parent link='tool'/><child link='none'/></joint>"),
       "joint 'x': its child 'none' is no link");
   has(error("<link name='alone'/>"), "2 links are no child");

@@ -111,6 +111,7 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
                              const std::string& path) const {
   if (order_.empty()) return;
   MappedQuantity ordered;
+  ordered.has_gain = m.has_gain;
   for (const int j : order_) {
     if (j > static_cast<int>(m.columns.size()))
       throw std::runtime_error(fmt::format("{}: [{}] has {} columns, and `order` names joint {}",
@@ -131,10 +132,7 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     MappedQuantity m{find(q.name, w, columns, path), {}};
     if (m.columns.empty()) continue;
     const std::size_t count = m.columns.size();
-    if (q.name == "current" && w.gain.empty())
-      throw std::runtime_error(
-          path +
-          ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
+    m.has_gain = !w.gain.empty();
     require_one_or_each(w.units, count, "unit", q.name, path);
     require_one_or_each(w.gain, count, "gain", q.name, path);
     require_one_or_each(w.sign, count, "sign", q.name, path);

@@ -29,7 +29,8 @@ inline constexpr Quantity kQuantities[] = {
      "velocity; without it q is filtered and differentiated"},
     {"tau", "Nm Nmm N", true, "torque of the link's side, held until the next sample"},
     {"tau_instant", "Nm Nmm N", true, "the same, read at t; instead of tau"},
-    {"current", "A mA", true, "of the drives; `gain` [N m/A] makes it tau_instant"},
+    {"current", "A mA", true,
+     "of the drives; `gain` [N m/A], or that of a robot file, makes it tau_instant"},
     {"tau_ext", "Nm Nmm N", true, "true external torque, sign of equation (3)"},
     {"driver", "Nm Nmm N", true, "the robot maker's own estimate of it, the same sign"},
     {"contact", "1", false, "label: not 0 while a collision acts"},
@@ -39,6 +40,7 @@ inline constexpr Quantity kQuantities[] = {
 struct MappedQuantity {
   std::vector<int> columns;  ///< from 0
   std::vector<double> gain;  ///< to SI units and the sign of equation (3)
+  bool has_gain = false;     ///< whether the map says one
 };
 
 /// Those of a recording, by their names.

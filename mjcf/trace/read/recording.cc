@@ -160,6 +160,9 @@ RecordingReader::~RecordingReader() = default;
 int RecordingReader::dof() const {
   return impl_->layout.dof;
 }
+bool RecordingReader::tau_is_current() const {
+  return impl_->layout.currents;
+}
 bool RecordingReader::torque_at_instants() const {
   return impl_->layout.instants;
 }
@@ -219,6 +222,7 @@ Trace read_recording(const std::string& path, const RecordingOptions& options, S
   trace.q = matrix(q), trace.qd = matrix(qd), trace.tau = matrix(tau);
   trace.tau_ext = matrix(tau_ext), trace.tau_ext_of_driver = matrix(driver);
   trace.torque_at_instants = reader.torque_at_instants();
+  trace.tau_is_current = reader.tau_is_current();
   return trace;
 }
 

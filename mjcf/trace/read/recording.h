@@ -45,6 +45,7 @@ class RecordingReader {
 
   int dof() const;                       ///< joints
   bool torque_at_instants() const;       ///< samples/options.h
+  bool tau_is_current() const;           ///< Trace::tau_is_current
   bool has_truth() const;                ///< whether it knows tau_ext
   bool has_driver() const;               ///< whether it knows the maker's estimate
   bool has_contact() const;              ///< whether it has labels

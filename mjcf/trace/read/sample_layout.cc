@@ -75,6 +75,7 @@ class LayoutMaker {
             "{}: has {}, and another torque, too: the map must choose one of them", path_, name));
       at = add(name);
       l_.instants = std::string_view(name) != "tau";
+      l_.currents = std::string_view(name) == "current" && !find(name)->has_gain;
     }
     if (at < 0) fail_missing(path_, "tau", columns_);
     return at;

@@ -18,6 +18,7 @@ struct SampleLayout {
   int q = -1, qd = -1, tau = -1, tau_ext = -1, driver = -1, contact = -1;
   int size = 1;                              ///< numbers
   bool instants = false;                     ///< tau was read at t
+  bool currents = false;                     ///< tau is in A: of drives whose gains are not known
   std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up
   std::vector<std::pair<int, double>> rest;  ///< column and gain of each of the others
 

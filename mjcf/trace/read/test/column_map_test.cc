@@ -109,12 +109,22 @@ TEST_F(Columns, OfRtdeWantTheGainsOfTheDrives) {
   for (int k = 0; k < 4; ++k)
     rows += fmt::format("{} 0.1 -1.5707963267948966 1e-05 0 0 0 1 2 3 4 5 6 1 -2 3 4 5 6 True\r\n",
                         100 + 0.002 * k);
-  expect_says(error_of([&] { read(head + rows, "ur_rtde"); }), "[current] needs `gain` [N m/A]");
+  Trace currents = read(head + rows, "ur_rtde");
+  EXPECT_TRUE(currents.tau_is_current);
+  EXPECT_EQ(currents.tau(1, 0), -2);
+  Eigen::VectorXd gain = Eigen::VectorXd::Constant(6, 10);
+  gain[3] = 0;
+  expect_says(error_of([&] { make_torques(currents, gain); }), "the gain of drive 4 [N m/A]");
+  gain[3] = 9;
+  make_torques(currents, gain);
+  EXPECT_FALSE(currents.tau_is_current);
+  EXPECT_EQ(currents.tau(1, 0), -20);
   const std::string map = "preset = 'ur_rtde'\n[current]\ngain = [10, 10.7, 8.5, 9, 9.5, 10]\n";
   const Trace t = read_by(head + rows, map);
   ASSERT_EQ(t.size(), 4);
   EXPECT_EQ(t.q(1, 3), -1.5707963267948966);
   EXPECT_NEAR(t.tau(1, 0), -2 * 10.7, 1e-12);
+  EXPECT_FALSE(t.tau_is_current);
   EXPECT_TRUE(t.torque_at_instants);
   EXPECT_NEAR(regularity_.step, 0.002, 1e-12);
   EXPECT_EQ(regularity_.repeats, 3);

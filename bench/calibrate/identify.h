@@ -9,8 +9,8 @@
 /// term goes through the same mean (tau as it is sampled; the f_i by the trapezium rule).
 /// The terms stay in phase, and nothing is lost to a filter. Windows do not overlap; that
 /// neighbours share a velocity at their common end hardly correlates their errors. A window is left
-/// out where the joint is slower than `min_speed`, where nobody knows dry friction, or across a gap
-/// in the log.
+/// out where the joint is slower than `min_speed`, where nobody knows dry friction, where it is
+/// touched, or across a gap in the log.
 ///
 /// (i) is solved by linear least squares over all windows; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2
 /// the residuals' variance, which holds if they are white noise. residuals.h says whether they are,
@@ -22,7 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/logs/residuals.h"
+#include "bench/calibrate/least_squares.h"
+#include "bench/calibrate/residuals.h"
+#include "bench/calibrate/windows.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
@@ -41,21 +43,6 @@ const std::vector<Term>& terms();
 
 /// Terms by name. @throws std::invalid_argument for an unknown one, listing the known ones
 std::vector<Term> find_terms(const std::vector<std::string>& names);
-
-/// How a log is cut into windows.
-struct Windows {
-  double length = 0.1;      ///< [s] longer: less noise, less of a fast motion
-  double min_speed = 0.02;  ///< [rad/s] above the slip at which dry friction is full, and the noise
-};
-
-/// A parameter and how well the motion shows it.
-struct Parameter {
-  double theta = 0;       ///< in the term's unit
-  double sigma = 0;       ///< standard error, in the same unit, if the residuals are white
-  double robust = 0;      ///< standard error whatever they are
-  double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
-  double own = 0;         ///< [1] share of the column that the others cannot imitate, 0 to 1
-};
 
 /// What a log says about a model.
 struct Identification {

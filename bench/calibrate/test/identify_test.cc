@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/logs/identify.h"
+#include "bench/calibrate/identify.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/logs/residuals.h"
+#include "bench/calibrate/residuals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/calibrate/arm_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "bench/calibrate/robot_file_writer.h"
+#include "bench/calibrate/weighing.h"
+#include "mjcf/import/robot_file.h"
+#include "mjcf/plant/simulated.h"
+#include "mjcf/record.h"
+
+namespace tauext::test {
+namespace {
+
+constexpr const char* kArm6 = TAUEXT_EXAMPLES "/arm6.xml";
+
+// what its file does not know of one of its joints
+MeasuredJoint some_joint(int i) {
+  MeasuredJoint j;
+  j.armature = 0.05 + 0.02 * i;
+  j.coulomb = 2 - 0.3 * i;
+  j.viscous = 3 - 0.4 * i;
+  j.viscous_skew = 0.1 * i;
+  j.offset = 0.4 - 0.15 * i;
+  return j;
+}
+
+const std::vector<std::string>& joint_names() {
+  static const std::vector<std::string> all = {"shoulder_pan", "shoulder_lift", "elbow",
+                                               "wrist1",       "wrist2",        "wrist3"};
+  return all;
+}
+
+MeasuredTerms some_terms() {
+  MeasuredTerms terms;
+  for (int i = 0; i < 6; ++i)
+    terms.joints[joint_names()[static_cast<std::size_t>(i)]] = some_joint(i);
+  return terms;
+}
+
+MeasuredTerms with_payload(double mass, const Eigen::Vector3d& c) {
+  MeasuredTerms terms = some_terms();
+  terms.payload = {"wrist3", mass, {c[0], c[1], c[2]}};
+  return terms;
+}
+
+Model arm6(const MeasuredTerms& terms) {
+  return simulated(load_mjcf(kArm6, {"", terms}));
+}
+
+// joints that swing together, each at frequencies of its own
+Trace swinging(const Model& arm, double duration, double noise, std::uint64_t seed = 1) {
+  Scenario s = quiet();
+  s.duration = duration;
+  s.start_on_reference = true;
+  s.reference = [](double t, int i) {
+    const Reference slow = sine_motion(0.7, 0.61 + 0.17 * i, t),
+                    fast = sine_motion(0.25, 1.9 + 0.31 * i, t + i);
+    const double home[] = {0, -0.8, 0.9, 0.4, 0.5, 0};
+    return Reference{home[i] + slow.q + fast.q, slow.qd + fast.qd, slow.qdd + fast.qdd};
+  };
+  Sensors sensors;
+  sensors.velocity_noise = noise;
+  sensors.loadcell_noise = 20 * noise;
+  sensors.seed = seed;
+  return record(arm, s, sensors);
+}
+
+const CalibratedTerm& term(const CalibratedJoint& joint, const std::string& name) {
+  return *std::find_if(joint.terms.begin(), joint.terms.end(),
+                       [&](const CalibratedTerm& t) { return t.name == name; });
+}
+
+double truth(int joint, const std::string& name) {
+  const MeasuredJoint j = some_joint(joint);
+  return name == "armature"       ? *j.armature
+         : name == "coulomb"      ? *j.coulomb
+         : name == "viscous"      ? *j.viscous
+         : name == "viscous_skew" ? *j.viscous_skew
+                                  : *j.offset;
+}
+
+const CalibrateOptions kAll = {{"armature", "coulomb", "viscous", "viscous_skew", "offset"}, {}};
+
+TEST(ArmCalibration, FindsWhatASimulatedArmHas) {
+  const Trace log = swinging(arm6(some_terms()), 30, 0);
+  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log}, kAll);
+  ASSERT_EQ(joints.size(), 6u);
+  for (int i = 0; i < 6; ++i) {
+    const CalibratedJoint& j = joints[static_cast<std::size_t>(i)];
+    EXPECT_EQ(j.name, joint_names()[static_cast<std::size_t>(i)]);
+    for (const CalibratedTerm& t : j.terms)
+      EXPECT_NEAR(t.value, truth(i, t.name), 0.01 * (0.1 + std::abs(truth(i, t.name))))
+          << j.name << " " << t.name;
+    EXPECT_LT(j.after, 0.01) << j.name;
+    EXPECT_GT(j.before, 0.3) << j.name;
+  }
+}
+
+TEST(ArmCalibration, ItsErrorsCoverTheTruth) {
+  int within = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Trace log = swinging(arm6(some_terms()), 30, 3e-3, seed);
+    for (const CalibratedJoint& j : calibrate_arm(tree_of(load_mjcf(kArm6)), {log}, kAll)) {
+      const int i = static_cast<int>(std::find(joint_names().begin(), joint_names().end(), j.name) -
+                                     joint_names().begin());
+      for (const CalibratedTerm& t : j.terms) {
+        EXPECT_LT(t.error, 0.1 + 0.1 * std::abs(t.value)) << j.name << " " << t.name;
+        ++all;
+        within += std::abs(t.value - truth(i, t.name)) < 3 * t.error;
+      }
+      EXPECT_NEAR(j.held_out, j.after, 0.1 * j.after) << j.name;
+    }
+  }
+  EXPECT_GE(within, all * 95 / 100) << all;
+}
+
+TEST(ArmCalibration, CurrentsGiveTheGainsOfDrives) {
+  Trace log = swinging(arm6(some_terms()), 30, 1e-3);
+  Eigen::VectorXd gain(6);
+  gain << 12, 11, 9, 8, -10, 7;
+  log.tau = gain.cwiseInverse().asDiagonal() * log.tau;
+  log.tau_is_current = true;
+  const ArmTree arm = tree_of(load_mjcf(kArm6));
+  try {
+    calibrate_arm(arm, {log}, kAll);
+    FAIL() << "the last joint carries nothing";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("the gain of its drive cannot be seen"), std::string::npos)
+        << e.what();
+  }
+  const ArmTree heavy = tree_of(load_mjcf(kArm6, {"", with_payload(4, {0, 0.1, 0.3})}));
+  log = swinging(arm6(with_payload(4, {0, 0.1, 0.3})), 30, 1e-3);
+  log.tau = gain.cwiseInverse().asDiagonal() * log.tau;
+  log.tau_is_current = true;
+  const auto joints = calibrate_arm(heavy, {log}, kAll);
+  for (int i = 0; i < 6; ++i) {
+    const CalibratedJoint& j = joints[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(j.gain, gain[i], std::max(4 * j.gain_error, 1e-3)) << j.name;
+    EXPECT_LT(j.gain_error, 0.1) << j.name;
+    EXPECT_NEAR(term(j, "coulomb").value, *some_joint(i).coulomb, 0.05) << j.name;
+  }
+}
+
+TEST(ArmCalibration, AScaleIsSeenByWeightAlone) {
+  Trace log = swinging(arm6(some_terms()), 30, 1e-3);
+  log.tau /= 1.1;  // a sensor that reads too little
+  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log});
+  EXPECT_NEAR(joints[1].scale, 1.1, 0.01);
+  EXPECT_LT(joints[1].scale_error, 0.01);
+  EXPECT_EQ(joints[5].scale, 0);  // which carries nothing
+}
+
+TEST(ArmCalibration, SaysWhatIsMissing) {
+  const Trace log = swinging(arm6(some_terms()), 30, 1e-4);
+  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log});  // without viscous_skew
+  ASSERT_FALSE(joints[4].missing.empty());
+  EXPECT_NE(joints[4].missing[0].name.find("viscous_skew"), std::string::npos);
+}
+
+TEST(ArmCalibration, RefusesWhatItCannotTell) {
+  const ArmTree arm = tree_of(load_mjcf(kArm6));
+  const auto error_of = [&](const ArmTree& a, const std::vector<Trace>& logs,
+                            const CalibrateOptions& o) -> std::string {
+    try {
+      calibrate_arm(a, logs, o);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "nothing is wrong";
+  };
+  Trace log = swinging(arm6(some_terms()), 3, 0);
+  EXPECT_NE(error_of(arm, {log}, {{"magic"}, {}}).find("unknown term 'magic'"), std::string::npos);
+  EXPECT_NE(error_of(arm, {}, {}).find("no recording"), std::string::npos);
+  log.contact.assign(static_cast<std::size_t>(log.size()), 1);
+  EXPECT_NE(error_of(arm, {log}, {}).find("joint 1 'shoulder_pan': 0 usable windows"),
+            std::string::npos);
+  EXPECT_NE(error_of(tree_of(load_robot("wallmobot3")), {log}, {}).find("mix its joints"),
+            std::string::npos);
+}
+
+TEST(Weighing, FindsMassAndCenter) {
+  const ArmTree arm = tree_of(load_mjcf(kArm6, {"", some_terms()}));
+  const Eigen::Vector3d c(0.03, 0.12, -0.02);
+  const Trace loaded = swinging(arm6(with_payload(1.7, c)), 30, 1e-3),
+              empty = swinging(arm6(some_terms()), 30, 1e-3, 2);
+  const Weighing w = weigh(arm, {loaded}, {empty});
+  EXPECT_EQ(w.body, "wrist3");
+  EXPECT_NEAR(w.payload.mass, 1.7, std::max(3 * w.payload.mass_error, 1e-3));
+  EXPECT_LT(w.payload.mass_error, 0.02);
+  EXPECT_NEAR(w.empty.mass, 0, 3 * w.empty.mass_error);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(w.center[i], c[i], 3 * w.center_error[i] + 1e-3) << i;  // it is no point
+    EXPECT_LT(w.center_error[i], 0.01) << i;
+  }
+}
+
+TEST(RobotFile, WhatWasFoundIsWhatIsRead) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "tauext_written_robot.json").string();
+  const Trace log = swinging(arm6(some_terms()), 10, 0);
+  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log}, kAll);
+  Weighing w;
+  w.body = "wrist3";
+  w.payload.mass = 1.5;
+  w.center = {0.01, 0.02, 0.03};
+  std::vector<std::string> said;
+  std::ofstream(path) << robot_file_text({kArm6, "", joints, &w, {"log.csv"}}, path, said);
+  EXPECT_TRUE(said.empty());
+  const ArmTree read = tree_of(load_mjcf(path)), arm = tree_of(load_mjcf(kArm6));
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(read.joints[i].dry, term(joints[i], "coulomb").value, 1e-5);
+    EXPECT_NEAR(read.joints[i].viscous_skew, term(joints[i], "viscous_skew").value, 1e-5);
+    EXPECT_NEAR(read.joints[i].offset, term(joints[i], "offset").value, 1e-5);
+  }
+  EXPECT_NEAR(read.joints[5].mass, arm.joints[5].mass + 1.5, 1e-9);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace tauext::test

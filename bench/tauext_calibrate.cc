@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-calibrate: what nobody's file knows of an arm, from recordings.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bench/calibrate/arm_calibration.h"
+#include "bench/calibrate/calibration_report.h"
+#include "bench/calibrate/identify.h"
+#include "bench/calibrate/robot_file_writer.h"
+#include "bench/calibrate/weighing.h"
+#include "bench/logs/read_log.h"
+#include "bench/program/program.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
+
+namespace {
+
+using namespace tauext;
+
+struct Flags {
+  std::vector<std::string> logs, loaded, terms;
+  std::string channel, columns, robot, lock, out, format = "text";
+  Windows windows;
+  bool list = false;
+};
+
+void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("logs", f.logs, "recordings without contact: CSV, .npy, .npz, .db3 or LCM");
+  app.add_option("--robot", f.robot,
+                 "its file of MJCF, URDF or ours; else a log of one joint is identified")
+      ->type_name("FILE");
+  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX")
+      ->check(not_empty);
+  app.add_option("--out,-o", f.out,
+                 "robot file (.json) to write, or CSV of one joint; - is standard output")
+      ->type_name("FILE");
+  app.add_option("--weigh", f.loaded,
+                 "recordings with a payload, which is weighed; the logs are without it")
+      ->type_name("LOG..");
+  app.add_option("--columns", f.columns, "what the logs' columns mean (see tauext-replay --help)")
+      ->type_name("PRESET|FILE.toml");
+  app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
+  app.add_option("--terms", f.terms, "to find, apart by commas (see --list)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,..");
+  app.add_option("--window", f.windows.length, "length of a difference and of the means [s]")
+      ->capture_default_str();
+  app.add_option("--min_speed", f.windows.min_speed,
+                 "slower samples are left out: friction there is unknown [rad/s]")
+      ->capture_default_str();
+  app.add_option("--format", f.format, "of the tables: text, csv, json, md or latex")
+      ->type_name("NAME");
+  app.add_flag("--list", f.list, "list the terms, and stop");
+}
+
+std::string list_terms() {
+  TableWriter table({{"term", "", true}, {"unit", "", true}, {"what it multiplies", "", true}});
+  table.add_note("of a joint of a robot");
+  for (const JointTerm& t : kJointTerms) table.add({t.name, t.unit, t.what});
+  table.add_note("of one joint without a robot: tau = the sum of these");
+  for (const Term& t : terms()) table.add({t.name, t.unit, t.description});
+  return table.format();
+}
+
+void write_file(const std::string& text, const std::string& out) {
+  AtomicFile file(out);
+  file.write(text);
+  file.commit();
+}
+
+int identify_one(const Flags& f) {
+  if (f.logs.size() != 1)
+    throw std::invalid_argument("a log of one joint, or --robot FILE and logs of it, are required");
+  const std::vector<Term> model = find_terms(
+      f.terms.empty() ? std::vector<std::string>{"inertia", "gravity_cos", "gravity_sin", "coulomb"}
+                      : f.terms);
+  const RecordedLog recorded = read_any_log(f.logs[0], {f.channel, f.columns});
+  const Identification id = identify(recorded.trace, model, f.windows);
+  if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
+  fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
+  return recorded.usable() ? kGood : kAnswerIsNo;
+}
+
+// all of them; `usable` becomes false where most of one was skipped
+std::vector<Trace> read_logs(const Flags& f, const std::vector<std::string>& paths, bool& usable) {
+  std::vector<Trace> all;
+  for (const std::string& path : paths) {
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    usable = usable && log.usable();
+    all.push_back(std::move(log.trace));
+  }
+  return all;
+}
+
+// says what is wrong with the robot's file
+ArmTree arm_of(const Flags& f) {
+  const Model model = load_mjcf(f.robot, {f.lock, {}});
+  try {
+    return tree_of(model);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("{}: {}", f.robot, e.what()));
+  }
+}
+
+int calibrate(const Flags& f, const ArmTree& arm) {
+  bool usable = true;
+  const std::vector<Trace> logs = read_logs(f, f.logs, usable);
+  CalibrateOptions o;
+  o.windows = f.windows;
+  if (!f.terms.empty()) o.terms = f.terms;
+  std::vector<CalibratedJoint> joints = calibrate_arm(arm, logs, o);
+  std::FILE* const to = f.out == "-" ? stderr : stdout;
+  const TableFormat format = table_format(f.format);
+  fmt::print(to, "{}", parameter_table(joints, format));
+  if (format == TableFormat::kText) fmt::print(to, "\n{}", fit_report(joints));
+  if (!f.out.empty()) {
+    std::vector<std::string> said;
+    write_file(robot_file_text({f.robot, f.lock, joints, nullptr, f.logs}, f.out, said), f.out);
+    for (const std::string& line : said) say(line);
+  }
+  return usable ? kGood : kAnswerIsNo;
+}
+
+int weigh_payload(const Flags& f, const ArmTree& arm) {
+  bool usable = true;
+  std::vector<Trace> empty = read_logs(f, f.logs, usable), loaded = read_logs(f, f.loaded, usable);
+  for (std::vector<Trace>* const all : {&empty, &loaded})
+    for (Trace& log : *all) make_torques(log, arm.gain);
+  const Weighing w = weigh(arm, loaded, empty, f.windows);
+  fmt::print(f.out == "-" ? stderr : stdout, "{}", weighing_table(w, table_format(f.format)));
+  if (!f.out.empty()) {
+    if (!(w.payload.mass > 0))
+      throw std::invalid_argument(fmt::format(
+          "{}: not written, as the payload came out as {:.3g} kg", f.out, w.payload.mass));
+    std::vector<std::string> recordings = f.logs, said;
+    recordings.insert(recordings.end(), f.loaded.begin(), f.loaded.end());
+    write_file(robot_file_text({f.robot, f.lock, {}, &w, recordings}, f.out, said), f.out);
+  }
+  return usable ? kGood : kAnswerIsNo;
+}
+
+int run(const CLI::App& app, Flags& f) {
+  if (f.list) {
+    fmt::print("{}", list_terms());
+    return kGood;
+  }
+  if (f.robot.empty()) {
+    require_mode(app, false, "--robot", {"--weigh", "--lock"});
+    return identify_one(f);
+  }
+  table_format(f.format);
+  if (!f.out.empty() && f.out != "-") {
+    if (!f.out.ends_with(".json"))
+      throw std::invalid_argument(
+          fmt::format("--out {}: the name of a robot file ends in .json", f.out));
+    const AtomicFile probe(f.out);  // an unwritable path should not cost a run
+  }
+  const ArmTree arm = arm_of(f);
+  if (!f.loaded.empty()) {
+    require_mode(app, false, "calibrating, not with --weigh", {"--terms"});
+    return weigh_payload(f, arm);
+  }
+  if (f.logs.empty())
+    throw std::invalid_argument("recordings are required; see tauext-calibrate --help");
+  return calibrate(f, arm);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Finds friction, rotors' inertia, torque offsets and drives' gains of an arm from "
+      "recordings\n"
+      "without contact, with errors, and writes a robot file that every --robot takes. With\n"
+      "--weigh it weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) it finds\n"
+      "tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd), or other --terms.\n\n"
+      "  tauext-calibrate free*.csv --robot arm.urdf --columns ur_rtde --out arm.json\n"
+      "  tauext-calibrate free*.csv --robot arm.json --columns ur_rtde --weigh loaded.csv\n",
+      "tauext-calibrate");
+  Flags f;
+  add_flags(app, f);
+  return run_program(app, argc, argv, [&] { return run(app, f); });
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What somebody measured of an arm, in the place of what its file says.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tinyxml2 {
+class XMLElement;
+}
+
+namespace tauext {
+
+/// Of a joint; what is not set stays as the file has it. A slide has N for N m, and m for rad.
+struct MeasuredJoint {
+  std::optional<double> armature;      ///< [kg m^2] of the rotor, as the joint feels it
+  std::optional<double> coulomb;       ///< [N m] dry friction
+  std::optional<double> viscous;       ///< [N m s/rad] friction by speed
+  std::optional<double> viscous_skew;  ///< [N m s/rad] more of it where qd > 0, less where qd < 0
+  std::optional<double> offset;        ///< [N m] that tau is always too large by
+  std::optional<double> gain;          ///< [N m/A] of the drive
+};
+
+/// A weight that was mounted.
+struct Payload {
+  std::string body;              ///< that carries it, or a site of it
+  double mass = 0;               ///< [kg]
+  double center[3] = {0, 0, 0};  ///< [m] of mass, in the frame of the body or of the site
+};
+
+/// All of it.
+struct MeasuredTerms {
+  std::map<std::string, MeasuredJoint> joints;  ///< by name
+  std::optional<Payload> payload;               ///< if there is one
+};
+
+namespace detail {
+
+/// Before the name of a joint: the <numeric> of what MJCF has no attribute for.
+inline constexpr std::string_view kMeasured = "tauext:";
+
+/// Puts them into MJCF, whose joints have names; what has no attribute there stands in <custom>,
+/// as mjcf/mujoco/measured.h reads it.
+/// @throws std::runtime_error for a joint or a body that it does not have, listing those there are
+void put_measured(tinyxml2::XMLElement& mujoco, const MeasuredTerms& terms);
+
+}  // namespace detail
+}  // namespace tauext

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A robot file of ours: which MJCF or URDF an arm has, and what was measured of it.
+///
+///     {
+///       "format": "tauext-robot-1",
+///       "file": "ur10e.urdf",                 // by this file's folder
+///       "lock": "finger.*",                   // joints that are fixed (ImportOptions); optional
+///       "joints": {
+///         "elbow_joint": {                    // each key is optional; without it, as in the file
+///           "armature": 0.42,                 // kg m^2
+///           "coulomb": 7.1,                   // N m; [up, down] where qd > 0, where qd < 0
+///           "viscous": 9.8,                   // N m s/rad; likewise
+///           "offset": 0.3,                    // N m that tau is always too large by
+///           "gain": 9.6,                      // N m/A of the drive, for logs of currents
+///           "standard_errors": {..}           // of the same keys; for the reader
+///         }
+///       },
+///       "payload": {"body": "wrist_3_link", "mass": 2.8, "center": [0, 0, 0.1]},  // kg, m
+///       "about": {..}                         // anything
+///     }
+///
+/// A body's payload stands in its frame; a site may be named instead. No offset can be told from
+/// a Coulomb friction that differs by the direction: [up, down] is (up + down) / 2 and an offset
+/// of (up - down) / 2.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "mjcf/import/mjcf_text.h"
+
+namespace tauext {
+
+/// Its "format".
+inline constexpr const char* kRobotFileFormat = "tauext-robot-1";
+
+/// Whether a robot's name is the path of such a file: it ends in .json.
+bool is_our_robot_file(std::string_view path);
+
+/// What it says.
+struct RobotFile {
+  std::string path;       ///< of the MJCF or URDF, from where this program runs
+  ImportOptions options;  ///< how it is to be read
+};
+
+/// What a robot's path stands for: a file of ours, or another one, which is itself.
+/// @throws std::runtime_error or std::invalid_argument naming the path, the key and what is wrong;
+/// also for two different locks
+RobotFile robot_file(const std::string& path, const ImportOptions& options = {});
+
+}  // namespace tauext

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/import/robot_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "mjcf/plant/model_error.h"
+#include "mjcf/plant/plant.h"
+#include "mjcf/plant/simulated.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/test/error_of.h"
+
+namespace tauext::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTwoLinks =
+    "<mujoco><compiler angle='radian'/><worldbody><body name='upper'><inertial pos='0 0 .2' "
+    "mass='3' diaginertia='.1 .1 .1'/><joint name='shoulder' axis='0 1 0' damping='2'/><body "
+    "name='lower' pos='0 0 .4'><inertial pos='0 0 .1' mass='1' diaginertia='.1 .1 .1'/><joint "
+    "name='elbow' axis='0 1 0' frictionloss='.7'/><site name='tool' pos='0 0 .3' euler='0 .5 "
+    "0'/></body></body></worldbody></mujoco>";
+
+class RobotFiles : public testing::Test {
+ protected:
+  RobotFiles() {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "arm.xml") << kTwoLinks;
+  }
+  ~RobotFiles() override { fs::remove_all(folder_); }
+
+  std::string written(const std::string& json) const {
+    std::ofstream(folder_ / "arm.json") << json;
+    return folder_ / "arm.json";
+  }
+  ArmTree arm(const std::string& rest) const {
+    return tree_of(
+        load_mjcf(written(R"({"format": "tauext-robot-1", "file": "arm.xml")" + rest + "}")));
+  }
+  std::string error_of_robot(const std::string& json) const {
+    return error_of([&] { load_mjcf(written(json)); });
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("tauext_robot_file_" + std::to_string(getpid()));
+};
+
+TEST_F(RobotFiles, SayWhatWasMeasuredAndLeaveTheRest) {
+  const ArmTree a = arm(R"(, "joints": {"shoulder": {"armature": 0.4, "coulomb": [3, 2],
+      "viscous": [5, 4], "offset": 0.25, "gain": 11}})");
+  const TreeJoint& shoulder = a.joints[0];
+  EXPECT_EQ(shoulder.armature, 0.4);
+  EXPECT_EQ(shoulder.dry, 2.5);
+  EXPECT_EQ(shoulder.viscous, 4.5);
+  EXPECT_EQ(shoulder.viscous_skew, 0.5);
+  EXPECT_EQ(shoulder.offset, 0.25 + 0.5);
+  EXPECT_EQ(a.gain[0], 11);
+  EXPECT_EQ(a.joints[1].dry, 0.7);
+  EXPECT_EQ(a.joints[1].offset, 0);
+  EXPECT_EQ(a.gain[1], 0);
+}
+
+// friction at a speed is that of its direction, and an offset is always there
+TEST_F(RobotFiles, FrictionIsThatOfTheDirection) {
+  const TreeModel<2> model = tree_model<2>(load_mjcf(written(
+      R"({"format": "tauext-robot-1", "file": "arm.xml",
+          "joints": {"shoulder": {"coulomb": [3, 2], "viscous": [5, 4], "offset": 0.25}}})")));
+  EXPECT_NEAR(model.friction({2, 0})[0], 3 + 5 * 2 + 0.25, 1e-9);
+  EXPECT_NEAR(model.friction({-2, 0})[0], -(2 + 4 * 2) + 0.25, 1e-9);
+}
+
+// hidden friction adds to what the arm has, and leaves that as smooth as it is
+TEST_F(RobotFiles, HiddenFrictionLeavesTheArmsOwnAsItIs) {
+  arm(R"(, "joints": {"shoulder": {"coulomb": 3, "viscous": [5, 4], "offset": 0.25}})");
+  const Model model = simulated(load_mjcf(folder_ / "arm.json"));
+  const auto friction = [](const Model& m) {
+    Plant p(m);
+    p.set_state(Vec<2>::Zero(), Vec<2>(0.004, 0.3));
+    return p.friction();
+  };
+  const Eigen::VectorXd own = friction(model);
+  EXPECT_LT((friction(with_errors(model, {.friction = 1e-9})) - own).norm(), 2e-9);
+  EXPECT_NEAR(friction(with_errors(model, {.friction = 0.5}))[1] - own[1], 0.5, 1e-6);
+}
+
+TEST_F(RobotFiles, APayloadStandsInTheFrameThatItNames) {
+  const ArmTree bare = arm(""), by_body = arm(R"(, "payload": {"body": "lower", "mass": 2,
+      "center": [0.1, 0, 0.3]})"),
+                by_site = arm(R"(, "payload": {"body": "tool", "mass": 2, "center": [0, 0, 0.1]})");
+  EXPECT_EQ(by_body.joints[1].mass, 3);
+  const Vec<3> moment = 3 * by_body.joints[1].center - bare.joints[1].mass * bare.joints[1].center;
+  EXPECT_LT((moment - 2 * Vec<3>(0.1, 0, 0.3)).norm(), 1e-9) << moment.transpose();
+  const Vec<3> there = 3 * by_site.joints[1].center - bare.joints[1].mass * bare.joints[1].center;
+  const Vec<3> tool(0.1 * std::sin(0.5), 0, 0.3 + 0.1 * std::cos(0.5));
+  EXPECT_LT((there - 2 * tool).norm(), 1e-9) << there.transpose();
+}
+
+TEST_F(RobotFiles, AnImportedTextHoldsAllOfIt) {
+  const auto [path, options] = robot_file(written(
+      R"({"format": "tauext-robot-1", "file": "arm.xml",
+          "joints": {"elbow": {"coulomb": [3, 2], "offset": -1, "gain": 7}}})"));
+  std::ofstream(folder_ / "clean.xml") << import_mjcf(path, options).xml;
+  const ArmTree once = tree_of(load_mjcf(folder_ / "clean.xml"));
+  std::ofstream(folder_ / "again.xml") << import_mjcf(folder_ / "clean.xml").xml;
+  const ArmTree twice = tree_of(load_mjcf(folder_ / "again.xml"));
+  for (const ArmTree& a : {once, twice}) {
+    EXPECT_EQ(a.joints[1].offset, -0.5);
+    EXPECT_EQ(a.joints[1].dry, 2.5);
+    EXPECT_EQ(a.gain[1], 7);
+  }
+}
+
+TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
+  const std::string head = R"({"format": "tauext-robot-1", "file": "arm.xml", )";
+  for (const auto& [json, words] : std::vector<std::pair<std::string, std::string>>{
+           {"{", "arm.json: no JSON"},
+           {"[]", "arm.json is [], no object"},
+           {R"({"file": "arm.xml"})", "\"format\" must be \"tauext-robot-1\""},
+           {R"({"format": "tauext-robot-1"})", "\"file\" must name an MJCF or URDF file"},
+           {R"({"format": "tauext-robot-1", "file": "no.xml"})", "no.xml"},
+           {head + R"("joint": {}})", "unknown key \"joint\"; known: format, file, lock, joints"},
+           {head + R"("joints": {"knee": {"coulomb": 1}}})",
+            "unknown joint 'knee'; known: elbow, shoulder"},
+           {head + R"("joints": {"elbow": {"coulomb": -1}}})",
+            "joint 'elbow': \"coulomb\" is -1, and must be 0 to 1e+06"},
+           {head + R"("joints": {"elbow": {"viscous": [1]}}})",
+            "\"viscous\" is [1], and must be 2 numbers"},
+           {head + R"("joints": {"elbow": {"gain": 0}}})", "\"gain\" is 0"},
+           {head + R"("payload": {"body": "hand", "mass": 1, "center": [0, 0, 0]}})",
+            "unknown body 'hand'; known: lower, upper"},
+           {head + R"("payload": {"body": "lower", "mass": -1, "center": [0, 0, 0]}})",
+            "payload: \"mass\" is -1"}}) {
+    EXPECT_NE(error_of_robot(json).find(words), std::string::npos) << json << "\n"
+                                                                   << error_of_robot(json);
+  }
+}
+
+}  // namespace
+}  // namespace tauext::test
