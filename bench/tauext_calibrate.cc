@@ -111,7 +111,9 @@ ArmTree arm_of(const Flags& f) {
 
 int calibrate(const Flags& f, const ArmTree& arm) {
   bool usable = true;
-  const std::vector<Trace> logs = read_logs(f, f.logs, usable);
+  std::vector<Trace> logs = read_logs(f, f.logs, usable);
+  if ((arm.gain.array() != 0).all())  // else they are found
+    for (Trace& log : logs) make_torques(log, arm.gain);
   CalibrateOptions o;
   o.windows = f.windows;
   if (!f.terms.empty()) o.terms = f.terms;

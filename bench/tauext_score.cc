@@ -99,8 +99,10 @@ int score(const Flags& f) {
   run.trace = &log.trace;
   run.score_from = simulated ? std::max(run.scenario->score_from, f.score_from) : f.score_from;
   const std::vector<Row> rows = scored(f, run);
-  fmt::print("{}", format_table(rows, format));
-  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows));
+  std::vector<Metric> also;
+  if (!log.trace.has_truth()) also = {Metric::kRecall, Metric::kFalseAlarmsPerHour};
+  fmt::print("{}", format_table(rows, format, also));
+  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
   if (!f.out.empty()) {
     AtomicFile file(f.out);
     file.write(results_json(rows, build()));

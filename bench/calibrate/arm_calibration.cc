@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -29,12 +29,24 @@ struct Rows {
   int left_out = 0;
 };
 
-constexpr const char* kOthers[] = {"viscous_skew (|qd|)", "friction with the square of the speed",
-                                   "friction that falls with the speed (Stribeck)",
-                                   "friction that grows with the load"};
+// what a joint's friction may have beside the terms that were asked for
+constexpr JointTerm kSuspects[] = {
+    {"viscous_skew (|qd|)", "", "", kJointTerms[3].column},
+    {"friction with the square of the speed", "", "",
+     [](double qd, double, double) { return qd * std::abs(qd); }},
+    {"friction that falls with the speed (Stribeck)", "", "",
+     [](double qd, double slip, double) { return slip * std::exp(-std::abs(qd) / 0.1); }},
+    {"friction that grows with the load", "", "",
+     [](double, double slip, double rigid) { return slip * std::abs(rigid); }},
+};
 
-// the arm without what is to be found, and how its joints slip (ArmTree)
-ArmTree bare(const ArmTree& arm) {
+using Terms = std::vector<const JointTerm*>;
+
+// the arm without what is to be found
+ArmTree bare(const ArmTree& arm, const Terms& terms) {
+  const auto asked = [&](auto&& which) { return std::any_of(terms.begin(), terms.end(), which); };
+  const bool armature = asked([](const JointTerm*t) { return t->column == nullptr; }),
+             friction = asked([](const JointTerm*t) { return t->column != nullptr; });
   ArmTree b = arm;
   for (int i = 0; i < arm.dof(); ++i) {
     const int leader = arm.leaders[static_cast<std::size_t>(i)];
@@ -43,62 +55,51 @@ ArmTree bare(const ArmTree& arm) {
           "the arm's coordinates mix its joints (motors on tendons): friction of a joint has no "
           "place in them");
     TreeJoint& j = b.joints[static_cast<std::size_t>(leader)];
-    j.armature = j.viscous = j.viscous_skew = j.dry = j.offset = 0;
+    if (armature) j.armature = 0;
+    if (friction) j.viscous = j.viscous_skew = j.dry = j.offset = 0;
   }
   return b;
 }
 
-// of the terms over a window, by the trapezium rule
-VectorXd columns(const Trace& log, int joint, const Window& w, double v_s, double rigid) {
-  const auto [a, b] = w;
-  const double T = log.t[b] - log.t[a];
-  VectorXd c = VectorXd::Zero(9);
-  c[0] = (log.qd(joint, b) - log.qd(joint, a)) / T;
-  for (int k = a; k <= b; ++k) {
-    const double before = k > a ? log.t[k] - log.t[k - 1] : 0,
-                 after = k < b ? log.t[k + 1] - log.t[k] : 0, share = (before + after) / (2 * T);
-    const double qd = log.qd(joint, k), slip = std::tanh(qd / v_s);
-    c[1] += share * slip;
-    c[2] += share * qd;
-    c[3] += share * qd * slip;
-    c[5] += share * qd * std::abs(qd);
-    c[6] += share * slip * std::exp(-std::abs(qd) / 0.1);
-    c[7] += share * slip * std::abs(rigid);
-  }
-  c[4] = 1;
-  return c;
+// of a term over a window
+double column(const JointTerm& term, const Trace& log, int joint, const Window& w, double v_s,
+              double rigid) {
+  if (term.column == nullptr) return mean_acceleration(log, joint, w);
+  return mean_over(log, w, [&](int k) {
+    const double qd = log.qd(joint, k);
+    return term.column(qd, std::tanh(qd / v_s), rigid);
+  });
 }
 
-std::vector<Index> numbers_of(const std::vector<std::string>& terms) {
-  refuse_twice("term", terms);
-  std::vector<Index> all;
-  for (const std::string& t : terms) {
-    const JointTerm& known =
-        find_known(kJointTerms, "term", t, [](const JointTerm& j) { return j.name; });
-    all.push_back(&known - kJointTerms);
-  }
+Terms find_joint_terms(const std::vector<std::string>& names) {
+  refuse_twice("term", names);
+  Terms all;
+  for (const std::string& name : names)
+    all.push_back(
+        &find_known(kJointTerms, "term", name, [](const JointTerm& j) { return j.name; }));
   if (all.empty()) throw std::invalid_argument("no term to calibrate");
   return all;
 }
 
 Rows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motions, int joint,
-             const std::vector<Index>& terms, const Windows& w, double v_s) {
+             const Terms& terms, const Windows& w, double v_s) {
   Rows r;
-  std::vector<VectorXd> all;
-  std::vector<std::pair<double, double>> torques;
-  for (std::size_t l = 0; l < logs.size(); ++l) {
-    for (const Window& window : windows_of(logs[l], joint, w, r.left_out)) {
-      torques.emplace_back(motions[l].expected(window)[joint], motions[l].measured(window)[joint]);
-      all.push_back(columns(logs[l], joint, window, v_s, torques.back().first));
-    }
-  }
-  const auto m = static_cast<Index>(all.size()), n = static_cast<Index>(terms.size());
-  r.terms.resize(m, n), r.others.resize(m, 4), r.rigid.resize(m), r.measured.resize(m);
+  std::vector<std::pair<std::size_t, Window>> windows;  // and the log of each
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    for (const Window& window : windows_of(logs[l], joint, w, r.left_out))
+      windows.emplace_back(l, window);
+  const auto m = static_cast<Index>(windows.size()), n = static_cast<Index>(terms.size());
+  r.terms.resize(m, n), r.rigid.resize(m), r.measured.resize(m);
+  r.others.resize(m, static_cast<Index>(std::size(kSuspects)));
   for (Index i = 0; i < m; ++i) {
-    const VectorXd& c = all[static_cast<std::size_t>(i)];
-    for (Index k = 0; k < n; ++k) r.terms(i, k) = c[terms[static_cast<std::size_t>(k)]];
-    r.others.row(i) << c[3], c[5], c[6], c[7];
-    std::tie(r.rigid[i], r.measured[i]) = torques[static_cast<std::size_t>(i)];
+    const auto& [l, window] = windows[static_cast<std::size_t>(i)];
+    r.rigid[i] = motions[l].expected(joint, window);
+    r.measured[i] = mean_torque(logs[l], joint, window);
+    const auto of = [&, l = l, window = window](const JointTerm& t) {
+      return column(t, logs[l], joint, window, v_s, r.rigid[i]);
+    };
+    for (Index k = 0; k < n; ++k) r.terms(i, k) = of(*terms[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < r.others.cols(); ++k) r.others(i, k) = of(kSuspects[k]);
   }
   return r;
 }
@@ -207,20 +208,47 @@ CalibratedJoint calibrated(const Rows& r, const std::vector<std::string>& names,
   joint.colour = colour(a.fit.residuals);
   MatrixXd A = r.terms;
   if (currents) A.conservativeResize(Eigen::NoChange, A.cols() + 1), A << r.rigid, r.terms;
-  joint.missing = suspects(A, a.fit.inverse, a.fit.residuals, r.others,
-                           {std::begin(kOthers), std::end(kOthers)});
+  std::vector<std::string> suspected;
+  for (const JointTerm& t : kSuspects) suspected.emplace_back(t.name);
+  joint.missing = suspects(A, a.fit.inverse, a.fit.residuals, r.others, suspected);
   return joint;
 }
 
 }  // namespace
 
+namespace {
+
+// [rad/s] over which the joint's friction is smooth, as tree_of() will have it with what was found
+double slip_speed(const ArmTree& arm, int joint, const std::vector<std::string>& names,
+                  const VectorXd& theta) {
+  const TreeJoint& file = arm.joints[static_cast<std::size_t>(joint)];
+  double dry = names == std::vector<std::string>{"armature"} ? file.dry : 0,
+         armature = file.armature;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double value = std::max(theta[static_cast<Index>(k)], 0.);
+    if (names[k] == "coulomb") dry = value;
+    if (names[k] == "armature") armature = value;
+  }
+  const double mobility = arm.mobility[joint];
+  return std::max(TreeJoint().v_s,
+                  dry / (1 / mobility + armature - file.armature) / kQuickestFriction);
+}
+
+}  // namespace
+
+std::string joint_name_in_file(const ArmTree& arm, int coordinate) {
+  const int joint = arm.leaders[static_cast<std::size_t>(coordinate)];
+  const std::string& name = arm.names[static_cast<std::size_t>(joint)];
+  return name.empty() ? fmt::format("joint{}", joint + 1) : name;
+}
+
 std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector<Trace>& logs,
                                            const CalibrateOptions& o) {
   check_windows(o.windows);
-  const std::vector<Index> terms = numbers_of(o.terms);
+  const Terms terms = find_joint_terms(o.terms);
   if (logs.empty()) throw std::invalid_argument("no recording to calibrate from");
   const bool currents = logs.front().tau_is_current;
-  const ArmTree without = bare(arm);
+  const ArmTree without = bare(arm, terms);
   std::vector<ArmMotion> motions;
   for (const Trace& log : logs) {
     if (log.tau_is_current != currents)
@@ -230,14 +258,18 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
   std::vector<CalibratedJoint> all;
   for (int i = 0; i < arm.dof(); ++i) {
     const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
-    const std::string name =
-        arm.names[leader].empty() ? fmt::format("{}", i + 1) : arm.names[leader];
+    const std::string name = joint_name_in_file(arm, i);
     try {
-      const Rows r = rows_of(logs, motions, i, terms, o.windows, arm.joints[leader].v_s);
+      Rows r = rows_of(logs, motions, i, terms, o.windows, arm.joints[leader].v_s);
       const std::size_t needed = 5 * (terms.size() + (currents ? 1 : 0));
       if (static_cast<std::size_t>(r.rigid.size()) < needed)
         throw std::invalid_argument(
             too_few(static_cast<std::size_t>(r.rigid.size()), needed, r.left_out, o.windows));
+      for (int pass = 0; pass < 3; ++pass) {  // how friction slips depends on what is found
+        const double v_s =
+            slip_speed(arm, static_cast<int>(leader), o.terms, answer(r, o.terms, currents).theta);
+        r = rows_of(logs, motions, i, terms, o.windows, v_s);
+      }
       all.push_back(calibrated(r, o.terms, currents));
       all.back().name = name;
     } catch (const std::invalid_argument& e) {

@@ -23,18 +23,22 @@
 
 namespace tauext {
 
-/// A term that can be calibrated.
+/// A term of a joint's torque.
 struct JointTerm {
   const char* name;  ///< as in a robot file
   const char* unit;  ///< of a hinge
   const char* what;  ///< that it multiplies
+  /// The same, of qd [rad/s], slip (tanh(qd / v_s)) and what the masses take [N m]; nullptr: qdd.
+  double (*column)(double qd, double slip, double rigid);
 };
 
-/// All of them.
+/// Those that can be calibrated.
 inline constexpr JointTerm kJointTerms[] = {
-    {"armature", "kg m^2", "qdd"},  {"coulomb", "N m", "sign(qd)"},
-    {"viscous", "N m s/rad", "qd"}, {"viscous_skew", "N m s/rad", "|qd|"},
-    {"offset", "N m", "1"},
+    {"armature", "kg m^2", "qdd", nullptr},
+    {"coulomb", "N m", "sign(qd)", [](double, double slip, double) { return slip; }},
+    {"viscous", "N m s/rad", "qd", [](double qd, double, double) { return qd; }},
+    {"viscous_skew", "N m s/rad", "|qd|", [](double qd, double slip, double) { return qd * slip; }},
+    {"offset", "N m", "1", [](double, double, double) { return 1.; }},
 };
 
 /// How to calibrate.
@@ -65,7 +69,7 @@ struct CalibratedJoint {
   /// [1] the factor on this joint's measured torques at which they fit the file's masses best; 0
   /// for currents, whose gain it is, and where these masses take less than kSeen of the torque
   double scale = 0;
-  double scale_error = 0;        ///< [1] likewise
+  double scale_error = 0;        ///< [1] its robust error
   double rigid = 0;              ///< [N m] rms of what the file's masses take of the torque
   double torque = 0;             ///< [N m] rms of the measured torque
   double before = 0;             ///< [N m] rms that is left without any of these terms
@@ -77,7 +81,11 @@ struct CalibratedJoint {
   int left_out = 0;              ///< that were not
 };
 
-/// @param arm whose joints' own friction, armature and offset are left aside
+/// The name of a coordinate's joint in a robot file: its own, or what the import calls it.
+std::string joint_name_in_file(const ArmTree& arm, int coordinate);
+
+/// @param arm of which is left aside what is to be found: the joints' armature, and all of their
+/// friction and offset if any of these is
 /// @throws std::invalid_argument for an unknown term, an arm whose coordinates mix joints, another
 /// number of joints, currents and torques together, too few windows, a gain that cannot be seen, or
 /// a motion that cannot tell the terms apart: naming the joint, the term and the remedy

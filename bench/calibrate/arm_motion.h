@@ -22,14 +22,13 @@ class ArmMotion {
   /// @throws std::invalid_argument for another number of joints
   ArmMotion(const ArmTree& arm, const Trace& log);
 
-  Eigen::VectorXd expected(const Window& w) const;  ///< [N m] the right side of (ii)
-  Eigen::VectorXd measured(const Window& w) const;  ///< [N m] its left side, as tau is sampled
+  /// [N m] the right side of (ii), of one joint.
+  double expected(int joint, const Window& w) const;
 
  private:
   const Trace& log_;
   Eigen::MatrixXd momentum_;  // p of each sample
-  Eigen::MatrixXd rest_;      // integral of F - (C^T qd - g) up to it
-  Eigen::MatrixXd impulse_;   // integral of tau up to it
+  Eigen::MatrixXd rest_;      // F - (C^T qd - g), likewise
 };
 
 }  // namespace tauext

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "bench/calibrate/windows.h"
 #include "estimators/types.h"
@@ -23,26 +22,16 @@ double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// (i) over samples a to b: the row of the regressor, and mean(tau) behind it
-VectorXd row(const Trace& log, int a, int b, const std::vector<Term>& terms) {
-  const double T = log.t[b] - log.t[a];
+// (i) over a window: the row of the regressor, and mean(tau) behind it
+VectorXd row(const Trace& log, const Window& w, const std::vector<Term>& terms) {
   const auto n = static_cast<Eigen::Index>(terms.size());
-  VectorXd r = VectorXd::Zero(n + 1);
+  VectorXd r(n + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& f = terms[i].column;
-    if (!f) {
-      r[i] = (log.qd(0, b) - log.qd(0, a)) / T;
-      continue;
-    }
-    for (int k = a; k < b; ++k) {
-      const double h = log.t[k + 1] - log.t[k];
-      r[i] += h / T * 0.5 * (f(log.q(0, k), log.qd(0, k)) + f(log.q(0, k + 1), log.qd(0, k + 1)));
-    }
+    r[i] = f ? mean_over(log, w, [&](int k) { return f(log.q(0, k), log.qd(0, k)); })
+             : mean_acceleration(log, 0, w);
   }
-  for (int k = a; k < b; ++k) {
-    const double end = log.torque_at_instants ? log.tau(0, k + 1) : log.tau(0, k);
-    r[n] += (log.t[k + 1] - log.t[k]) / T * 0.5 * (log.tau(0, k) + end);
-  }
+  r[n] = mean_torque(log, 0, w);
   return r;
 }
 
@@ -80,8 +69,7 @@ void add_residuals(const Trace& log, const std::vector<Term>& model,
   const auto n = static_cast<Eigen::Index>(rest.size());
   MatrixXd columns(A.rows(), n + 2);
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    const auto [a, b] = windows[static_cast<std::size_t>(i)];
-    const VectorXd r = row(log, a, b, rest);
+    const VectorXd r = row(log, windows[static_cast<std::size_t>(i)], rest);
     columns.row(i) << r.head(n).transpose(), r[n] * r[n], r[n] * r[n] * r[n];
   }
   std::vector<std::string> names = names_of(rest);
@@ -138,8 +126,7 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   MatrixXd A(m, n);
   VectorXd y(m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const auto [a, b] = windows[static_cast<std::size_t>(i)];
-    const VectorXd r = row(log, a, b, terms);
+    const VectorXd r = row(log, windows[static_cast<std::size_t>(i)], terms);
     A.row(i) = r.head(n);
     y[i] = r[n];
   }

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "mjcf/import/robot_file.h"
@@ -22,25 +23,30 @@ double rounded(double x, int digits) {
   return std::stod(fmt::format("{:.{}g}", x, digits));
 }
 
+// friction is found as a whole: what was not asked for is 0
 Json joint_json(const CalibratedJoint& j, std::vector<std::string>& said) {
-  Json json, errors;
-  double viscous = 0, skew = 0;
+  std::map<std::string, double> found;
+  Json errors;
+  bool friction = false;
   for (const CalibratedTerm& t : j.terms) {
-    double value = t.value;
-    if (value < 0 && t.name != "offset" && t.name != "viscous_skew") {
+    const bool any_sign = t.name == "offset" || t.name == "viscous_skew";
+    if (t.value < 0 && !any_sign)
       said.push_back(fmt::format("{}: {} came out as {:.3g} +- {:.2g}, and is written as 0",
-                                 printable_name(j.name), t.name, value, t.error));
-      value = 0;
-    }
-    if (t.name == "viscous") viscous = value;
-    if (t.name == "viscous_skew") {
-      skew = std::clamp(value, -viscous, viscous);
-    } else {
-      json[t.name] = rounded(value, 6);
-    }
+                                 printable_name(j.name), t.name, t.value, t.error));
+    found[t.name] = any_sign ? t.value : std::max(t.value, 0.);
     errors[t.name] = rounded(t.error, 2);
+    friction = friction || t.name != "armature";
   }
-  if (skew != 0) json["viscous"] = {rounded(viscous + skew, 6), rounded(viscous - skew, 6)};
+  Json json;
+  if (found.count("armature") > 0) json["armature"] = rounded(found["armature"], 6);
+  if (friction) {
+    const double viscous = found["viscous"],
+                 skew = std::clamp(found["viscous_skew"], -viscous, viscous);
+    json["coulomb"] = rounded(found["coulomb"], 6);
+    json["viscous"] = rounded(viscous, 6);
+    if (skew != 0) json["viscous"] = {rounded(viscous + skew, 6), rounded(viscous - skew, 6)};
+    json["offset"] = rounded(found["offset"], 6);
+  }
   if (j.gain != 0) {
     json["gain"] = rounded(j.gain, 6);
     errors["gain"] = rounded(j.gain_error, 2);

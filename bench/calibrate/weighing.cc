@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "bench/calibrate/arm_motion.h"
@@ -34,53 +35,34 @@ ArmTree with_point(const ArmTree& arm, int joint, const Vector3d& p, double mass
   return a;
 }
 
-// of some recordings, joint after joint: a row for each window
-struct PayloadRows {
-  MatrixXd A;  // by m and m c
-  VectorXd y;  // [N m] what the arm's model does not explain
-  std::vector<int> joint;
-  int left_out = 0;
+// the windows of some recordings, joint after joint
+struct Place {
+  const Trace* log;
+  int joint;
+  Window window;
 };
-
-// what a unit mass at the origin takes, and unit first moments along the axes
-std::array<ArmTree, 8> probes(const ArmTree& arm, int joint, const Vector3d& origin) {
-  std::array<ArmTree, 8> all;
-  all[0] = arm;
-  all[1] = with_point(arm, joint, origin, 1);
-  for (int i = 0; i < 3; ++i) {
-    all[2 + 2 * i] = with_point(arm, joint, origin + Vector3d::Unit(i), 1);
-    all[3 + 2 * i] = with_point(arm, joint, origin - Vector3d::Unit(i), 1);
-  }
+std::vector<Place> places_of(const std::vector<Trace>& logs, const Windows& w) {
+  constexpr std::size_t kNeeded = 40;
+  std::vector<Place> all;
+  int left_out = 0;
+  for (int joint = 0; joint < logs.front().dof(); ++joint)
+    for (const Trace& log : logs)
+      for (const Window& window : windows_of(log, joint, w, left_out))
+        all.push_back({&log, joint, window});
+  if (all.size() < kNeeded) throw std::invalid_argument(too_few(all.size(), kNeeded, left_out, w));
   return all;
 }
 
-PayloadRows payload_rows(const std::array<ArmTree, 8>& arms, const std::vector<Trace>& logs,
-                         const Windows& w) {
-  PayloadRows r;
-  std::vector<Eigen::Matrix<double, 1, 5>> all;
-  std::vector<std::vector<ArmMotion>> motions(logs.size());
-  for (std::size_t l = 0; l < logs.size(); ++l)
-    for (const ArmTree& a : arms) motions[l].emplace_back(a, logs[l]);
-  for (int joint = 0; joint < arms[0].dof(); ++joint) {
-    for (std::size_t l = 0; l < logs.size(); ++l) {
-      const std::vector<ArmMotion>& m = motions[l];
-      for (const Window& window : windows_of(logs[l], joint, w, r.left_out)) {
-        std::array<double, 8> f;
-        for (std::size_t k = 0; k < 8; ++k) f[k] = m[k].expected(window)[joint];
-        all.emplace_back();
-        all.back() << f[1] - f[0], (f[2] - f[3]) / 2, (f[4] - f[5]) / 2, (f[6] - f[7]) / 2,
-            m[0].measured(window)[joint] - f[0];
-        r.joint.push_back(joint);
-      }
-    }
+// [N m] what the arm takes there
+VectorXd expected(const ArmTree& arm, const std::vector<Place>& places) {
+  VectorXd all(static_cast<Index>(places.size()));
+  std::map<const Trace*, ArmMotion> motions;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto [log, joint, window] = places[i];
+    all[static_cast<Index>(i)] =
+        motions.try_emplace(log, arm, *log).first->second.expected(joint, window);
   }
-  const auto m = static_cast<Index>(all.size());
-  r.A.resize(m, 4), r.y.resize(m);
-  for (Index i = 0; i < m; ++i) {
-    r.A.row(i) = all[static_cast<std::size_t>(i)].head(4);
-    r.y[i] = all[static_cast<std::size_t>(i)][4];
-  }
-  return r;
+  return all;
 }
 
 const std::vector<std::string>& payload_terms() {
@@ -89,20 +71,34 @@ const std::vector<std::string>& payload_terms() {
   return all;
 }
 
+// what a unit mass at the origin takes, and unit first moments along the axes
+MatrixXd by_mass_and_moments(const ArmTree& arm, int joint, const Vector3d& origin,
+                             const std::vector<Place>& places) {
+  const auto of_unit_mass = [&](const Vector3d& p) {
+    return expected(with_point(arm, joint, origin + p, 1), places);
+  };
+  MatrixXd A(places.size(), 4);
+  A.col(0) = of_unit_mass(Vector3d::Zero()) - expected(arm, places);
+  for (int i = 0; i < 3; ++i)  // its moment of inertia is the same on both sides
+    A.col(i + 1) = (of_unit_mass(Vector3d::Unit(i)) - of_unit_mass(-Vector3d::Unit(i))) / 2;
+  return A;
+}
+
 // each joint counts by how well it is explained
-VectorXd weights_of(const PayloadRows& r, int joints) {
-  const VectorXd left = r.y - r.A * fit(r.A, r.y, payload_terms()).theta();
-  VectorXd squares = VectorXd::Zero(joints), count = VectorXd::Constant(joints, 1e-9);
-  for (Index i = 0; i < left.size(); ++i) {
-    const int j = r.joint[static_cast<std::size_t>(i)];
-    squares[j] += left[i] * left[i], count[j] += 1;
+VectorXd weights_of(const MatrixXd& A, const VectorXd& y, const std::vector<Place>& places) {
+  const VectorXd left = y - A * fit(A, y, payload_terms()).theta();
+  VectorXd squares = VectorXd::Zero(kMostCoordinates), count = squares;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double r = left[static_cast<Index>(i)];
+    squares[places[i].joint] += r * r, count[places[i].joint] += 1;
   }
-  const VectorXd sigma = (squares.cwiseQuotient(count)).cwiseSqrt();
-  const double least = 1e-6 * std::max(r.y.norm() / std::sqrt(left.size()), 1e-12);
-  VectorXd weight(left.size());
-  for (Index i = 0; i < left.size(); ++i)
-    weight[i] = 1 / std::max(sigma[r.joint[static_cast<std::size_t>(i)]], least);
-  return weight;
+  const double least = 1e-6 * std::max(y.norm() / std::sqrt(y.size()), 1e-12);  // [N m]
+  VectorXd weights(y.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const int j = places[i].joint;
+    weights[static_cast<Index>(i)] = 1 / std::max(std::sqrt(squares[j] / count[j]), least);
+  }
+  return weights;
 }
 
 // leaving out every tenth stretch of each joint's windows
@@ -118,36 +114,34 @@ Vec<4> spread_of(const MatrixXd& A, const VectorXd& y) {
   return jackknife_errors(theta);
 }
 
-Weight weight_of(const std::array<ArmTree, 8>& arms, int joint, const Vector3d& origin,
+Weight weight_of(const ArmTree& arm, int joint, const Vector3d& origin,
                  const std::vector<Trace>& logs, const Windows& w) {
-  PayloadRows r = payload_rows(arms, logs, w);
-  constexpr std::size_t kNeeded = 40;
-  if (r.joint.size() < kNeeded)
-    throw std::invalid_argument(too_few(r.joint.size(), kNeeded, r.left_out, w));
+  const std::vector<Place> places = places_of(logs, w);
+  const MatrixXd A = by_mass_and_moments(arm, joint, origin, places);
+  const VectorXd without = expected(arm, places);
+  VectorXd y = -without;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    y[static_cast<Index>(i)] += mean_torque(*places[i].log, places[i].joint, places[i].window);
   Weight weight;
-  weight.windows = static_cast<int>(r.joint.size());
-  VectorXd of_point = VectorXd::Zero(r.y.size());
+  weight.windows = static_cast<int>(places.size());
+  VectorXd of_inertia = VectorXd::Zero(y.size());  // [N m] the payload's own, as that of a point
   for (int pass = 0; pass < 2; ++pass) {
-    const VectorXd each = weights_of(r, arms[0].dof());
-    const MatrixXd A = each.asDiagonal() * r.A;
-    const VectorXd y = each.asDiagonal() * (r.y - of_point);
-    const Fit f = fit(A, y, payload_terms());
-    const Vec<4> theta = f.theta(), spread = spread_of(A, y);
-    weight.mass = theta[0];
-    weight.moment = theta.tail<3>();
+    const VectorXd weights = weights_of(A, y, places), rest = y - of_inertia;
+    const MatrixXd weighted = weights.asDiagonal() * A;
+    const Fit f = fit(weighted, weights.cwiseProduct(rest), payload_terms());
+    const Vec<4> theta = f.theta(), spread = spread_of(weighted, weights.cwiseProduct(rest));
     const auto error = [&](int i) {
       return std::max(f.parameters[static_cast<std::size_t>(i)].robust, spread[i]);
     };
+    weight.mass = theta[0];
     weight.mass_error = error(0);
-    for (int i = 0; i < 3; ++i) weight.moment_error[i] = error(i + 1);
-    weight.residual =
-        std::sqrt((r.y - of_point - r.A * theta).squaredNorm() / static_cast<double>(r.y.size()));
+    weight.moment = theta.tail<3>();
+    weight.moment_error = {error(1), error(2), error(3)};
+    weight.residual = std::sqrt((rest - A * theta).squaredNorm() / static_cast<double>(y.size()));
     if (!(weight.mass > 0)) break;
-    // its inertia, as that of a point
-    const Vector3d c = weight.moment / weight.mass;
-    std::array<ArmTree, 8> with = arms;
-    with[0] = with_point(arms[0], joint, origin + c, weight.mass);
-    of_point = r.y - payload_rows(with, logs, w).y - r.A * theta;
+    const Vector3d center = origin + weight.moment / weight.mass;
+    of_inertia =
+        expected(with_point(arm, joint, center, weight.mass), places) - without - A * theta;
   }
   return weight;
 }
@@ -163,9 +157,8 @@ Weighing weigh(const ArmTree& arm, const std::vector<Trace>& loaded,
   if (w.body.empty())
     throw std::invalid_argument("the body behind the last joint has no name; give it one");
   const Vector3d origin = arm.point(w.body).place;
-  const std::array<ArmTree, 8> arms = probes(arm, joint, origin);
-  w.loaded = weight_of(arms, joint, origin, loaded, windows);
-  if (!empty.empty()) w.empty = weight_of(arms, joint, origin, empty, windows);
+  w.loaded = weight_of(arm, joint, origin, loaded, windows);
+  if (!empty.empty()) w.empty = weight_of(arm, joint, origin, empty, windows);
   w.payload.mass = w.loaded.mass - w.empty.mass;
   w.payload.moment = w.loaded.moment - w.empty.moment;
   w.payload.mass_error = std::hypot(w.loaded.mass_error, w.empty.mass_error);

@@ -41,6 +41,17 @@ std::vector<Window> windows_of(const Trace& log, int joint, const Windows& w, in
   return all;
 }
 
+double mean_torque(const Trace& log, int joint, const Window& w) {
+  if (log.torque_at_instants) return mean_over(log, w, [&](int k) { return log.tau(joint, k); });
+  double sum = 0;
+  for (int k = w.first; k < w.second; ++k) sum += (log.t[k + 1] - log.t[k]) * log.tau(joint, k);
+  return sum / (log.t[w.second] - log.t[w.first]);
+}
+
+double mean_acceleration(const Trace& log, int joint, const Window& w) {
+  return (log.qd(joint, w.second) - log.qd(joint, w.first)) / (log.t[w.second] - log.t[w.first]);
+}
+
 void check_windows(const Windows& w) {
   if (w.length > 0 && w.length <= 10 && w.min_speed >= 0 && std::isfinite(w.min_speed)) return;
   throw std::invalid_argument(fmt::format(

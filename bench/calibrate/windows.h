@@ -25,6 +25,24 @@ using Window = std::pair<int, int>;
 /// @param left_out counts the others
 std::vector<Window> windows_of(const Trace& log, int joint, const Windows& w, int& left_out);
 
+/// The mean over a window of f(k), known at each sample k, by the trapezium rule.
+template <class F>
+double mean_over(const Trace& log, const Window& w, F&& f) {
+  double sum = 0, at = f(w.first);
+  for (int k = w.first; k < w.second; ++k) {
+    const double next = f(k + 1);
+    sum += (log.t[k + 1] - log.t[k]) * (at + next) / 2;
+    at = next;
+  }
+  return sum / (log.t[w.second] - log.t[w.first]);
+}
+
+/// [N m] the mean of a joint's torque, as the log has it: held, or read at instants.
+double mean_torque(const Trace& log, int joint, const Window& w);
+
+/// [rad/s^2] the mean of a joint's acceleration.
+double mean_acceleration(const Trace& log, int joint, const Window& w);
+
 /// @throws std::invalid_argument for a length or a speed that is none
 void check_windows(const Windows& w);
 

@@ -86,8 +86,10 @@ void add_maker_metrics(const std::vector<LogRun>& runs, Score& score) {
   const LogRun& run = runs.front();
   const auto ours = run.output->tau_ext.row(worst),
              theirs = run.trace->tau_ext_of_driver.row(worst);
-  const double after = metrics::lag(run.trace->t, theirs, ours, run.from),
-               before = metrics::lag(run.trace->t, ours, theirs, run.from);
+  const std::vector<double>& t = run.trace->t;
+  const double from = std::max(run.from - t.front(), 0.);  // as a lag counts it
+  const double after = metrics::lag(t, theirs, ours, from),
+               before = metrics::lag(t, ours, theirs, from);
   score.set(Metric::kMakerLag, after > 0 || std::isnan(before) ? after : -before);
 }
 

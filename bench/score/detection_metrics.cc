@@ -21,6 +21,23 @@ std::size_t end_of_collision(const std::vector<double>& t, const std::vector<std
   return j;
 }
 
+// the mean with which at most `count` events are seen in this share of all trials
+double poisson_mean(int count, double share) {
+  // P(at most `count`) falls with the mean
+  const auto probability = [&](double mean) {
+    double sum = 0;
+    for (int k = 0; k <= count; ++k)
+      sum += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
+    return sum;
+  };
+  double least = 0, most = count + 20 + 6 * std::sqrt(count + 1.);
+  for (int i = 0; i < 60; ++i) {
+    const double mean = (least + most) / 2;
+    (probability(mean) > share ? least : most) = mean;
+  }
+  return least;
+}
+
 }  // namespace
 
 DetectionScore detection_score(const std::vector<double>& t,
@@ -70,23 +87,6 @@ double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double rank = std::ceil(share * static_cast<double>(values.size()));
   return values[static_cast<std::size_t>(std::max(rank, 1.)) - 1];
-}
-
-// the mean with which at most `count` events are seen in this share of all trials
-static double poisson_mean(int count, double share) {
-  // P(at most `count`) falls with the mean
-  const auto probability = [&](double mean) {
-    double sum = 0;
-    for (int k = 0; k <= count; ++k)
-      sum += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
-    return sum;
-  };
-  double least = 0, most = count + 20 + 6 * std::sqrt(count + 1.);
-  for (int i = 0; i < 60; ++i) {
-    const double mean = (least + most) / 2;
-    (probability(mean) > share ? least : most) = mean;
-  }
-  return least;
 }
 
 double poisson_upper(int count) {

@@ -164,6 +164,25 @@ TEST(ArmCalibration, SaysWhatIsMissing) {
   EXPECT_NE(joints[4].missing[0].name.find("viscous_skew"), std::string::npos);
 }
 
+// what is not asked for stays as the file has it
+TEST(ArmCalibration, FindsOneThingAloneWhereTheFileKnowsTheOthers) {
+  const Trace log = swinging(arm6(some_terms()), 30, 0);
+  MeasuredTerms known = some_terms();
+  for (auto& [name, joint] : known.joints) joint.armature = 1.2 * *joint.armature;
+  const auto armature =
+      calibrate_arm(tree_of(load_mjcf(kArm6, {"", known})), {log}, {{"armature"}, {}});
+  known = some_terms();
+  for (auto& [name, joint] : known.joints) joint.coulomb = joint.viscous = joint.offset = 9;
+  const auto friction = calibrate_arm(tree_of(load_mjcf(kArm6, {"", known})), {log},
+                                      {{"coulomb", "viscous", "viscous_skew", "offset"}, {}});
+  for (std::size_t i = 0; i < 6; ++i) {
+    const int joint = static_cast<int>(i);
+    EXPECT_NEAR(armature[i].terms[0].value, truth(joint, "armature"), 2e-3);
+    for (const CalibratedTerm& t : friction[i].terms)
+      EXPECT_NEAR(t.value, truth(joint, t.name), 0.02) << t.name;
+  }
+}
+
 TEST(ArmCalibration, RefusesWhatItCannotTell) {
   const ArmTree arm = tree_of(load_mjcf(kArm6));
   const auto error_of = [&](const ArmTree& a, const std::vector<Trace>& logs,
@@ -221,6 +240,39 @@ TEST(RobotFile, WhatWasFoundIsWhatIsRead) {
   }
   EXPECT_NEAR(read.joints[5].mass, arm.joints[5].mass + 1.5, 1e-9);
   std::filesystem::remove(path);
+}
+
+// one without a name has that of the import
+TEST(RobotFile, NamesJointsAsTheImportDoes) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const std::string arm = (folder / "tauext_nameless.xml").string(),
+                    path = (folder / "tauext_nameless.json").string();
+  std::ofstream(arm) << "<mujoco><worldbody><body><joint axis='0 1 0'/><inertial pos='0 0 .3' "
+                        "mass='2' diaginertia='.1 .1 .1'/></body></worldbody><actuator/></mujoco>";
+  std::vector<std::string> said;
+  CalibratedJoint joint;
+  joint.name = joint_name_in_file(tree_of(load_mjcf(arm)), 0);
+  joint.terms = {{"coulomb", 2, 0.1}};
+  std::ofstream(path) << robot_file_text({arm, "", {joint}}, path, said);
+  EXPECT_EQ(tree_of(load_mjcf(path)).joints[0].dry, 2);
+  std::filesystem::remove(arm);
+  std::filesystem::remove(path);
+}
+
+// friction that came out negative cannot be simulated; what was not asked for is 0 in the file, too
+TEST(RobotFile, SaysWhatItDoesNotWriteAsItWasFound) {
+  CalibratedJoint joint;
+  joint.name = "elbow";
+  joint.terms = {{"viscous", -0.2, 0.1}, {"offset", -0.3, 0.1}};
+  std::vector<std::string> said;
+  const auto json = nlohmann::json::parse(robot_file_text({kArm6, "", {joint}}, "-", said));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0], "elbow: viscous came out as -0.2 +- 0.1, and is written as 0");
+  const auto& elbow = json.at("joints").at("elbow");
+  EXPECT_EQ(elbow.at("viscous"), 0);
+  EXPECT_EQ(elbow.at("coulomb"), 0);
+  EXPECT_EQ(elbow.at("offset"), -0.3);
+  EXPECT_FALSE(elbow.contains("armature"));
 }
 
 }  // namespace

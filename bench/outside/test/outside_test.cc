@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/outside/log_metrics.h"
 #include "bench/outside/outside_score.h"
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/read/npy_writer.h"
@@ -132,6 +135,82 @@ TEST_F(Outside, AnEstimateThatIsNoneFails) {
   });
   const Row row = score_outside({.trace = &trace_, .group = "log"}, read(file)[0]);
   EXPECT_NE(row.score.error.find("not finite at t = 5.7"), std::string::npos) << row.score.error;
+}
+
+// of a log of 60 s at 100 Hz, touched from 20 to 21 s and from 40 to 41 s
+struct Log {
+  Log() {
+    constexpr int n = 6000;
+    trace.q = trace.qd = trace.tau = Eigen::MatrixXd::Zero(1, n);
+    trace.contact.assign(n, 0);
+    for (int k = 0; k < n; ++k) trace.t.push_back(100 + 0.01 * k);
+    std::fill_n(trace.contact.begin() + 2000, 100, 1);
+    std::fill_n(trace.contact.begin() + 4000, 100, 1);
+    output.tau_ext = Eigen::MatrixXd::Zero(1, n);
+    output.status.assign(n, Status::kOk);
+    output.marks.assign(n, 0);
+  }
+  Score score(double from = -std::numeric_limits<double>::infinity()) const {
+    const std::vector<LogRun> runs = {{&trace, &output, from}};
+    Score s;
+    add_floor_metrics(runs, s);
+    add_maker_metrics(runs, s);
+    add_label_metrics(runs, s);
+    return s;
+  }
+
+  Trace trace;
+  Output output;
+};
+
+TEST(LogMetrics, FloorAndDriftAreOfWhatNobodyTouches) {
+  Log log;
+  for (int k = 0; k < 6000; ++k) log.output.tau_ext(0, k) = k % 2 == 0 ? 3 : -3;
+  log.output.tau_ext.block(0, 2000, 1, 100).setConstant(50);
+  log.output.tau_ext.block(0, 4000, 1, 100).setConstant(50);
+  EXPECT_NEAR(*log.score().get(Metric::kFloor), 3, 1e-12);
+  EXPECT_NEAR(*log.score().get(Metric::kDrift), 0, 0.01);
+  log.output.tau_ext.array() += Eigen::ArrayXXd::Map(log.trace.t.data(), 1, 6000) / 60;  // 1 N m
+  // the thirds of 5760 untouched samples begin 4080 samples apart
+  EXPECT_NEAR(*log.score().get(Metric::kDrift), 0.68, 0.001);
+}
+
+TEST(LogMetrics, MarksAreCountedAgainstLabelsWithIntervals) {
+  Log log;
+  log.output.marks[1000] = log.output.marks[2005] = 1;  // one too many, one 50 ms late
+  const Score s = log.score();
+  EXPECT_EQ(*s.get(Metric::kRecall), 0.5);
+  EXPECT_NEAR(*s.get(Metric::kRecallLow), 0.0945, 1e-3);  // Wilson, 1 of 2
+  EXPECT_NEAR(*s.get(Metric::kRecallHigh), 0.9055, 1e-3);
+  EXPECT_NEAR(*s.get(Metric::kDelayMedian), 0.05, 1e-9);
+  EXPECT_EQ(*s.get(Metric::kFalseAlarms), 1);
+  EXPECT_NEAR(*s.get(Metric::kFalseAlarmsPerHour), 60, 0.02);
+  EXPECT_NEAR(*s.get(Metric::kFalseAlarmsHigh), 60 * 5.5716, 0.1);
+  EXPECT_EQ(*log.score(115).get(Metric::kFalseAlarms), 0);  // it was earlier
+}
+
+TEST(LogMetrics, TheMakersEstimateIsComparedWithOurs) {
+  Log log;
+  log.trace.tau_ext_of_driver.resize(1, 6000);
+  const auto load = [](double t) { return 5 * std::sin(t) + 2 * std::sin(3.3 * t); };
+  for (const double late : {0.15, -0.15}) {
+    for (int k = 0; k < 6000; ++k) {
+      log.output.tau_ext(0, k) = load(0.01 * k - late);
+      log.trace.tau_ext_of_driver(0, k) = 2 * load(0.01 * k);
+    }
+    for (const double from : {-std::numeric_limits<double>::infinity(), 110.}) {
+      const Score s = log.score(from);
+      EXPECT_GT(*s.get(Metric::kMakerCorrelation), 0.9);
+      EXPECT_NEAR(*s.get(Metric::kMakerGain), 2, 0.15);
+    }
+  }
+  // the same size, as a lag is that with the least difference
+  log.trace.tau_ext_of_driver /= 2;
+  for (const double late : {0.15, 0., -0.15}) {
+    for (int k = 0; k < 6000; ++k) log.output.tau_ext(0, k) = load(0.01 * k - late);
+    for (const double from : {-std::numeric_limits<double>::infinity(), 110.})
+      EXPECT_NEAR(*log.score(from).get(Metric::kMakerLag), late, 1e-9) << from;
+  }
 }
 
 }  // namespace

@@ -258,6 +258,25 @@ TEST(PoissonUpper, IsThatOfTheTables) {
   EXPECT_NEAR(poisson_upper(100), 118.08, 0.01);
 }
 
+TEST(Intervals, AreThoseOfTheTables) {
+  // half the 2.5 and 97.5 % quantiles of chi squared with 2 n and 2 (n + 1) degrees of freedom
+  for (const auto& [n, low, high] :
+       {std::tuple(0, 0., 3.6889), {1, 0.0253, 5.5716}, {10, 4.7954, 18.3904}}) {
+    EXPECT_NEAR(count_interval(n).low, low, 1e-3) << n;
+    EXPECT_NEAR(count_interval(n).high, high, 1e-3) << n;
+  }
+  // Newcombe 1998, table I, method 3: Wilson's without correction
+  for (const auto& [found, all, low, high] : {std::tuple(81, 263, 0.2553, 0.3662),
+                                              {15, 148, 0.0624, 0.1605},
+                                              {0, 20, 0., 0.1611},
+                                              {1, 29, 0.0061, 0.1718}}) {
+    EXPECT_NEAR(share_interval(found, all).low, low, 1e-4) << found;
+    EXPECT_NEAR(share_interval(found, all).high, high, 1e-4) << found;
+  }
+  EXPECT_EQ(share_interval(0, 0).low, 0);
+  EXPECT_EQ(share_interval(0, 0).high, 1);
+}
+
 TEST(Quantile, IsTheSmallestThatEnoughDoNotExceed) {
   EXPECT_EQ(quantile({3, 1, 2, 4}, 0.5), 2);
   EXPECT_EQ(quantile({3, 1, 2, 4}, 0.95), 4);
