@@ -89,11 +89,15 @@ int identify_one(const Flags& f) {
 }
 
 // all of them; `usable` becomes false where most of one was skipped
-std::vector<Trace> read_logs(const Flags& f, const std::vector<std::string>& paths, bool& usable) {
+std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
+                             const std::vector<std::string>& paths, bool& usable) {
   std::vector<Trace> all;
   for (const std::string& path : paths) {
     RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
     usable = usable && log.usable();
+    if (log.trace.dof() != arm.dof())
+      throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,
+                                              log.trace.dof(), f.robot, arm.dof()));
     all.push_back(std::move(log.trace));
   }
   return all;
@@ -111,7 +115,7 @@ ArmTree arm_of(const Flags& f) {
 
 int calibrate(const Flags& f, const ArmTree& arm) {
   bool usable = true;
-  std::vector<Trace> logs = read_logs(f, f.logs, usable);
+  std::vector<Trace> logs = read_logs(f, arm, f.logs, usable);
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
   CalibrateOptions o;
@@ -132,7 +136,8 @@ int calibrate(const Flags& f, const ArmTree& arm) {
 
 int weigh_payload(const Flags& f, const ArmTree& arm) {
   bool usable = true;
-  std::vector<Trace> empty = read_logs(f, f.logs, usable), loaded = read_logs(f, f.loaded, usable);
+  std::vector<Trace> empty = read_logs(f, arm, f.logs, usable),
+                     loaded = read_logs(f, arm, f.loaded, usable);
   for (std::vector<Trace>* const all : {&empty, &loaded})
     for (Trace& log : *all) make_torques(log, arm.gain);
   const Weighing w = weigh(arm, loaded, empty, f.windows);

@@ -104,9 +104,9 @@ std::string weighing_table(const Weighing& w, TableFormat format) {
                      {"windows"},
                      {"left", "N m rms"}});
   const auto add = [&](const char* what, const Weight& s, bool measured) {
-    table.add({what, fmt::format("{:.3f}", s.mass), fmt::format("{:.3f}", s.mass_error),
+    table.add({what, fmt::format("{:.3f}", s.mass), fmt::format("{:.2g}", s.mass_error),
                fmt::format("{:.4f}", s.moment[0]), fmt::format("{:.4f}", s.moment[1]),
-               fmt::format("{:.4f}", s.moment[2]), fmt::format("{:.4f}", s.moment_error.maxCoeff()),
+               fmt::format("{:.4f}", s.moment[2]), fmt::format("{:.2g}", s.moment_error.maxCoeff()),
                measured ? fmt::format("{}", s.windows) : "", measured ? number(s.residual) : ""});
   };
   add("loaded", w.loaded, true);
@@ -117,7 +117,7 @@ std::string weighing_table(const Weighing& w, TableFormat format) {
   out += fmt::format("\nMoments are about the origin of the body '{}', in its axes.\n",
                      printable_name(w.body));
   if (w.payload.mass > 3 * w.payload.mass_error) {
-    out += fmt::format("Center of mass [m]: {:.4f} +- {:.4f}, {:.4f} +- {:.4f}, {:.4f} +- {:.4f}\n",
+    out += fmt::format("Center of mass [m]: {:.4f} +- {:.2g}, {:.4f} +- {:.2g}, {:.4f} +- {:.2g}\n",
                        w.center[0], w.center_error[0], w.center[1], w.center_error[1], w.center[2],
                        w.center_error[2]);
   }

@@ -38,7 +38,9 @@ VectorXd row(const Trace& log, const Window& w, const std::vector<Term>& terms) 
 void check(const Trace& log, const std::vector<Term>& terms, const Windows& w) {
   if (log.dof() != 1) {
     throw std::invalid_argument(
-        fmt::format("a one-joint model is identified; the log has {} joints", log.dof()));
+        fmt::format("a one-joint model is identified, and the log has {} joints: --robot FILE "
+                    "calibrates an arm",
+                    log.dof()));
   }
   if (terms.empty()) throw std::invalid_argument("no term to identify");
   check_windows(w);

@@ -61,7 +61,7 @@ void check_windows(const Windows& w) {
 std::string too_few(std::size_t usable, std::size_t needed, int left_out, const Windows& w) {
   return fmt::format(
       "{} usable windows of {} s, at least {} are needed; {} were left out as slower than {} "
-      "rad/s, as touched or across a gap",
+      "rad/s, as touched or across a gap: record more motion, both ways",
       usable, w.length, needed, left_out, w.min_speed);
 }
 

@@ -65,8 +65,13 @@ Model load_robot(std::string_view name, std::string_view scene) {
 
 Model load_mjcf(const std::string& path, const ImportOptions& options) {
   const RobotFile robot = robot_file(path, options);
-  claim_input(robot.path);
-  return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options)}});
+  try {
+    claim_input(robot.path);
+    return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options)}});
+  } catch (const std::runtime_error& e) {
+    if (robot.path == path) throw;
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));  // which may be what is wrong
+  }
 }
 
 void register_mjcf(const std::string& name, const std::string& path) {

@@ -125,7 +125,7 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
            {R"({"format": "tauext-robot-1", "file": "no.xml"})", "no.xml"},
            {head + R"("joint": {}})", "unknown key \"joint\"; known: format, file, lock, joints"},
            {head + R"("joints": {"knee": {"coulomb": 1}}})",
-            "unknown joint 'knee'; known: elbow, shoulder"},
+            "arm.xml: unknown joint 'knee'; known: elbow, shoulder"},
            {head + R"("joints": {"elbow": {"coulomb": -1}}})",
             "joint 'elbow': \"coulomb\" is -1, and must be 0 to 1e+06"},
            {head + R"("joints": {"elbow": {"viscous": [1]}}})",
@@ -135,6 +135,7 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
             "unknown body 'hand'; known: lower, upper"},
            {head + R"("payload": {"body": "lower", "mass": -1, "center": [0, 0, 0]}})",
             "payload: \"mass\" is -1"}}) {
+    EXPECT_TRUE(error_of_robot(json).starts_with((folder_ / "arm.json").string())) << json;
     EXPECT_NE(error_of_robot(json).find(words), std::string::npos) << json << "\n"
                                                                    << error_of_robot(json);
   }
