@@ -16,6 +16,9 @@
 ///     P_qv' = P_qv + h P_vv + U_q + h U_v          P_dq' = P_dq + h P_dv
 ///     P_vv' = P_vv + V + V^T,  V = U_v + G U / 2   P_dv' = P_dv + U_d                       (i)
 ///
+/// Dry friction, where the model tells it apart, acts like tau, at the measured speeds: within
+/// qdd, steep at low speed, it would slow the filter and make steps overshoot.
+///
 /// Measurement update: H = [I 0] picks states and R is diagonal, so (14) is 2N scalar updates, one
 /// for each measured state i, in turn and without any inverse:
 ///     s = P_ii + R_i,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s             (ii)
@@ -47,10 +50,8 @@ class Ekf {
  public:
   static constexpr const char* kName = "ekf";
   static constexpr int kDof = M::kDof;
-  using Vec3 = Vec<3 * kDof>;  ///< [q; qd; tau_ext]
-
-  /// What can be set.
-  using Parameters = EkfParameters<kDof>;
+  using Vec3 = Vec<3 * kDof>;              ///< [q; qd; tau_ext]
+  using Parameters = EkfParameters<kDof>;  ///< what can be set
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Ekf(const M& model, const Parameters& p)
@@ -75,7 +76,12 @@ class Ekf {
     }
     if (sampling_.wrapped()) [[unlikely]]
       x_[0] += detail::pad_vector<kDof>(sampling_.turns());
-    const Vec<kDof> tau = p_.alignment == Alignment::kHeld ? sampling_.torque(y) : y.tau;
+    Vec<kDof> tau = p_.alignment == Alignment::kHeld ? sampling_.torque(y) : y.tau;
+    if constexpr (kDry) {
+      const Vec<kDof> dry = model_.dry_friction(y.qd);
+      tau -= 0.5 * (dry + dry_);
+      dry_ = dry;
+    }
     const double steps = p_.Ts > 0 ? sampling_.h() / p_.Ts : 1;
     if (!predict(sampling_.h(), tau, steps)) {
       sampling_.reset();
@@ -118,6 +124,7 @@ class Ekf {
  private:
   static constexpr int kRows = detail::kPadded<kDof>;
   static constexpr bool kBlocked = kRows > 4;  // more than a register
+  static constexpr bool kDry = requires(const M& m, Vec<kDof> x) { m.dry_friction(x); };
   using Block = detail::Block<kDof>;
   using Into = detail::Into;
   using Column = Vec<kRows>;
@@ -131,6 +138,7 @@ class Ekf {
     x_[0] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.q);
     x_[1] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.qd);
     if (zero) x_[2].setZero();
+    if constexpr (kDry) dry_ = model_.dry_friction(y.qd);
     qq_ = diagonal(p_.P0, 0);
     vv_ = diagonal(p_.P0, 1);
     dd_ = diagonal(p_.P0, 2);
@@ -149,32 +157,23 @@ class Ekf {
     detail::products<Into::kAdd, kDof, 1>({&s}, {&s}, dd_);
   }
 
-  using Padded = detail::PaddedDynamics<kDof>;
-
   // where x leads; B is set if a load needs it
-  [[gnu::always_inline]] Padded linearise(const Vec<kDof>& tau) const noexcept {
+  [[gnu::always_inline]] auto linearise(const Vec<kDof>& tau) const noexcept {
     const Vec<kDof> q = x_[0].template head<kDof>(), qd = x_[1].template head<kDof>(),
                     u = tau - x_[2].template head<kDof>();
-    if constexpr (requires { model_.padded_dynamics(q, qd, u); }) {
+    if constexpr (kDry) {
       return model_.padded_dynamics(q, qd, u);
     } else {
-      const ForwardDynamics<kDof> f = model_.forward_dynamics(q, qd, u);
-      const auto pad = [](const Mat<kDof>& m) { return detail::pad_matrix<kDof>(m); };
-      Padded p{detail::pad_vector<kDof>(f.qdd),
-               pad(f.dqdd_dq),
-               pad(f.dqdd_dqd),
-               pad(f.dqdd_dtau_ext),
-               Block::Zero(),
-               f.ok};
+      auto p = detail::pad_dynamics<kDof>(model_.forward_dynamics(q, qd, u));
       if (p_.Q_load > 0) [[unlikely]]
-        p.B = pad(model_.inertia(q));
+        p.B = detail::pad_matrix<kDof>(model_.inertia(q));
       return p;
     }
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
   [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau, double Q_scale) noexcept {
-    const Padded f = linearise(tau);
+    const auto f = linearise(tau);
     if (!f.ok) return false;
     const Column qd = x_[1];
     x_[0] += h * qd;  // (10)
@@ -295,6 +294,7 @@ class Ekf {
   Column x_[3] = {Column::Zero(), Column::Zero(), Column::Zero()};  // q, qd, d
   Block qq_, vq_, dq_, vv_, dv_, dd_;                               // of P
   Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
+  Vec<kDof> dry_ = nu_q_;                               // [N m] dry friction at the last sample
 };
 
 }  // namespace tauext

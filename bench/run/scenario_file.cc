@@ -83,7 +83,7 @@ std::vector<Wave> sines_of(const Object& o, int dof) {
 }
 
 // constant ones are cosines of no frequency
-std::vector<Wave> loads_of(const Object& o, int dof) {
+std::vector<Wave> loads_of(const Object& o, int dof, double duration) {
   constexpr double kHalfPi = 1.57079632679489662;
   std::vector<Wave> all;
   o.each("loads", [&](const Json& j, const std::string& where) {
@@ -91,13 +91,13 @@ std::vector<Wave> loads_of(const Object& o, int dof) {
     const double w = load.number_or("w", 0, 0, 1e4);
     all.push_back({joint_of(load, dof), load.number("torque", -1e6, 1e6), w,
                    load.number_or("phase", w == 0 ? kHalfPi : 0, -100, 100),
-                   load.number_or("from", 0, 0, Object::kMost),
+                   load.number_or("from", 0, 0, duration),
                    load.number_or("to", kForEver, 0, Object::kMost)});
   });
   return all;
 }
 
-std::vector<Touch> touches_of(const Object& o) {
+std::vector<Touch> touches_of(const Object& o, double duration) {
   constexpr std::pair<const char*, TouchKind> kKinds[] = {
       {"blow", TouchKind::kBlow}, {"push", TouchKind::kSlowPush}, {"clamp", TouchKind::kClamp}};
   std::vector<Touch> all;
@@ -108,7 +108,7 @@ std::vector<Touch> touches_of(const Object& o) {
     t.kind = find_known(kKinds, "kind of touch", kind, [](const auto& k) {
                return std::string(k.first);
              }).second;
-    t.begin = touch.number("t", 0, Object::kMost);
+    t.begin = touch.number("t", 0, duration);
     t.rise = touch.number("rise", 1e-3, 1e3);
     t.hold = touch.number_or("hold", 0, 0, Object::kMost);
     t.fall = touch.number_or("fall", t.kind == TouchKind::kBlow ? 0 : t.rise, 0, 1e3);
@@ -152,7 +152,13 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     }
     return sum;
   };
-  s.tau_ext = [loads = loads_of(of, robot.dof())](double t, int i) {
+  const std::vector<Wave> loads = loads_of(of, robot.dof(), s.duration);
+  const std::vector<Touch> touches = touches_of(of, s.duration);
+  const bool of_load = s.response != Response::kNone && s.response != Response::kDetection;
+  if (of_load && loads.empty() && touches.empty())
+    fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", of.where(),
+         of.text("asks", ""));
+  s.tau_ext = [loads](double t, int i) {
     double sum = 0;
     for (const Wave& x : loads) {
       if (x.joint == i && t >= x.from && t < x.to) sum += x.size * std::sin(x.w * t + x.phase);
@@ -165,7 +171,7 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     s.sensors = d.sensors;
     s.model_error = d.model_error;
   }
-  return with_touches(s, touches_of(of));
+  return with_touches(s, touches);
 }
 
 }  // namespace

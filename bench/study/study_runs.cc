@@ -77,7 +77,7 @@ StudyRuns runs_of_testbed1() {
 }
 
 // of any arm
-StudyRuns runs_of_file(const Robot& r) {
+StudyRuns runs_of_any(const Robot& r) {
   StudyRuns runs{.robot = r.name()};
   Degradation heavy = noisy(1e-4), rubbing = noisy(1e-4);
   heavy.model_error.mass = 1.05;
@@ -108,26 +108,28 @@ StudyRuns runs_of_file(const Robot& r) {
 }
 
 // made when it is first asked for
-const StudyRuns& of_file(const std::string& name) {
+const StudyRuns& of_any(const std::string& name) {
   static std::mutex mutex;
   static std::map<std::string, StudyRuns> all;
   const std::lock_guard alone(mutex);
   const auto found = all.find(name);
   return found != all.end() ? found->second
-                            : all.emplace(name, runs_of_file(robot(name))).first->second;
+                            : all.emplace(name, runs_of_any(robot(name))).first->second;
 }
 
 // the runs of a robot for which has(runs) holds; of the first one for ""
 const StudyRuns& find(const char* study, const std::string& name, bool (*has)(const StudyRuns&)) {
   static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
-  if (is_robot_file(name) && has(of_file(name))) return of_file(name);
   if (!name.empty()) robot(name);  // an unknown one is no robot without runs
   std::vector<std::string> with;
+  bool own = name.empty();
   for (const StudyRuns& r : all) {
+    own = own || r.robot == name;
     if (!has(r)) continue;
     if (name.empty() || r.robot == name) return r;
     with.push_back(r.robot);
   }
+  if (!own && has(of_any(name))) return of_any(name);
   throw std::invalid_argument(fmt::format("the {} study has runs for {} alone; {} has none", study,
                                           fmt::join(with, ", "), name));
 }

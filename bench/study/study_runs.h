@@ -2,7 +2,7 @@
 /// @file
 /// What a robot brings to the studies: conditions that it meets, and runs that a seed draws. All
 /// that belongs to one robot stands in study_runs.cc; the studies themselves know no robot by name.
-/// A robot from a file has those that every arm has.
+/// Any other robot has those that every arm has.
 #pragma once
 
 #include <compare>

@@ -205,6 +205,9 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
   refuses("\"asks\": \"detection\"", "\"asks\": \"all\"", "known: error, step, lag");
   refuses("[0, 0, 40]", "[0, 40]", "\"force\" is [0,40], and must be 3 numbers");
   refuses("\"t\": 3,", "\"t\": 0,", "must be later than the one before");
+  refuses("\"t\": 8", "\"t\": 80", "\"t\" is 80, and must be 0 to 10");
+  refuses(own_scenario(), R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "step"}]})",
+          "\"asks\" is 'step', and there are no \"loads\" to answer");
   refuses("\"pick\"", "\"step\"", "'step'");
   refuses("\"pick\"", "\"a/b\"", "must be a word");
   refuses("\"velocity_noise\"", "\"noise\"", "velocity_noise");

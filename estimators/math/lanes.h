@@ -137,7 +137,7 @@ template <Into kInto, int K, std::size_t kTransposed, int Columns, int Rows, std
                                                        int first, Mat<Rows>& c) noexcept {
   constexpr int kLanes = Rows / 4;
   Lanes sum[Columns][kLanes];
-#pragma GCC unroll 4
+#pragma GCC unroll 6
   for (int j = 0; j < Columns; ++j) {
 #pragma GCC unroll 2
     for (int i = 0; i < kLanes; ++i) {
@@ -148,30 +148,36 @@ template <Into kInto, int K, std::size_t kTransposed, int Columns, int Rows, std
       }
     }
   }
-#pragma GCC unroll 3
-  for (std::size_t t = 0; t < Terms; ++t) {
-    const bool turned = t < kTransposed;
-#pragma GCC unroll 8
-    for (int k = 0; k < K; ++k) {
-      Lanes column[kLanes];
+  const auto add = [&](std::size_t t, int k) __attribute__((always_inline)) {
+    Lanes column[kLanes];
 #pragma GCC unroll 2
-      for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
-#pragma GCC unroll 4
-      for (int j = 0; j < Columns; ++j) {
-        const double x = turned ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
-        const Lanes times{x, x, x, x};
+    for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
+#pragma GCC unroll 6
+    for (int j = 0; j < Columns; ++j) {
+      const double x = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
+      const Lanes times{x, x, x, x};
 #pragma GCC unroll 2
-        for (int i = 0; i < kLanes; ++i) {
-          if constexpr (kInto == Into::kSubtract) {
-            sum[j][i] -= column[i] * times;
-          } else {
-            sum[j][i] += column[i] * times;
-          }
+      for (int i = 0; i < kLanes; ++i) {
+        if constexpr (kInto == Into::kSubtract) {
+          sum[j][i] -= column[i] * times;
+        } else {
+          sum[j][i] += column[i] * times;
         }
       }
     }
-  }
+  };
+#pragma GCC unroll 3
+  for (std::size_t t = 0; t < Terms; ++t) {
+    if constexpr (Rows == 4) {
 #pragma GCC unroll 4
+      for (int k = 0; k < K; ++k) add(t, k);
+    } else {
+      // written out, the EKF of 7 joints would not fit into the first cache of instructions
+#pragma GCC unroll 1
+      for (int k = 0; k < K; ++k) add(t, k);
+    }
+  }
+#pragma GCC unroll 6
   for (int j = 0; j < Columns; ++j) {
 #pragma GCC unroll 2
     for (int i = 0; i < kLanes; ++i) store(&c(4 * i, first + j), sum[j][i]);
@@ -190,7 +196,7 @@ template <Into kInto, int K, std::size_t kTransposed = 0, int Rows, std::size_t 
     double sum = 0;
     for (std::size_t t = 0; t < Terms; ++t) sum += (*a[t])(0, 0) * (*b[t])(0, 0);
     c(0, 0) = (kInto == Into::kSet ? 0 : c(0, 0)) + (kInto == Into::kSubtract ? -sum : sum);
-  } else if constexpr (K <= 4) {
+  } else if constexpr (K <= 6) {
     columns_of_products<kInto, K, kTransposed, K>(a, b, 0, c);
   } else {
     constexpr int kFirst = (K + 1) / 2;
@@ -211,5 +217,13 @@ struct PaddedDynamics {
   Square B;                                ///< [kg m^2]
   bool ok = false;                         ///< false: B was not positive definite
 };
+
+/// B is left at zero.
+template <int N, class Dynamics>
+[[gnu::always_inline]] inline PaddedDynamics<N> pad_dynamics(const Dynamics& f) noexcept {
+  return {
+      pad_vector<N>(f.qdd),           pad_matrix<N>(f.dqdd_dq),          pad_matrix<N>(f.dqdd_dqd),
+      pad_matrix<N>(f.dqdd_dtau_ext), PaddedDynamics<N>::Square::Zero(), f.ok};
+}
 
 }  // namespace tauext::detail

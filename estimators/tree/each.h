@@ -8,6 +8,8 @@
 /// origin by v. A force (n; f) has the moment n about the origin.
 #pragma once
 
+#include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "estimators/math/lanes.h"
@@ -89,7 +91,11 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
     return e;
   }
   [[gnu::always_inline]] double operator[](int i) const noexcept {
-    return x[i / 4][i % 4];
+    if (__builtin_constant_p(i)) return x[i / 4][i % 4];
+    double a;  // with another index, GCC 12 takes an element out of a register by a detour
+    std::memcpy(&a, reinterpret_cast<const char*>(x) + static_cast<std::size_t>(i) * sizeof a,
+                sizeof a);
+    return a;
   }
   [[gnu::always_inline]] void set(int i, double a) noexcept {
     x[i / 4][i % 4] = a;

@@ -25,12 +25,12 @@
 
 #include <Eigen/LU>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
+#include "estimators/math/tanh.h"
 #include "estimators/tree/tree_joint.h"
 #include "estimators/tree/tree_passes.h"
 
@@ -53,11 +53,10 @@ class TreeModel {
 
   /// What it is made of.
   struct Parameters {
-    std::array<TreeJoint, M> joints;     ///< parents before children
-    Vec<3> gravity = {0, 0, -kGravity};  ///< [m/s^2]
-    /// of full rank
-    Eigen::Matrix<double, M, N> drho = Eigen::Matrix<double, M, N>::Identity();
-    Vec<M> rho0 = Vec<M>::Zero();  ///< [rad] or [m] rho at q = 0
+    std::array<TreeJoint, M> joints;                                ///< parents before children
+    Vec<3> gravity = {0, 0, -kGravity};                             ///< [m/s^2]
+    Eigen::Matrix<double, M, N> drho = decltype(drho)::Identity();  ///< of full rank
+    Vec<M> rho0 = Vec<M>::Zero();                                   ///< [rad] or [m] rho at q = 0
   };
 
   /// @throws std::invalid_argument for a joint that is none, naming its number and what is wrong
@@ -70,6 +69,11 @@ class TreeModel {
       throw std::invalid_argument("a tree's numbers must be finite");
     if (Eigen::FullPivLU<Eigen::MatrixXd>(p.drho).rank() < N)
       throw std::invalid_argument("a tree's drho must have full rank");
+    for (int i = 0; i < M; ++i) {
+      const TreeJoint& j = p.joints[static_cast<std::size_t>(i)];
+      viscous_[i] = Scalar(j.viscous), skew_[i] = Scalar(j.viscous_skew);
+      dry_[i] = Scalar(j.dry), offset_[i] = Scalar(j.offset), per_slip_[i] = Scalar(1 / j.v_s);
+    }
   }
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
@@ -116,26 +120,37 @@ class TreeModel {
 
   /// F(qd) [N m].
   VecN friction(const VecN& qd) const noexcept {
+    const VecM rate = to_rate(qd);
     VecM slope;
-    return forces(friction(to_rate(qd), slope));
+    return forces(VecM(viscous_.cwiseProduct(rate) + offset_ + dry_friction(rate, slope)));
+  }
+
+  /// What of it Coulomb's friction takes [N m]: steep where the speed changes its sign.
+  VecN dry_friction(const VecN& qd) const noexcept {
+    VecM slope;
+    return forces(dry_friction(to_rate(qd), slope));
   }
 
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians, by (iv).
   ForwardDynamics<N, Scalar> forward_dynamics(const VecN& q, const VecN& qd,
                                               const VecN& u) const noexcept {
-    const auto f = padded_dynamics(q, qd, u);
-    return {f.qdd.template head<N>(), own(f.by_q), own(f.by_qd), own(f.by_tau_ext), f.ok};
+    VecM slope;
+    const VecN dry = forces(dry_friction(to_rate(qd), slope));
+    const auto f = padded_dynamics(q, qd, u - dry);
+    const MatN per_torque = own(f.by_tau_ext);
+    return {f.qdd.template head<N>(), own(f.by_q),
+            own(f.by_qd) + per_torque * (drho_.transpose() * slope.asDiagonal() * drho_),
+            per_torque, f.ok};
   }
 
-  /// The same as it comes, with inertia(q).
+  /// The same as it comes and with inertia(q), but without dry friction.
   [[gnu::noinline]] detail::PaddedDynamics<N, Scalar> padded_dynamics(
       const VecN& q, const VecN& qd, const VecN& u) const noexcept {
     const VecM rate = to_rate(qd);
     const auto s = passes_.pose(to_rho(q));
     auto flow = passes_.flow(s, rate);
     const auto c = passes_.composite(s.I);
-    VecM slope;
-    const VecM rest = bias(s, flow) + friction(rate, slope);
+    const VecM rest = bias(s, flow) + viscous_.cwiseProduct(rate) + offset_;
     detail::PaddedDynamics<N, Scalar> f;
     if constexpr (M == N) {
       f.B = passes_.inertia(s, c);
@@ -152,7 +167,7 @@ class TreeModel {
     passes_.accelerate(s, to_rate(qdd), flow);
     Bodies q_part, qd_part;
     passes_.derivatives(s, flow, c, q_part, qd_part);
-    qd_part.diagonal().template head<M>() += slope;
+    qd_part.diagonal().template head<M>() += viscous_;
     const Square &by_q = to_q(q_part), &by_qd = to_q(qd_part);
     f.by_q = times_transposed(f.by_tau_ext, by_q);
     f.by_qd = times_transposed(f.by_tau_ext, by_qd);
@@ -213,20 +228,13 @@ class TreeModel {
   }
 
   // of the joints' rates, and how it grows with them
-  VecM friction(const VecM& rate, VecM& slope) const noexcept {
-    VecM F;
-    for (int i = 0; i < M; ++i) {
-      const TreeJoint& j = p_.joints[static_cast<std::size_t>(i)];
-      using std::tanh;
-      F[i] = Scalar(j.viscous) * rate[i] + Scalar(j.offset), slope[i] = Scalar(j.viscous);
-      if (!(j.dry > 0) && j.viscous_skew == 0) continue;
-      const Scalar share = tanh(rate[i] / Scalar(j.v_s));
-      const Scalar level = Scalar(j.dry) + Scalar(j.viscous_skew) * rate[i];
-      F[i] += level * share;
-      slope[i] +=
-          Scalar(j.viscous_skew) * share + level * Scalar(1 / j.v_s) * (Scalar(1) - share * share);
-    }
-    return F;
+  [[gnu::always_inline]] VecM dry_friction(const VecM& rate, VecM& slope) const noexcept {
+    using tauext::tanh;
+    const VecM share = tanh(VecM(rate.cwiseProduct(per_slip_)));
+    const VecM level = dry_ + skew_.cwiseProduct(rate);
+    const VecM rest = VecM::Constant(Scalar(1)) - share.cwiseProduct(share);
+    slope = skew_.cwiseProduct(share) + level.cwiseProduct(per_slip_).cwiseProduct(rest);
+    return level.cwiseProduct(share);
   }
 
   VecM to_rho(const VecN& q) const noexcept {
@@ -285,6 +293,8 @@ class TreeModel {
   bool direct_;  // q is rho
   Passes passes_;
   Eigen::Matrix<Scalar, M, N> drho_;
+  VecM viscous_, skew_, dry_, offset_;  // friction of each joint, as TreeJoint has it
+  VecM per_slip_;                       // 1 / v_s
 };
 
 }  // namespace tauext

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -93,7 +92,8 @@ class Import {
           one_line(fmt::format("{}larger than {} MB", where, kMostBytes >> 20)));
     doc.LoadFile(file.c_str());
     if (doc.Error() || doc.RootElement() == nullptr)
-      throw std::runtime_error(one_line(fmt::format("{}no XML: {}", where, doc.ErrorStr())));
+      throw std::runtime_error(one_line(
+          fmt::format("{}line {}: no XML ({})", where, doc.ErrorLineNum(), detail::error_of(doc))));
     return *doc.RootElement();
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What of MJCF the dynamics of an arm needs, as far as MuJoCo 2.2.2 knows it.
+/// What of MJCF the dynamics of an arm needs, as far as MuJoCo 2.2.2 knows it; and what of URDF.
 #pragma once
 
 #include <string_view>
@@ -87,5 +87,24 @@ inline constexpr std::string_view kLeftOutElements =
 /// Newer elements that would change the arm if they were left out.
 inline constexpr std::string_view kUnknown[] = {"frame", "replicate", "attach", "composite",
                                                 "flexcomp"};
+
+/// The same of URDF, within its links and joints.
+inline constexpr Kept kUrdf[] = {
+    {"link", " name type "},
+    {"inertial", " "},
+    {"origin", " xyz rpy "},
+    {"mass", " value "},
+    {"inertia", " ixx ixy ixz iyy iyz izz "},
+    {"joint", " name type "},
+    {"parent", " link "},
+    {"child", " link "},
+    {"axis", " xyz "},
+    {"limit", " lower upper effort velocity acceleration jerk "},
+    {"dynamics", " damping friction armature "},  // armature: ours
+    {"mimic", " joint multiplier offset "},
+};
+inline constexpr std::string_view kUrdfLeftOut =
+    " visual collision contact material gazebo sensor self_collision_checking verbose calibration "
+    "safety_controller ";
 
 }  // namespace tauext::detail

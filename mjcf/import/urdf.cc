@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <locale>
 #include <set>
 #include <sstream>
@@ -15,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/schema.h"
 #include "mjcf/import/xml.h"
 #include "mjcf/trace/printable.h"
 
@@ -36,8 +40,8 @@ std::vector<double> numbers(const XMLElement& e, const char* attribute, std::siz
   in.imbue(std::locale::classic());
   for (double x = 0; in >> x;) all.push_back(x);
   if (all.size() != n || !in.eof())
-    fail(e, "{} of <{}> is '{}', and must be {} numbers", attribute, name_of(e), text(e, attribute),
-         n);
+    fail(e, "{} of <{}> is '{}', and must be {}", attribute, name_of(e), text(e, attribute),
+         n == 1 ? "a number, with a point" : fmt::format("{} numbers, with blanks between", n));
   return all;
 }
 double number(const XMLElement* e, const char* attribute, double otherwise) {
@@ -62,6 +66,39 @@ void set(XMLElement& e, const char* attribute, std::initializer_list<double> val
   e.SetAttribute(attribute, fmt::format("{}", fmt::join(values, " ")).c_str());
 }
 
+// typing errors would change the arm, and nobody would see it
+void refuse_unknown(const XMLElement& e, const std::string& owner,
+                    std::map<std::string, int>& dropped) {
+  const auto known = std::find_if(std::begin(kUrdf), std::end(kUrdf),
+                                  [&](const Kept& k) { return k.element == name_of(e); });
+  if (known == std::end(kUrdf)) {
+    const bool other = name_of(e).find(':') != std::string_view::npos;
+    if (!other && kUrdfLeftOut.find(fmt::format(" {} ", name_of(e))) == kUrdfLeftOut.npos)
+      fail(e, "{}: this import knows no <{}>; take it out", owner, name_of(e));
+    ++dropped[std::string(name_of(e))];
+    return;
+  }
+  for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const std::string_view name = a->Name();
+    if (name.find(':') != name.npos) continue;
+    if (known->attributes.find(fmt::format(" {} ", name)) == std::string_view::npos)
+      fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
+           known->attributes.substr(0, known->attributes.size() - 1));
+  }
+  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
+    refuse_unknown(*c, owner, dropped);
+}
+
+// [kg m^2] about the center of mass: that of a body
+void check_inertia(const XMLElement& link, const Matrix3d& I) {
+  const Vector3d moments = Eigen::SelfAdjointEigenSolver<Matrix3d>(I).eigenvalues();
+  if (moments[0] > 0 && moments[0] + moments[1] >= (1 - 1e-9) * moments[2]) return;
+  fail(link,
+       "link '{}': its principal moments of inertia are {:.4g}, {:.4g} and {:.4g} kg m^2; no body "
+       "has these: each is above 0 and at most the sum of the others",
+       text(link, "name"), moments[0], moments[1], moments[2]);
+}
+
 class Urdf {
  public:
   Urdf(const XMLElement& robot, XMLElement& mujoco, std::map<std::string, int>& dropped)
@@ -74,10 +111,12 @@ class Urdf {
       if (kind == "link") {
         if (!links_.emplace(text(*e, "name"), e).second)
           fail(*e, "there are two links '{}'", text(*e, "name"));
-        for (const XMLElement* c = e->FirstChildElement(); c != nullptr;
-             c = c->NextSiblingElement())
-          if (name_of(*c) != "inertial") ++dropped[std::string(name_of(*c))];
+        refuse_unknown(*e, fmt::format("link '{}'", text(*e, "name")), dropped);
       } else if (kind == "joint") {
+        for (const XMLElement* j : joints_)
+          if (text(*j, "name") == text(*e, "name"))
+            fail(*e, "there are two joints '{}'", text(*e, "name"));
+        refuse_unknown(*e, fmt::format("joint '{}'", text(*e, "name")), dropped);
         joints_.push_back(e);
       } else {
         ++dropped[std::string(kind)];
@@ -141,11 +180,13 @@ class Urdf {
       fail(*inertial, "link '{}': its <inertial> wants a <mass> and an <inertia>",
            text(link, "name"));
     const double kg = numbers(*mass, "value", 1).front();
+    if (!(kg >= 0)) fail(*mass, "link '{}': its mass is {:g} kg", text(link, "name"), kg);
     const auto of = [&](const char* which) { return number(tensor, which, 0); };
     Matrix3d I;
     I << of("ixx"), of("ixy"), of("ixz"), of("ixy"), of("iyy"), of("iyz"), of("ixz"), of("iyz"),
         of("izz");
     if (kg == 0 && I.isZero(0)) return;
+    check_inertia(link, I);
     const Matrix3d R = rotation(origin);
     I = R * I * R.transpose();
     const Vector3d at = vector(origin, "xyz", Vector3d::Zero());
@@ -166,6 +207,7 @@ class Urdf {
     out.SetAttribute("name", name.c_str());
     out.SetAttribute("type", slide ? "slide" : "hinge");
     const Vector3d axis = vector(joint.FirstChildElement("axis"), "xyz", Vector3d::UnitX());
+    if (!(axis.norm() > 1e-9)) fail(joint, "joint '{}': its axis has no direction", name);
     set(out, "axis", {axis[0], axis[1], axis[2]});
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = number(limit, "lower", 0), upper = number(limit, "upper", 0);

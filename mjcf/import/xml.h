@@ -5,6 +5,7 @@
 
 #include <tinyxml2.h>
 
+#include <cctype>
 #include <map>
 #include <string>
 #include <string_view>
@@ -21,6 +22,14 @@ inline std::string_view name_of(const XMLElement& e) {
 inline std::string text(const XMLElement& e, const char* attribute) {
   const char* const value = e.Attribute(attribute);
   return value == nullptr ? "" : value;
+}
+
+/// What is wrong with what was read, like "mismatched element"; "no element" if nothing is.
+inline std::string error_of(const tinyxml2::XMLDocument& doc) {
+  std::string words = doc.Error() ? doc.ErrorName() : "XML_ERROR_NO_ELEMENT";
+  words.erase(0, std::string_view("XML_ERROR_").size());
+  for (char& c : words) c = static_cast<char>(c == '_' ? ' ' : std::tolower(c));
+  return words;
 }
 
 /// The name of the element around it, or "".

@@ -64,6 +64,11 @@ class AnyTree {
       return tied<VecN>([&](const auto& arm) { return arm.friction(wide(qd)); });
     return arm_.friction(qd);
   }
+  VecN dry_friction(const VecN& qd) const noexcept {  ///< Coulomb's share of it [N m]
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&](const auto& arm) { return arm.dry_friction(wide(qd)); });
+    return arm_.dry_friction(qd);
+  }
   /// inertia and bias, sharing the pose.
   Dynamics<N> dynamics(const VecN& q, const VecN& qd) const noexcept {
     if (tied_) [[unlikely]]
@@ -79,10 +84,12 @@ class AnyTree {
   }
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians.
   ForwardDynamics<N> forward_dynamics(const VecN& q, const VecN& qd, const VecN& u) const noexcept {
-    const auto f = padded_dynamics(q, qd, u);
-    return {f.qdd.template head<N>(), narrow(f.by_q), narrow(f.by_qd), narrow(f.by_tau_ext), f.ok};
+    if (tied_) [[unlikely]]
+      return tied<ForwardDynamics<N>>(
+          [&](const auto& arm) { return arm.forward_dynamics(wide(q), wide(qd), wide(u)); });
+    return arm_.forward_dynamics(q, qd, u);
   }
-  /// The same as it comes, with inertia(q).
+  /// The same as it comes and with inertia(q), but without dry friction.
   detail::PaddedDynamics<N> padded_dynamics(const VecN& q, const VecN& qd,
                                             const VecN& u) const noexcept {
     if (tied_) [[unlikely]]
@@ -106,6 +113,9 @@ class AnyTree {
   }
   static Dynamics<N> narrow(const Dynamics<kMostCoordinates>& d) noexcept {
     return {narrow(d.B), narrow(d.bias)};
+  }
+  static ForwardDynamics<N> narrow(const ForwardDynamics<kMostCoordinates>& f) noexcept {
+    return {narrow(f.qdd), narrow(f.dqdd_dq), narrow(f.dqdd_dqd), narrow(f.dqdd_dtau_ext), f.ok};
   }
   static detail::PaddedDynamics<N> narrow(
       const detail::PaddedDynamics<kMostCoordinates>& f) noexcept {

@@ -156,8 +156,10 @@ std::string without_jargon(const std::string& message) {
   const std::size_t name = message.find(kName);
   if (message.find("mjMINVAL") == message.npos || name == message.npos) return message;
   const std::size_t from = name + kName.size();
-  return fmt::format("body '{}' moves and weighs nothing; give it an <inertial> with a mass",
-                     message.substr(from, message.find(", id", from) - from));
+  return fmt::format(
+      "body '{}' moves, and mass or inertia of it is not above 0; give it an "
+      "<inertial> with both",
+      message.substr(from, message.find(", id", from) - from));
 }
 
 // the file as it is, or, if it has to be, imported

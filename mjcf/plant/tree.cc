@@ -44,7 +44,13 @@ void check(const mjModel& m) {
     throw std::invalid_argument(
         "no joint is left that moves: an arm of hinges and slides is wanted");
   }
-  refuse(!VectorXd::Map(m.jnt_stiffness, m.njnt).isZero(0), "springs in joints");
+  for (int i = 0; i < m.njnt; ++i) {
+    if (m.jnt_stiffness[i] == 0) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} has a spring of {:.4g} {}, which no estimator here knows: take its "
+        "stiffness out, or --lock REGEX fixes the joint",
+        joint_name(m, i), m.jnt_stiffness[i], m.jnt_type[i] == mjJNT_SLIDE ? "N/m" : "N m/rad"));
+  }
   for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
     refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
   }

@@ -125,7 +125,7 @@ TEST_F(FileRobot, WhatIsNoArmIsRefusedWithItsName) {
   refuses("<mujoco><worldbody/></mujoco>", "hinges and slides");
   refuses(
       "<mujoco><worldbody><body><joint stiffness='3'/><geom size='1'/></body></worldbody></mujoco>",
-      "springs");
+      "joint 1 'joint1' has a spring");
   refuses(
       "<mujoco><option density='1.2'/><worldbody><body><joint/><geom "
       "size='1'/></body></worldbody></mujoco>",

@@ -5,6 +5,7 @@
 #include <mujoco/mujoco.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -198,7 +199,7 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
   ASSERT_EQ(arm.dof(), 4);
   EXPECT_LT((arm.drho.col(3) - (Eigen::VectorXd(5) << 0, 0, 0, 1, -2).finished()).norm(), 1e-15);
   EXPECT_LT((arm.rho0 - (Eigen::VectorXd(5) << 0, 0, 0, 0, .01).finished()).norm(), 1e-15);
-  for (const char* leader : {"joint='lifft'", "jiont='left'", "joint='right'"}) {
+  for (const char* leader : {"joint='lifft'", "", "joint='right'"}) {
     std::string astray = fingers;
     astray.replace(astray.find("joint='left'/>"), 12, leader);
     has(error(astray), "joint 'right': its <mimic> follows");
@@ -219,7 +220,26 @@ TEST_F(Import, OfUrdfSaysWhatIsWrong) {
   };
   has(error(limited("revolut", "lower='-1' upper='1'")), "joint 'y' is revolut");
   has(error(limited("revolute", "lower='2' upper='-2'")), "no way to go from 2 to -2");
-  has(error(limited("revolute", "lower='-1' upper='1'")), "body 'c' moves and weighs nothing");
+  has(error(limited("revolute", "lower='-1' upper='1'")),
+      "body 'c' moves, and mass or inertia of it is not above 0");
+}
+
+TEST_F(Import, OfUrdfTellsTypingErrorsAndBodiesThatCannotBe) {
+  for (const auto& [right, wrong, words] : std::vector<std::array<const char*, 3>>{
+           {"damping=", "dampping=", "joint 'shoulder': <dynamics> knows no 'dampping'; known: da"},
+           {"<dynamics", "<dynamcis", "joint 'shoulder': this import knows no <dynamcis>"},
+           {"<visual>", "<visula/><visual>", "link 'upper': this import knows no <visula>"},
+           {"value='4'", "value='2,6'", "mass> is '2,6', and must be a number, with a point"},
+           {"value='4'", "value='-4'", "link 'upper': its mass is -4 kg"},
+           {"ixx='.02'", "ixx='.09'", "link 'lower': its principal moments"},
+           {"xyz='1 0 1'", "xyz='0 0 0'", "joint 'elbow': its axis has no direction"},
+           {"'elbow'", "'shoulder'", "there are two joints 'shoulder'"},
+           {"</visual>", "</visul>", "line 1: no XML (mismatched element)"}}) {
+    std::string text = urdf();
+    text.replace(text.find(right), std::string(right).size(), wrong);
+    const std::string error = error_of([&] { load_mjcf(put(text, "arm.urdf")); });
+    EXPECT_NE(error.find(words), std::string::npos) << error;
+  }
 }
 
 TEST_F(Import, FrictionThatIsTooQuickForSamplesIsNamedWithItsRemedy) {
@@ -264,6 +284,8 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
   has(error(body("<body><joint name='a'/><sight name='s'/></body>")), "knows no <sight>");
   has(error(body("<body><joint name='a'/><geom size='.1' mass='nan'/></body>")),
       "mass of <geom> is nan");
+  has(error(body("<body><joint name='a' stiffness='3'/><geom size='.1'/></body>")),
+      "joint 1 'a' has a spring of 3 N m/rad");
   has(error(body("<body><freejoint name='loose'/><geom size='.1'/></body>")),
       "joint 1 'loose' is free");
   has(error(body("<body><geom size='.1'/></body>")), "no joint is left that moves");
