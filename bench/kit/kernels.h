@@ -10,9 +10,7 @@
 /// in a source that CMake's tauext_add_plugin(target source) builds. Needs Eigen alone.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -21,6 +19,7 @@
 
 #include "bench/kit/life.h"
 #include "bench/kit/plugin.h"
+#include "bench/kit/state.h"
 #include "estimators/concepts.h"
 
 #ifndef TAUEXT_PLUGIN_FLAGS
@@ -62,12 +61,6 @@ class Kernel {
 
 namespace detail {
 
-// the compiler has to compute x and may not know what it is used for
-template <class T>
-[[gnu::always_inline]] inline void keep(const T& x) {
-  asm volatile("" : : "r"(&x) : "memory");
-}
-
 // what a kernel of N joints sees of a sample
 template <int N>
 struct KernelSample {
@@ -104,17 +97,7 @@ class alignas(kPage) Instance final : public KernelInstance {
   }
 
   int state(int most, void* bytes) const noexcept override {
-    // what no copy writes holds what lay there before: on two grounds it differs, and is left out
-    alignas(Subject) unsigned char copies[2][sizeof(Subject)];
-    for (auto& copy : copies) {
-      std::memset(copy, &copy == copies ? 0 : 255, sizeof copy);
-      detail::keep(copy);  // else the compiler knows that constructors and destructors end it
-      std::destroy_at(new (copy) Subject(subject_)), detail::keep(copy);
-    }
-    auto* const out = static_cast<unsigned char*>(bytes);
-    for (int i = 0; i < std::min<int>(most, sizeof(Subject)); ++i)
-      out[i] = copies[0][i] & (copies[0][i] == copies[1][i] ? 255 : 0);
-    return static_cast<int>(sizeof(Subject));
+    return detail::copy_state(subject_, most, bytes);
   }
 
  private:
