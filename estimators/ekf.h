@@ -124,7 +124,7 @@ class Ekf {
  private:
   static constexpr int kRows = detail::kPadded<kDof>;
   static constexpr bool kBlocked = kRows > 4;  // more than a register
-  static constexpr bool kDry = requires(const M& m, Vec<kDof> x) { m.dry_friction(x); };
+  static constexpr bool kDry = requires(const M& m, Vec<kDof> x) { m.padded_dynamics(x, x, x); };
   using Block = detail::Block<kDof>;
   using Into = detail::Into;
   using Column = Vec<kRows>;

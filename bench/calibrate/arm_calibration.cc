@@ -214,10 +214,6 @@ CalibratedJoint calibrated(const Rows& r, const std::vector<std::string>& names,
   return joint;
 }
 
-}  // namespace
-
-namespace {
-
 // [rad/s] over which the joint's friction is smooth, as tree_of() will have it with what was found
 double slip_speed(const ArmTree& arm, int joint, const std::vector<std::string>& names,
                   const VectorXd& theta) {

@@ -58,7 +58,7 @@ const Robot& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
   const std::invalid_argument error = unknown("robot", name, known);
   if (name.find_first_of("./") == name.npos) throw error;
   throw std::invalid_argument(
-      fmt::format("{}; a robot's file is MJCF, .xml, or URDF, .urdf", error.what()));
+      fmt::format("{}; a robot's file is MJCF, .xml, URDF, .urdf, or ours, .json", error.what()));
 }
 
 std::string list_of(const Robot& r) {

@@ -31,6 +31,20 @@ inline void store(double* to, const Lanes& x) noexcept {
 // Lanes go by reference, inlined as all of this is: a vector as a value would warn of its ABI
 // wherever a program is built without AVX.
 
+/// Calls f(0) to f(N - 1), written out one after the other or in a loop. Written out, it is faster
+/// until a step no longer fits into the processor's first cache of instructions, as the EKF of 7
+/// joints would not.
+template <bool kLoop, int N, class F>
+[[gnu::always_inline]] inline void for_each(F&& f) noexcept {
+  if constexpr (kLoop) {
+#pragma GCC unroll 1
+    for (int i = 0; i < N; ++i) f(i);
+  } else {
+#pragma GCC unroll 4
+    for (int i = 0; i < N; ++i) f(i);
+  }
+}
+
 /// Four elements of v from `first` on, with copies of the first one beyond its end; `first` must
 /// fold to a constant.
 template <int N>
@@ -148,34 +162,26 @@ template <Into kInto, int K, std::size_t kTransposed, int Columns, int Rows, std
       }
     }
   }
-  const auto add = [&](std::size_t t, int k) __attribute__((always_inline)) {
-    Lanes column[kLanes];
-#pragma GCC unroll 2
-    for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
-#pragma GCC unroll 6
-    for (int j = 0; j < Columns; ++j) {
-      const double x = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
-      const Lanes times{x, x, x, x};
-#pragma GCC unroll 2
-      for (int i = 0; i < kLanes; ++i) {
-        if constexpr (kInto == Into::kSubtract) {
-          sum[j][i] -= column[i] * times;
-        } else {
-          sum[j][i] += column[i] * times;
-        }
-      }
-    }
-  };
 #pragma GCC unroll 3
   for (std::size_t t = 0; t < Terms; ++t) {
-    if constexpr (Rows == 4) {
-#pragma GCC unroll 4
-      for (int k = 0; k < K; ++k) add(t, k);
-    } else {
-      // written out, the EKF of 7 joints would not fit into the first cache of instructions
-#pragma GCC unroll 1
-      for (int k = 0; k < K; ++k) add(t, k);
-    }
+    for_each<(Rows > 4), K>([&](int k) __attribute__((always_inline)) {
+      Lanes column[kLanes];
+#pragma GCC unroll 2
+      for (int i = 0; i < kLanes; ++i) load(&(*a[t])(4 * i, k), column[i]);
+#pragma GCC unroll 6
+      for (int j = 0; j < Columns; ++j) {
+        const double x = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
+        const Lanes times{x, x, x, x};
+#pragma GCC unroll 2
+        for (int i = 0; i < kLanes; ++i) {
+          if constexpr (kInto == Into::kSubtract) {
+            sum[j][i] -= column[i] * times;
+          } else {
+            sum[j][i] += column[i] * times;
+          }
+        }
+      }
+    });
   }
 #pragma GCC unroll 6
   for (int j = 0; j < Columns; ++j) {
@@ -218,7 +224,7 @@ struct PaddedDynamics {
   bool ok = false;                         ///< false: B was not positive definite
 };
 
-/// B is left at zero.
+/// f with rows and columns of zeros appended, and B left at zero.
 template <int N, class Dynamics>
 [[gnu::always_inline]] inline PaddedDynamics<N> pad_dynamics(const Dynamics& f) noexcept {
   return {

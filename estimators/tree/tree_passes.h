@@ -147,7 +147,7 @@ class TreePasses {
     Square q_columns, qd_columns;  // below the diagonal
     for (Square* m : {&by_q, &by_qd, &q_columns, &qd_columns})
       m->template rightCols<P - N>().setZero();
-    const auto add = [&](int i) __attribute__((always_inline)) {
+    for_each<(P > 4), N>([&](int i) __attribute__((always_inline)) {
       const Motion S = s.S.of(i), Sd = f.Sd.of(i);
       const One q_below = dot(BtS, Sd.w) + dot(Sdd.of(i), IS);
       const One qd_below = dot(BtS, S.w) + two * dot(Sd, IS);
@@ -156,15 +156,7 @@ class TreePasses {
       (behind_[i] * qd_right).store(&by_qd(0, i));
       (own_behind_[i] * q_below).store(&q_columns(0, i));
       (own_behind_[i] * qd_below).store(&qd_columns(0, i));
-    };
-    if constexpr (P <= 4) {
-#pragma GCC unroll 4
-      for (int i = 0; i < N; ++i) add(i);
-    } else {
-      // written out, the EKF of 7 joints would not fit into the first cache of instructions
-#pragma GCC unroll 1
-      for (int i = 0; i < N; ++i) add(i);
-    }
+    });
     by_q += transposed(q_columns);
     by_qd += transposed(qd_columns);
   }

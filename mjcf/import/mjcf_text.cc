@@ -21,8 +21,8 @@ namespace tauext {
 namespace {
 
 namespace fs = std::filesystem;
-using detail::each, detail::drop, detail::inside, detail::name_of, detail::parent_name,
-    detail::text;
+using detail::each, detail::drop, detail::has_word, detail::inside, detail::name_of,
+    detail::parent_name, detail::text;
 using tinyxml2::XMLDocument, tinyxml2::XMLElement, tinyxml2::XMLNode;
 
 class Import {
@@ -168,8 +168,7 @@ class Import {
     each(root, [&](XMLElement& e) {
       const std::string_view attributes = attributes_of(e);
       if (attributes.empty()) {
-        const std::string element = fmt::format(" {} ", name_of(e));
-        if (detail::kLeftOutElements.find(element) == detail::kLeftOutElements.npos)
+        if (!has_word(detail::kLeftOutElements, name_of(e)))
           fail("line {}: this import knows no <{}>; take it out", e, name_of(e));
         return drop_section(e);
       }
@@ -201,8 +200,7 @@ class Import {
 
   static bool is_left_out(const XMLElement& e, const std::string& attribute) {
     for (const detail::Kept& k : detail::kLeftOut) {
-      if (k.element == name_of(e))
-        return k.attributes.find(" " + attribute + " ") != k.attributes.npos;
+      if (k.element == name_of(e)) return has_word(k.attributes, attribute);
     }
     return false;
   }
@@ -211,7 +209,7 @@ class Import {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr;) {
       const std::string attribute = a->Name();
       a = a->Next();
-      if (kept.find(" " + attribute + " ") != kept.npos) continue;
+      if (has_word(kept, attribute)) continue;
       if (!is_left_out(e, attribute)) {
         fail("line {}: <{}> has no attribute '{}' that this import knows; take it out", e,
              name_of(e), attribute);

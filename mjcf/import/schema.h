@@ -3,9 +3,15 @@
 /// What of MJCF the dynamics of an arm needs, as far as MuJoCo 2.2.2 knows it; and what of URDF.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace tauext::detail {
+
+/// Whether a word stands in a list of words that are apart by blanks, one before and behind each.
+inline bool has_word(std::string_view list, std::string_view word) {
+  return list.find(' ' + std::string(word) + ' ') != list.npos;
+}
 
 /// An element that is kept, with the attributes that are; those of other elements go with them.
 struct Kept {
@@ -103,6 +109,7 @@ inline constexpr Kept kUrdf[] = {
     {"dynamics", " damping friction armature "},  // armature: ours
     {"mimic", " joint multiplier offset "},
 };
+/// Elements of these that are left out, as are those of a namespace; any other one is an error.
 inline constexpr std::string_view kUrdfLeftOut =
     " visual collision contact material gazebo sensor self_collision_checking verbose calibration "
     "safety_controller ";

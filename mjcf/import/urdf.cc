@@ -73,7 +73,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
                                   [&](const Kept& k) { return k.element == name_of(e); });
   if (known == std::end(kUrdf)) {
     const bool other = name_of(e).find(':') != std::string_view::npos;
-    if (!other && kUrdfLeftOut.find(fmt::format(" {} ", name_of(e))) == kUrdfLeftOut.npos)
+    if (!other && !has_word(kUrdfLeftOut, name_of(e)))
       fail(e, "{}: this import knows no <{}>; take it out", owner, name_of(e));
     ++dropped[std::string(name_of(e))];
     return;
@@ -81,7 +81,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
   for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string_view name = a->Name();
     if (name.find(':') != name.npos) continue;
-    if (known->attributes.find(fmt::format(" {} ", name)) == std::string_view::npos)
+    if (!has_word(known->attributes, name))
       fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
            known->attributes.substr(0, known->attributes.size() - 1));
   }
@@ -180,7 +180,8 @@ class Urdf {
       fail(*inertial, "link '{}': its <inertial> wants a <mass> and an <inertia>",
            text(link, "name"));
     const double kg = numbers(*mass, "value", 1).front();
-    if (!(kg >= 0)) fail(*mass, "link '{}': its mass is {:g} kg", text(link, "name"), kg);
+    if (!(kg >= 0))
+      fail(*mass, "link '{}': its mass is {:g} kg, and must be 0 or more", text(link, "name"), kg);
     const auto of = [&](const char* which) { return number(tensor, which, 0); };
     Matrix3d I;
     I << of("ixx"), of("ixy"), of("ixz"), of("ixy"), of("iyy"), of("iyz"), of("ixz"), of("iyz"),

@@ -70,7 +70,7 @@ Model load_mjcf(const std::string& path, const ImportOptions& options) {
     return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options)}});
   } catch (const std::runtime_error& e) {
     if (robot.path == path) throw;
-    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));  // which may be what is wrong
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));  // it may be what is wrong
   }
 }
 
