@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "mjcf/import/json_object.h"
 #include "mjcf/import/robot_file.h"
-#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JsonObject::Json;
 namespace fs = std::filesystem;
 
 // to as many digits as an error has to be told by
@@ -72,7 +71,7 @@ std::string robot_file_text(const NewRobotFile& robot, const std::string& out,
                             std::vector<std::string>& said) {
   const RobotFile source = robot_file(robot.from, {robot.lock, {}});
   Json json;
-  if (is_our_robot_file(robot.from)) json = Json::parse(read_json_text(robot.from));
+  if (is_our_robot_file(robot.from)) json = read_json(robot.from);
   json["format"] = kRobotFileFormat;
   const fs::path folder = out == "-" ? fs::current_path() : fs::absolute(out).parent_path();
   json["file"] = fs::proximate(fs::absolute(source.path), folder).string();

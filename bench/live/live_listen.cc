@@ -68,10 +68,11 @@ int run_listen(const Options& o) {
   const Interrupt interrupt;
   say(fmt::format("listening to TAUEXT_* at {}; Ctrl-C ends", listener.url()));
   Screen screen(listener);
-  bool broken = false, at_end = false;
-  while (!broken && !over(interrupt, begin, o.pace.duration)) {
+  bool ended = false, broken = false, at_end = false;
+  while (!broken && !ended) {
+    ended = over(interrupt, begin, o.pace.duration);
     try {
-      listener.wait(50);
+      listener.wait(50);  // what has come by then is taken
     } catch (const std::runtime_error& e) {
       broken = true;
       at_end = listener.url().starts_with("file://");  // a log is over

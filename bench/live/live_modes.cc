@@ -183,7 +183,9 @@ int run_subscribed(const Options& o) {
   const std::unique_ptr<Realtime> first = realtime_of(o);  // this thread is the loop
   const auto begin = Clock::now();
   StatusLine status;
-  while (!over(interrupt, begin, o.pace.duration) && inlet.wait()) {
+  for (bool ended = false; !ended;) {
+    ended = over(interrupt, begin, o.pace.duration);
+    ended = !inlet.wait() || ended;  // what has come by then is taken
     outlet.report_failures();
     status.show(estimation, nullptr, outlet.stream());
   }

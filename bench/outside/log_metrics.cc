@@ -32,8 +32,8 @@ VectorXd mean(const Output& o, const std::vector<int>& samples, std::size_t from
   return sum / static_cast<double>(to - from);
 }
 
-std::vector<double> as_list(const VectorXd& v) {
-  return {v.begin(), v.end()};
+Score::Joints as_list(const VectorXd& v) {
+  return Score::Joints(v.begin(), v.end());
 }
 
 }  // namespace
@@ -65,7 +65,8 @@ void add_maker_metrics(const std::vector<LogRun>& runs, Score& score) {
   });
   if (runs.empty() || !known) return;
   const Eigen::Index n = runs.front().output->tau_ext.rows();
-  std::vector<double> correlation, gain;
+  Score::Joints correlation;
+  std::vector<double> gain;
   Eigen::Index worst = 0;
   for (Eigen::Index j = 0; j < n; ++j) {
     double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;

@@ -5,19 +5,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
 #include "bench/roster/robots.h"
+#include "mjcf/import/json_object.h"
 #include "mjcf/trace/atomic_file.h"
-#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JsonObject::Json;
 
 constexpr const char* kFormat = "tauext-thresholds-1";
 
@@ -127,9 +126,8 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
 }
 
 Thresholds read_thresholds(const std::string& path) {
-  const std::string text = read_json_text(path);
+  const Json j = read_json(path);
   try {
-    const Json j = Json::parse(text);
     if (j.at("format") != kFormat) {
       throw std::runtime_error(
           fmt::format("\"format\" is {}, not \"{}\"; write it with "

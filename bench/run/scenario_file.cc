@@ -13,7 +13,6 @@
 #include "bench/score/degradation.h"
 #include "mjcf/import/json_object.h"
 #include "mjcf/scenarios/touch.h"
-#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
@@ -30,10 +29,19 @@ template <class... Args>
 
 struct Wave {
   int joint;
-  double size, w, phase, from, to;
+  double size, w, phase;
 };
 
-constexpr double kForEver = std::numeric_limits<double>::infinity();
+struct Load {
+  Wave wave;
+  double from, to;
+  bool sweep;
+
+  double operator()(double t) const {
+    if (t < from || t >= to) return 0;
+    return wave.size * (sweep ? swept_sine(t, from, to) : std::sin(wave.w * t + wave.phase));
+  }
+};
 
 int joint_of(const Object& o, int dof) {
   const double j = o.number("joint", 1, dof);
@@ -42,12 +50,13 @@ int joint_of(const Object& o, int dof) {
 }
 
 // of every joint, its moves from way point to way point
-std::vector<Moves<MinimumJerk>> moves_of(const Object& o, const Eigen::VectorXd& home) {
+std::vector<Moves<MinimumJerk>> moves_of(const Object& o, const Eigen::VectorXd& home,
+                                         double duration) {
   std::vector<double> times;
   std::vector<Eigen::VectorXd> points;
   o.each("way_points", [&](const Json& j, const std::string& where) {
     const Object point(j, where, {"t", "q"});
-    const double t = point.number("t", 0, Object::kMost);
+    const double t = point.number("t", 0, duration);
     if (!times.empty() && t <= times.back())
       fail("{}: \"t\" is {:g}, and must be later than the one before", where, t);
     times.push_back(t);
@@ -76,23 +85,33 @@ std::vector<Wave> sines_of(const Object& o, int dof) {
   o.each("sines", [&](const Json& j, const std::string& where) {
     const Object sine(j, where, {"joint", "amplitude", "w", "phase"});
     all.push_back({joint_of(sine, dof), sine.number("amplitude", -100, 100),
-                   sine.number("w", 1e-6, 1e4), sine.number_or("phase", 0, -100, 100), 0,
-                   kForEver});
+                   sine.number("w", 1e-6, 1e4), sine.number_or("phase", 0, -100, 100)});
   });
   return all;
 }
 
 // constant ones are cosines of no frequency
-std::vector<Wave> loads_of(const Object& o, int dof, double duration) {
+std::vector<Load> loads_of(const Object& o, int dof, double duration) {
   constexpr double kHalfPi = 1.57079632679489662;
-  std::vector<Wave> all;
+  constexpr double kShortestSweep = 30;  // [s] for a bandwidth from 0.7 rad/s on
+  std::vector<Load> all;
   o.each("loads", [&](const Json& j, const std::string& where) {
-    const Object load(j, where, {"joint", "torque", "from", "to", "w", "phase"});
+    const Object load(j, where, {"joint", "torque", "from", "to", "w", "phase", "sweep"});
     const double w = load.number_or("w", 0, 0, 1e4);
-    all.push_back({joint_of(load, dof), load.number("torque", -1e6, 1e6), w,
-                   load.number_or("phase", w == 0 ? kHalfPi : 0, -100, 100),
-                   load.number_or("from", 0, 0, duration),
-                   load.number_or("to", kForEver, 0, Object::kMost)});
+    Load one{{joint_of(load, dof), load.number("torque", -1e6, 1e6), w,
+              load.number_or("phase", w == 0 ? kHalfPi : 0, -100, 100)},
+             load.number_or("from", 0, 0, duration),
+             load.number_or("to", std::numeric_limits<double>::infinity(), 0, Object::kMost),
+             load.flag("sweep")};
+    if (one.to <= one.from)
+      fail("{}: \"to\" is {:g}, and must be after \"from\", {:g}", where, one.to, one.from);
+    if (one.sweep && (load.has("w") || load.has("phase")))
+      fail("{}: a \"sweep\" has no \"w\" or \"phase\"", where);
+    if (one.sweep) one.to = std::min(one.to, duration);
+    if (one.sweep && one.to - one.from < kShortestSweep)
+      fail("{}: a \"sweep\" of {:g} s is too short to measure a bandwidth; give it {} s or more",
+           where, one.to - one.from, kShortestSweep);
+    all.push_back(one);
   });
   return all;
 }
@@ -105,27 +124,51 @@ std::vector<Touch> touches_of(const Object& o, double duration) {
     const Object touch(j, where, {"kind", "t", "rise", "hold", "fall", "force"});
     const std::string kind = touch.text("kind", "blow");
     Touch t;
-    t.kind = find_known(kKinds, "kind of touch", kind, [](const auto& k) {
+    t.kind = find_known(kKinds, where + ": \"kind\"", kind, [](const auto& k) {
                return std::string(k.first);
              }).second;
     t.begin = touch.number("t", 0, duration);
     t.rise = touch.number("rise", 1e-3, 1e3);
+    if (t.begin + t.rise > duration)
+      fail("{}: grows from {:g} to {:g} s, and the scenario ends at {:g} s", where, t.begin,
+           t.begin + t.rise, duration);
     t.hold = touch.number_or("hold", 0, 0, Object::kMost);
     t.fall = touch.number_or("fall", t.kind == TouchKind::kBlow ? 0 : t.rise, 0, 1e3);
     t.force = touch.vector("force", 3);
+    if (t.force.isZero()) fail("{}: \"force\" is zero", where);
     all.push_back(t);
   });
   return all;
 }
 
-Response response_of(const std::string& asks) {
+Response response_of(const Object& o) {
   constexpr std::pair<const char*, Response> kAll[] = {{"error", Response::kNone},
                                                        {"step", Response::kStep},
                                                        {"lag", Response::kLag},
                                                        {"detection", Response::kDetection},
                                                        {"bandwidth", Response::kBandwidth}};
-  return find_known(kAll, "\"asks\"", asks, [](const auto& r) { return std::string(r.first); })
+  return find_known(kAll, o.where() + ": \"asks\"", o.text("asks", "error"),
+                    [](const auto& r) { return std::string(r.first); })
       .second;
+}
+
+// there must be something to answer
+void check_question(const Object& o, Response asked, const std::vector<Load>& loads,
+                    const std::vector<Touch>& touches) {
+  const bool is_bandwidth = asked == Response::kBandwidth;
+  const auto sweeps = [](const Load& l) { return l.sweep; };
+  if (is_bandwidth &&
+      (loads.empty() || !touches.empty() || !std::all_of(loads.begin(), loads.end(), sweeps)))
+    fail(
+        "{}: \"asks\" is 'bandwidth', so there must be \"loads\", each with \"sweep\": true, and "
+        "nothing else",
+        o.where());
+  const bool of_load = asked == Response::kStep || asked == Response::kLag;
+  if (of_load && loads.empty() && touches.empty())
+    fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", o.where(),
+         o.text("asks", ""));
+  if (asked == Response::kDetection && touches.empty())
+    fail("{}: \"asks\" is 'detection', and there are no \"touches\"", o.where());
 }
 
 Scenario scenario_of(const Json& json, const std::string& where, const Robot& robot) {
@@ -139,11 +182,11 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
   s.description = of.text("description", "of a file");
   s.duration = of.number("duration", 0.1, 3600);
   s.score_from = of.number_or("score_from", 0, 0, s.duration);
-  s.response = response_of(of.text("asks", "error"));
+  s.response = response_of(of);
   s.reaches_limits = of.flag("reaches_limits");
   s.start_on_reference = true;
-  s.reference = [moves = moves_of(of, robot.home()), sines = sines_of(of, robot.dof())](double t,
-                                                                                        int i) {
+  s.reference = [moves = moves_of(of, robot.home(), s.duration), sines = sines_of(of, robot.dof())](
+                    double t, int i) {
     Reference sum = moves[static_cast<std::size_t>(i)](t);
     for (const Wave& x : sines) {
       if (x.joint != i) continue;
@@ -152,22 +195,23 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     }
     return sum;
   };
-  const std::vector<Wave> loads = loads_of(of, robot.dof(), s.duration);
+  const std::vector<Load> loads = loads_of(of, robot.dof(), s.duration);
   const std::vector<Touch> touches = touches_of(of, s.duration);
-  const bool of_load = s.response != Response::kNone && s.response != Response::kDetection;
-  if (of_load && loads.empty() && touches.empty())
-    fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", of.where(),
-         of.text("asks", ""));
+  check_question(of, s.response, loads, touches);
   s.tau_ext = [loads](double t, int i) {
     double sum = 0;
-    for (const Wave& x : loads) {
-      if (x.joint == i && t >= x.from && t < x.to) sum += x.size * std::sin(x.w * t + x.phase);
+    for (const Load& x : loads) {
+      if (x.wave.joint == i) sum += x(t);
     }
     return sum;
   };
   if (of.has("degrade")) {
     Degradation d;
-    set_degradation(of.at("degrade").dump(), d);
+    try {
+      set_degradation(of.at("degrade").dump(), d);
+    } catch (const std::invalid_argument& e) {
+      fail("{}: degrade: {}", of.where(), e.what());
+    }
     s.sensors = d.sensors;
     s.model_error = d.model_error;
   }
@@ -177,19 +221,18 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
 }  // namespace
 
 std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot) {
-  const std::string text = read_json_text(path);
+  const Json json = read_json(path);
   try {
-    const Json json = Json::parse(text);
-    const Object file(json, "the file", {"scenarios"});
+    const Object file(json, path, {"scenarios"});
     std::vector<Scenario> all;
     file.at("scenarios");
     file.each("scenarios", [&](const Json& j, const std::string& where) {
       all.push_back(scenario_of(j, where, robot));
     });
-    if (all.empty()) fail("there is no scenario in it");
+    if (all.empty()) fail("{}: there is no scenario in it", path);
     return all;
-  } catch (const std::exception& e) {
-    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(one_line(e.what()));
   }
 }
 

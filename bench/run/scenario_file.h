@@ -18,7 +18,8 @@ namespace tauext {
 ///         "way_points": [ { "t": 0, "q": [0, 0.3] }, { "t": 2, "q": [0.5, 0.3] } ],
 ///         "sines": [ { "joint": 2, "amplitude": 0.1, "w": 2, "phase": 0 } ],
 ///         "loads": [ { "joint": 1, "torque": 5, "from": 3, "to": 6 },
-///                    { "joint": 2, "torque": 2, "w": 1, "phase": 0 } ],
+///                    { "joint": 2, "torque": 2, "w": 1, "phase": 0 },
+///                    { "joint": 3, "torque": 9, "from": 2, "to": 38, "sweep": true } ],
 ///         "touches": [ { "kind": "blow", "t": 7, "rise": 0.02, "force": [0, 0, 80] },
 ///                      { "kind": "push", "t": 8, "rise": 1, "hold": 1, "fall": 1, "force": [20, 0, 0] } ],
 ///         "degrade": { "velocity_noise": 1e-3, "model_error": { "mass": 1.05 } },
@@ -26,9 +27,11 @@ namespace tauext {
 ///
 /// All but name and duration may be left out. The arm starts at rest or on its sines at the first
 /// way point, moves from one to the next with minimum jerk, and stays at the last; without any, it
-/// stays at its home (Robot::home). Loads have the sign of (3). Forces act on the arm at its end
-/// effector, in the world frame; blow and clamp count as collisions, push does not. What is
-/// degraded is what --degrade takes, and is used unless the program was asked for other faults.
+/// stays at its home (Robot::home). Loads have the sign of (3); a sweep is a sine from 0.5 to 300
+/// rad/s, and a bandwidth is asked of sweeps alone. A joint whose truth stands still is not asked
+/// for its answer. Forces act on the arm at its end effector, in the world frame; blow and clamp
+/// count as collisions, push does not. What is degraded is what --degrade takes, and is used unless
+/// the program was asked for other faults.
 /// @throws std::runtime_error naming file, scenario, key and value, and what is known or possible
 std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot);
 

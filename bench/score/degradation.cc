@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <tuple>
 
 #include "bench/roster/specification.h"
-#include "mjcf/trace/input_file.h"
+#include "mjcf/import/json_object.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -62,7 +61,7 @@ struct FieldsOf<ModelError> {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = JsonObject::Json;
 
 template <class S>
 void set_keys(const KeyValues& keys, const char* owner, S& s) {
@@ -143,13 +142,13 @@ void set_fields(const std::vector<std::string>& items, ModelError& e) {
 }
 
 void set_degradation(const std::string& json, Degradation& d) {
-  d = from_json(Json::parse(json, nullptr, true, true), d);  // comments are welcome
+  d = from_json(parse_json(json, true), d);  // comments are welcome
 }
 
 void read_degradation(const std::string& path, Degradation& d) {
-  const std::string text = read_json_text(path);
+  const Json json = read_json(path, true);
   try {
-    set_degradation(text, d);
+    d = from_json(json, d);
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }

@@ -115,10 +115,10 @@ class Golden {
       const auto value = score.get(metric.metric);
       if (!metric.is(MetricRow::kGate) || !value) continue;
       put(key_of(metric.metric), *value);
-      const std::vector<double>& joints = score.joints(metric.metric);
+      const Score::Joints& joints = score.joints(metric.metric);
       if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
       for (std::size_t j = 0; j < joints.size(); ++j) {
-        put(key_of(metric.metric, static_cast<int>(j) + 1), joints[j]);
+        if (joints[j]) put(key_of(metric.metric, static_cast<int>(j) + 1), *joints[j]);
       }
     }
   }

@@ -83,18 +83,20 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
   const double a = truth[k], b = truth[k + 1], step = b - a;
   ++k;  // the first sample of level b, t_s = t[k]
   if (step == 0) return {kNoValue, kNoValue, kNoValue, kNoValue};
+  Eigen::Index end = k + 1;  // of level b
+  while (end < n && std::abs(truth[end] - truth[end - 1]) < std::abs(step) / 2) ++end;
 
   StepResponse r;
-  const double at_10 = crossing(t, estimate, k, a + 0.1 * step, step > 0);
-  const double at_90 = crossing(t, estimate, k, a + 0.9 * step, step > 0);
+  const double at_10 = crossing(t, estimate.head(end), k, a + 0.1 * step, step > 0);
+  const double at_90 = crossing(t, estimate.head(end), k, a + 0.9 * step, step > 0);
   r.rise = at_90 - at_10;
   r.rise_0_90 = at_90 - t[k];
-  r.overshoot = std::max(0., ((estimate.tail(n - k).array() - b) / step).maxCoeff() * 100);
+  r.overshoot = std::max(0., ((estimate.segment(k, end - k).array() - b) / step).maxCoeff() * 100);
 
   const double band = 0.02 * std::abs(step);
-  Eigen::Index last_outside = n - 1;
+  Eigen::Index last_outside = end - 1;
   while (last_outside >= k && std::abs(estimate[last_outside] - b) <= band) --last_outside;
-  if (last_outside == n - 1) {
+  if (last_outside == end - 1) {
     r.settling = kNoValue;
   } else if (last_outside < k) {
     r.settling = 0;
@@ -206,48 +208,65 @@ double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
 
 namespace {
 
-// a value for each joint, of(j)
+// a value of(truth, estimate) for each joint
 template <class OfJoint>
-void add_by_joint(Metric m, int dof, Score& score, OfJoint&& of) {
-  std::vector<double> values;
-  for (int j = 0; j < dof; ++j) values.push_back(of(j));
+void add_by_joint(Metric m, const Eigen::MatrixXd& truth, const Eigen::MatrixXd& estimate,
+                  Score& score, OfJoint&& of) {
+  Score::Joints values;
+  for (Eigen::Index j = 0; j < truth.rows(); ++j)
+    values.emplace_back(of(truth.row(j), estimate.row(j)));
+  score.set_joints(m, std::move(values));
+}
+
+// the same of the joints whose truth moves; the others have nothing to answer
+template <class OfJoint>
+void add_answers(Metric m, const Eigen::MatrixXd& truth, const Eigen::MatrixXd& estimate,
+                 Score& score, OfJoint&& of) {
+  if (truth.size() == 0) return;
+  const Eigen::VectorXd moves = truth.rowwise().maxCoeff() - truth.rowwise().minCoeff();
+  const double least = 1e-9 * moves.maxCoeff();
+  Score::Joints values;
+  for (Eigen::Index j = 0; j < truth.rows(); ++j) {
+    values.emplace_back();
+    if (moves[j] > least) values.back() = of(truth.row(j), estimate.row(j));
+  }
   score.set_joints(m, std::move(values));
 }
 
 void add_step_response(const Trace& trace, const Output& out, Score& score) {
-  std::vector<metrics::StepResponse> r;
-  for (int j = 0; j < trace.dof(); ++j) {
-    r.push_back(metrics::step_response(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j)));
-  }
   const auto add = [&](Metric m, double metrics::StepResponse::*figure) {
-    add_by_joint(m, trace.dof(), score, [&](int j) { return r[j].*figure; });
+    add_answers(m, trace.tau_ext, out.tau_ext, score, [&](const auto& truth, const auto& estimate) {
+      return metrics::step_response(trace.t, truth, estimate).*figure;
+    });
   };
   add(Metric::kRise, &metrics::StepResponse::rise);
   add(Metric::kRise0To90, &metrics::StepResponse::rise_0_90);
   add(Metric::kSettling, &metrics::StepResponse::settling);
   add(Metric::kOvershoot, &metrics::StepResponse::overshoot);
-  add_by_joint(Metric::kFinal, trace.dof(), score, [&](int j) {
-    return std::abs(metrics::final_error(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j)));
-  });
+  add_by_joint(Metric::kFinal, trace.tau_ext, out.tau_ext, score,
+               [&](const auto& truth, const auto& estimate) {
+                 return std::abs(metrics::final_error(trace.t, truth, estimate));
+               });
 }
 
 }  // namespace
 
 void add_error_metrics(const Trace& trace, const Output& out, double from, Score& score) {
   const auto add = [&](Metric m, auto&& error) {
-    add_by_joint(m, trace.dof(), score, [&](int j) {
-      return error(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from);
-    });
+    add_by_joint(m, trace.tau_ext, out.tau_ext, score,
+                 [&](const auto& truth, const auto& estimate) {
+                   return error(trace.t, truth, estimate, from);
+                 });
   };
   add(Metric::kRmse, metrics::rmse);
   add(Metric::kMax, metrics::max_error);
   add(Metric::kBias, [](auto&&... signals) { return std::abs(metrics::bias(signals...)); });
   // of the joint whose error is the largest
-  const std::vector<double>& max = score.joints(Metric::kMax);
+  const Score::Joints& max = score.joints(Metric::kMax);
   double largest = -1;
   for (int j = 0; j < trace.dof(); ++j) {
-    if (!(max[j] > largest)) continue;
-    largest = max[j];
+    if (!(*max[j] > largest)) continue;
+    largest = *max[j];
     score.set(Metric::kMaxAt,
               metrics::time_of_max_error(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from));
   }
@@ -256,23 +275,24 @@ void add_error_metrics(const Trace& trace, const Output& out, double from, Score
 void add_noise_metric(const Trace& trace, const Output& ideal, const Output& noisy, double from,
                       Score& score) {
   if (ideal.status.size() != noisy.status.size()) return;
-  add_by_joint(Metric::kNoise, trace.dof(), score, [&](int j) {
-    return metrics::noise(trace.t, ideal.tau_ext.row(j), noisy.tau_ext.row(j), from);
-  });
+  add_by_joint(Metric::kNoise, ideal.tau_ext, noisy.tau_ext, score,
+               [&](const auto& a, const auto& b) { return metrics::noise(trace.t, a, b, from); });
 }
 
 void add_response_metrics(const Trace& trace, const Output& out, const Scenario& scenario,
                           Score& score) {
   if (scenario.response == Response::kStep) add_step_response(trace, out, score);
   if (scenario.response == Response::kLag) {
-    add_by_joint(Metric::kLag, trace.dof(), score, [&](int j) {
-      return metrics::lag(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), scenario.score_from);
-    });
+    add_answers(Metric::kLag, trace.tau_ext, out.tau_ext, score,
+                [&](const auto& truth, const auto& estimate) {
+                  return metrics::lag(trace.t, truth, estimate, scenario.score_from);
+                });
   }
   if (scenario.response == Response::kBandwidth) {
-    add_by_joint(Metric::kBandwidth, trace.dof(), score, [&](int j) {
-      return metrics::bandwidth(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j));
-    });
+    add_answers(Metric::kBandwidth, trace.tau_ext, out.tau_ext, score,
+                [&](const auto& truth, const auto& estimate) {
+                  return metrics::bandwidth(trace.t, truth, estimate);
+                });
   }
 }
 

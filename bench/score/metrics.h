@@ -40,8 +40,8 @@ double noise(const Times& t, const Signal& ideal, const Signal& noisy, double fr
 /// [N m] mean of estimate - truth over the last second: where an estimate ends up.
 double final_error(const Times& t, const Signal& truth, const Signal& estimate);
 
-/// The answer to the largest jump of the truth, from level a to level b at time t_s. A crossing
-/// lies on the straight line between two samples.
+/// The answer to the largest jump of the truth, from level a to level b at time t_s, until it jumps
+/// again (by half as much or more). A crossing lies on the straight line between two samples.
 struct StepResponse {
   double rise;       ///< [s] from first reaching 10 % to first reaching 90 % of the way from a to b
   double rise_0_90;  ///< [s] from t_s to first reaching 90 %

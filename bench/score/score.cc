@@ -3,18 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace tauext {
 namespace {
 
-double worst(WorstJoint which, const std::vector<double>& values) {
-  const auto never = [](double v) { return std::isnan(v); };
-  if (values.empty() || std::any_of(values.begin(), values.end(), never)) {
-    return kNoValue;
+double worst(WorstJoint which, const Score::Joints& joints) {
+  double worst = which == WorstJoint::kSmallest ? std::numeric_limits<double>::infinity()
+                                                : -std::numeric_limits<double>::infinity();
+  for (const std::optional<double>& v : joints) {
+    if (!v) continue;
+    if (std::isnan(*v)) return kNoValue;
+    worst = which == WorstJoint::kSmallest ? std::min(worst, *v) : std::max(worst, *v);
   }
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return which == WorstJoint::kSmallest ? *least : *most;
+  return worst;
 }
 
 }  // namespace
@@ -23,9 +26,11 @@ bool Score::empty() const {
   return std::none_of(values_.begin(), values_.end(), [](const auto& v) { return v.has_value(); });
 }
 
-void Score::set_joints(Metric m, std::vector<double> values) {
+void Score::set_joints(Metric m, Joints values) {
   const WorstJoint which = row_of(m).joints;
   if (which == WorstJoint::kNone) throw std::logic_error(key_of(m) + " is not judged by joint");
+  if (std::none_of(values.begin(), values.end(), [](const auto& v) { return v.has_value(); }))
+    return;
   set(m, worst(which, values));
   joints_[index(m)] = std::move(values);
 }
@@ -35,8 +40,9 @@ std::vector<std::pair<std::string, double>> Score::by_key() const {
   for (const MetricRow& row : kMetrics) {
     if (const auto value = get(row.metric)) all.emplace_back(row.key, *value);
     int joint = 0;
-    for (const double value : joints(row.metric)) {
-      all.emplace_back(key_of(row.metric, ++joint), value);
+    for (const std::optional<double>& value : joints(row.metric)) {
+      ++joint;
+      if (value) all.emplace_back(key_of(row.metric, joint), *value);
     }
   }
   counts.for_each([&](const std::string& key, std::int64_t n) {

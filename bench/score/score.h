@@ -29,19 +29,22 @@ class Score {
   /// Nothing for a metric that does not exist for the run.
   std::optional<double> get(Metric m) const { return values_[index(m)]; }
 
-  /// By joint, from 0; empty unless the metric exists and is judged joint by joint.
-  const std::vector<double>& joints(Metric m) const { return joints_[index(m)]; }
+  /// A value for each joint, from 0; none for a joint of which the run asks nothing.
+  using Joints = std::vector<std::optional<double>>;
 
-  /// @throws std::out_of_range for a joint that has no value
-  double joint(Metric m, int j) const { return joints(m).at(static_cast<std::size_t>(j)); }
+  /// Empty unless the metric exists and is judged joint by joint.
+  const Joints& joints(Metric m) const { return joints_[index(m)]; }
+
+  /// @throws std::out_of_range or std::bad_optional_access for a joint that has no value
+  double joint(Metric m, int j) const { return joints(m).at(static_cast<std::size_t>(j)).value(); }
 
   /// Whether nothing was scored yet.
   bool empty() const;
 
   void set(Metric m, double value) { values_[index(m)] = value; }  ///< NaN for "never"
 
-  /// Sets the joints' values and that of the worst of them.
-  void set_joints(Metric m, std::vector<double> values);
+  /// Sets the joints' values and that of the worst of them, if there is any.
+  void set_joints(Metric m, Joints values);
 
   /// Every value by its key, those of joints after that of the entry; behind them the samples left
   /// out, by reason and joint.
@@ -51,7 +54,7 @@ class Score {
   static constexpr std::size_t index(Metric m) { return static_cast<std::size_t>(m); }
 
   std::array<std::optional<double>, kMetricCount> values_;
-  std::array<std::vector<double>, kMetricCount> joints_;
+  std::array<Joints, kMetricCount> joints_;
 };
 
 }  // namespace tauext

@@ -150,9 +150,23 @@ std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>
   if (std::any_of(rows.begin(), rows.end(),
                   [](const Row& r) { return r.entry.has_robot() && r.entry.robot().slides(); }))
     out += "Where a joint slides, N m is N and rad is m.\n";
-  for (const MetricRow* m : columns_of(rows, also)) {
-    out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
-  }
+  const std::vector<const MetricRow*> columns = columns_of(rows, also);
+  for (const MetricRow* m : columns) out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
+  const auto some = [&](auto&& has) { return std::any_of(rows.begin(), rows.end(), has); };
+  const auto lacks = [&](bool asked) {
+    return some([&](const Row& r) {
+      return !failed(r) && std::any_of(columns.begin(), columns.end(), [&](const MetricRow* m) {
+        const auto value = r.score.get(m->metric);
+        return asked ? value && std::isnan(*value) : !value;
+      });
+    });
+  };
+  if (lacks(true)) out += "never       It never came to that.\n";
+  if (lacks(false)) out += "-           The scenario does not ask for it.\n";
+  if (some([](const Row& r) { return r.score.counts.left_out() > 0; }))
+    out +=
+        "left out    Samples without an estimate, by reason and by the joint that was to blame; "
+        "before the first of them, and after a gap, an estimator starts again.\n";
   return out;
 }
 

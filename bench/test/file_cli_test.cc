@@ -136,7 +136,7 @@ TEST_F(FilePrograms, ThresholdsAreOfTheArmThatTheyWereTrainedOn) {
   write("same.urdf", arm);
   const Outcome same =
       run("tauext-detect --thresholds t.json --robot same.urdf --estimator mo2 --detector "
-          "high_pass");
+          "high_pass --collisions 1 --pushes 1 --clampings 1 --hours 0.01");
   EXPECT_EQ(same.code, 0) << "an arm goes by what it is, not by its path: " << same.text;
   const auto mass = arm.find("<mass value=\"") + 13;
   ASSERT_GT(mass, 13u);
@@ -186,6 +186,26 @@ TEST_F(FilePrograms, RunScenariosOfAFile) {
   EXPECT_EQ(at[8025].back(), 0);
 }
 
+TEST_F(FilePrograms, AskOnlyJointsThatAreLoaded) {
+  write("own.json", R"({"scenarios": [
+    {"name": "kick", "duration": 5, "asks": "step",
+     "loads": [{"joint": 2, "torque": 5, "from": 1, "to": 3}]},
+    {"name": "swept", "duration": 34, "asks": "bandwidth",
+     "loads": [{"joint": 6, "torque": 2, "from": 2, "sweep": true}]}]})");
+  const Outcome o = run("tauext-bench --robot " + kArm7 +
+                        " --scenarios own.json --benchmark_filter='(kick|swept)/(mo1|truth)$' "
+                        "--benchmark_min_time=0.001 --benchmark_out=r.json");
+  ASSERT_EQ(o.code, 0) << o.text;
+  std::map<std::string, nlohmann::json> rows;
+  const auto all = nlohmann::json::parse(content("r.json")).at("benchmarks");
+  for (const auto& row : all) rows[row.at("name")] = row;
+  const auto& mo1 = rows.at("arm7/kick/mo1");  // of first order at 30 rad/s
+  EXPECT_NEAR(mo1.at("rise_s"), std::log(9) / 30, 1e-3);
+  EXPECT_NEAR(mo1.at("settling_s"), std::log(50) / 30, 2e-3);
+  EXPECT_EQ(rows.at("arm7/kick/truth").at("settling_s"), 0);
+  EXPECT_NEAR(rows.at("arm7/swept/mo1").at("bandwidth_rad_s"), 30, 0.5);
+}
+
 TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
   const auto refuses = [&](const std::string& from, const std::string& to, const std::string& why) {
     std::string text = own_scenario();
@@ -201,8 +221,17 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
   refuses("\"joint\": 7", "\"joint\": 8",
           "scenarios 1: sines 1: \"joint\" is 8, and must be 1 to 7");
   refuses("\"torque\": 5", "\"torqe\": 5", "unknown key \"torqe\"; known: joint, torque");
-  refuses("\"blow\"", "\"kick\"", "unknown kind of touch 'kick'; known: blow, push, clamp");
+  refuses("\"blow\"", "\"kick\"",
+          "scenarios 1: touches 1: \"kind\" 'kick'; known: blow, push, clamp");
   refuses("\"asks\": \"detection\"", "\"asks\": \"all\"", "known: error, step, lag");
+  refuses("\"asks\": \"detection\"", "\"asks\": \"bandwidth\"", "each with \"sweep\": true");
+  refuses("\"to\": 6", "\"to\": 4", "loads 1: \"to\" is 4, and must be after \"from\", 4");
+  refuses("\"w\": 3", "\"sweep\": true", "a \"sweep\" of 10 s is too short");
+  refuses("[0, 0, 40]", "[0, 0, 0]", "touches 1: \"force\" is zero");
+  refuses("\"t\": 8", "\"t\": 9.99", "grows from 9.99 to 10.01 s, and the scenario ends at 10 s");
+  refuses("\"t\": 3,", "\"t\": 30,", "way_points 2: \"t\" is 30, and must be 0 to 10");
+  refuses("\"t\": 8", "\"t\": 8, \"t\": 9", "the key \"t\" is there twice");
+  refuses("1e-3, ", "1e-3, \"noise\": 1, ", "scenarios 1: degrade: ");
   refuses("[0, 0, 40]", "[0, 40]", "\"force\" is [0,40], and must be 3 numbers");
   refuses("\"t\": 3,", "\"t\": 0,", "must be later than the one before");
   refuses("\"t\": 8", "\"t\": 80", "\"t\" is 80, and must be 0 to 10");

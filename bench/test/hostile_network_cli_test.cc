@@ -66,6 +66,21 @@ TEST_F(HostileNetwork, DatagramsThatEndLcmsReceiverAreCountedByOurs) {
   }
 }
 
+// a busy machine may keep a listener from its socket until it is asked to end
+TEST_F(HostileNetwork, WhatCameBeforeCtrlCIsCounted) {
+  SKIP_WITHOUT_NAMESPACE();
+  put_estimates("good.lcm", 0, 200);
+  for (const char* mode :
+       {"--listen", "--robot wallmobot3 --estimator mo1 --subscribe TAUEXT_ESTIMATE_x"}) {
+    const Outcome o = in_network(
+        listening(mode) +
+        "kill -STOP $live; lcm-logplayer good.lcm > /dev/null; kill -INT $live; kill -CONT $live\n"
+        "wait $live; code=$?; cat heard; exit $code");
+    EXPECT_EQ(o.code, 0) << o.text;
+    EXPECT_TRUE(o.says("200 sent = 200 used")) << o.text;
+  }
+}
+
 TEST_F(HostileNetwork, AnotherMachineIsHeardOnlyIfTheUrlSaysSo) {
   SKIP_WITHOUT_NAMESPACE();
   put_estimates("near.lcm", 0, 100);

@@ -23,10 +23,11 @@ class LivePrograms : public Programs {
         route ? "ip link set lo up multicast on\nip route add 224.0.0.0/4 dev lo\n" : "";
     return run_script(up + script, "unshare -rn ");
   }
-  // `says FILE TEXT` waits until the text is in the file
+  // `says FILE TEXT` waits until the text is in the file, which no script before has left
   Outcome run_script(const std::string& script, const std::string& inside = "") const {
     write("script", "export PATH=" TAUEXT_BIN
                     ":$PATH\n"
+                    "rm -f heard out err sent\n"
                     "says() { for i in $(seq 300); do grep -q \"$2\" \"$1\" 2>/dev/null && return; "
                     "sleep 0.1; done; }\n" +
                         script);

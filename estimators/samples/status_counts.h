@@ -75,8 +75,8 @@ class StatusCounts {
       if (status == Status::kOk) {
         out += "put right" + joints;
       } else {
-        out += std::to_string(n) + " " + (status == Status::kStarted ? "anew" : name_of(status)) +
-               joints;
+        out += std::to_string(n) + " " +
+               (status == Status::kStarted ? "started again" : name_of(status)) + joints;
       }
     }
     return out;

@@ -11,9 +11,14 @@
 #include <cmath>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 
@@ -61,7 +66,7 @@ class JsonObject {
       if (good) v[i] = j[static_cast<std::size_t>(i)].get<double>();
     }
     if (!good || !(v.cwiseAbs().maxCoeff() <= kMost))
-      fail("{}: \"{}\" is {}, and must be {} numbers", where_, key, j.dump(), n);
+      fail("{}: \"{}\" is {}, and must be {} numbers up to {:g}", where_, key, j.dump(), n, kMost);
     return v;
   }
   /// A text, or what stands for none.
@@ -98,5 +103,34 @@ class JsonObject {
   const Json& json_;
   std::string where_;
 };
+
+/// What a text of JSON says, in which no object has a key twice.
+/// @param comments whether it may have // and /* */
+/// @throws std::invalid_argument naming a key that is there twice; Json::exception for no JSON
+inline JsonObject::Json parse_json(const std::string& text, bool comments = false) {
+  using Json = JsonObject::Json;
+  std::vector<std::set<std::string>> seen;  // of each object that is open
+  const auto look = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) seen.emplace_back();
+    if (event == Json::parse_event_t::object_end) seen.pop_back();
+    if (event == Json::parse_event_t::key && !seen.back().insert(parsed.get<std::string>()).second)
+      throw std::invalid_argument(fmt::format("the key {} is there twice", parsed.dump()));
+    return true;
+  };
+  return Json::parse(text, look, true, comments);
+}
+
+/// The same of a file.
+/// @throws std::runtime_error naming the path and what is wrong
+inline JsonObject::Json read_json(const std::string& path, bool comments = false) {
+  const std::string text = read_json_text(path);
+  try {
+    return parse_json(text, comments);
+  } catch (const JsonObject::Json::exception& e) {
+    throw std::runtime_error(fmt::format("{}: no JSON: {}", path, one_line(e.what())));
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
+  }
+}
 
 }  // namespace tauext

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "mjcf/import/json_object.h"
-#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -65,12 +64,12 @@ Payload payload_of(const Json& json, const std::string& where) {
   return p;
 }
 
-RobotFile robot_of(const std::string& text, const std::string& path) {
-  const Json json = Json::parse(text);
+RobotFile robot_of(const Json& json, const std::string& path) {
   const JsonObject o(json, path, {"format", "file", "lock", "joints", "payload", "about"});
   if (o.text("format", "") != kRobotFileFormat)
-    throw std::invalid_argument(
-        fmt::format("{}: no robot file: its \"format\" must be \"{}\"", path, kRobotFileFormat));
+    throw std::invalid_argument(fmt::format(
+        "{}: no robot file: its \"format\" is {}, and must be \"{}\"", path,
+        o.has("format") ? printable_name(o.at("format").dump()) : "missing", kRobotFileFormat));
   RobotFile r;
   const std::string file = o.text("file", "");
   if (file.empty() || is_our_robot_file(file))
@@ -97,18 +96,13 @@ bool is_our_robot_file(std::string_view path) {
 
 RobotFile robot_file(const std::string& path, const ImportOptions& options) {
   if (!is_our_robot_file(path)) return {path, options};
-  const std::string text = read_json_text(path);
-  try {
-    RobotFile robot = robot_of(text, path);
-    std::string& lock = robot.options.lock;
-    if (!options.lock.empty() && !lock.empty())
-      throw std::invalid_argument(
-          fmt::format("{}: has a \"lock\" of its own, so --lock cannot be another one", path));
-    if (lock.empty()) lock = options.lock;
-    return robot;
-  } catch (const JsonObject::Json::exception& e) {
-    throw std::runtime_error(one_line(fmt::format("{}: no JSON: {}", path, e.what())));
-  }
+  RobotFile robot = robot_of(read_json(path), path);
+  std::string& lock = robot.options.lock;
+  if (!options.lock.empty() && !lock.empty())
+    throw std::invalid_argument(
+        fmt::format("{}: has a \"lock\" of its own, so --lock cannot be another one", path));
+  if (lock.empty()) lock = options.lock;
+  return robot;
 }
 
 }  // namespace tauext

@@ -16,14 +16,13 @@ double paper_sine(double t) {
   return 10 * std::sin(t) + 5 * std::cos(2 * t + std::numbers::pi / 2) - 5;
 }
 
-double swept_sine(double t) {
-  constexpr double kBegin = 2, kEnd = 38, kFade = 1;  // [s]
-  constexpr double kSlowest = 0.5, kFastest = 300;    // [rad/s]
-  if (t < kBegin || t >= kEnd) return 0;
-  const double octaves = std::log(kFastest / kSlowest), duration = kEnd - kBegin;
-  const double phase =
-      kSlowest * duration / octaves * std::expm1(octaves * (t - kBegin) / duration);
-  const double edge = std::min({1., (t - kBegin) / kFade, (kEnd - t) / kFade});
+double swept_sine(double t, double from, double to) {
+  constexpr double kFade = 1;                       // [s]
+  constexpr double kSlowest = 0.5, kFastest = 300;  // [rad/s]
+  if (t < from || t >= to) return 0;
+  const double octaves = std::log(kFastest / kSlowest), duration = to - from;
+  const double phase = kSlowest * duration / octaves * std::expm1(octaves * (t - from) / duration);
+  const double edge = std::min({1., (t - from) / kFade, (to - t) / kFade});
   return 0.5 * (1 - std::cos(std::numbers::pi * edge)) * std::sin(phase);
 }
 

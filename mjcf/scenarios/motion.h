@@ -22,9 +22,9 @@ Reference sine_motion(double amplitude, double w, double t);
 /// The load of Fig. 6: 10 sin t + 5 cos(2t + pi/2) - 5 [N m].
 double paper_sine(double t);
 
-/// A sine of amplitude 1 from 2 to 38 s whose frequency grows from 0.5 to 300 rad/s, as quickly as
-/// itself, faded in and out, so that it begins and ends at rest.
-double swept_sine(double t);
+/// A sine of amplitude 1 between two times [s] whose frequency grows from 0.5 to 300 rad/s, as
+/// quickly as itself, faded in and out, so that it begins and ends at rest.
+double swept_sine(double t, double from = 2, double to = 38);
 
 /// From rest to rest with the least jerk, as a human arm moves (Flash and Hogan 1985).
 struct MinimumJerk {

@@ -29,7 +29,7 @@ bool differ(const Score& a, const Score& b, double times) {
     if (!m.is(MetricRow::kGate)) continue;
     if (differ(a.get(m.metric), b.get(m.metric), times * m.tolerance)) return true;
     if (!m.is(MetricRow::kGateJoints)) continue;
-    const std::vector<double>&of_a = a.joints(m.metric), &of_b = b.joints(m.metric);
+    const Score::Joints &of_a = a.joints(m.metric), &of_b = b.joints(m.metric);
     for (std::size_t j = 0; j < of_a.size(); ++j) {
       if (differ(of_a[j], of_b[j], times * m.tolerance)) return true;
     }

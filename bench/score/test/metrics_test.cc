@@ -80,6 +80,18 @@ TEST(StepResponse, OfASecondOrderFilterOvershootsByItsDamping) {
               100 * std::exp(-M_PI * zeta / std::sqrt(1 - zeta * zeta)), 0.01);
 }
 
+TEST(StepResponse, EndsWhereTheTruthJumpsAgain) {
+  const Times t = times(5000);
+  const RowVectorXd truth = signal(t, [](double s) { return s < 1 || s >= 3 ? 0. : 5.; });
+  const RowVectorXd x = signal(t, [](double s) {
+    if (s < 1) return 0.;
+    return s < 3 ? 5 * (1 - std::exp(-10 * (s - 1))) : 20 * std::exp(-10 * (s - 3));
+  });
+  const StepResponse r = step_response(t, truth, x);
+  EXPECT_NEAR(r.settling, std::log(50) / 10, 1e-5);
+  EXPECT_EQ(r.overshoot, 0) << "20 N m come after the end";
+}
+
 TEST(StepResponse, OfThePerfectEstimateIsZero) {
   const Times t = times(3000);
   const StepResponse r = step_response(t, step(t, 0, 5), step(t, 0, 5));

@@ -28,6 +28,16 @@ TEST(Score, AJointWithoutAValueIsTheWorst) {
   }
 }
 
+TEST(Score, AJointThatIsNotAskedDoesNotCount) {
+  Score s;
+  s.set_joints(Metric::kSettling, {std::nullopt, 0.2});
+  EXPECT_EQ(s.get(Metric::kSettling), 0.2);
+  EXPECT_EQ(s.by_key(), (std::vector<std::pair<std::string, double>>{{"settling_s", 0.2},
+                                                                     {"settling_s_joint2", 0.2}}));
+  s.set_joints(Metric::kRise, {std::nullopt, std::nullopt});
+  EXPECT_FALSE(s.get(Metric::kRise)) << "nobody is asked";
+}
+
 TEST(Score, HasNothingThatWasNotSet) {
   Score s;
   EXPECT_TRUE(s.empty());

@@ -93,6 +93,12 @@ TEST(Legend, ExplainsEveryColumnAndNoOther) {
   }
 }
 
+TEST(Legend, ExplainsCellsWithoutAValue) {
+  const std::string text = table_legend({row("ekf", 1, 1), row("ndob", 2, kNoValue)});
+  EXPECT_NE(text.find("\nnever"), std::string::npos);
+  EXPECT_EQ(text.find("\n- "), std::string::npos) << "every row has both";
+}
+
 TEST(ListOfMetrics, IsTheTableOfTheReadme) {
   std::ifstream in(TAUEXT_SCORE_README);
   const std::string readme{std::istreambuf_iterator<char>(in), {}};

@@ -120,7 +120,7 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
   for (const auto& [json, words] : std::vector<std::pair<std::string, std::string>>{
            {"{", "arm.json: no JSON"},
            {"[]", "arm.json is [], no object"},
-           {R"({"file": "arm.xml"})", "\"format\" must be \"tauext-robot-1\""},
+           {R"({"file": "arm.xml"})", "\"format\" is missing, and must be \"tauext-robot-1\""},
            {R"({"format": "tauext-robot-1"})", "\"file\" must name an MJCF or URDF file"},
            {R"({"format": "tauext-robot-1", "file": "no.xml"})", "no.xml"},
            {head + R"("joint": {}})", "unknown key \"joint\"; known: format, file, lock, joints"},
