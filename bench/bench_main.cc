@@ -20,9 +20,9 @@
 #include "bench/run/study_flags.h"
 #include "bench/run/suite_run.h"
 #include "bench/score/entry.h"
-#include "bench/score/golden.h"
 #include "bench/score/suite.h"
 #include "bench/score/table.h"
+#include "bench/seeds/golden.h"
 #include "mjcf/trace/atomic_file.h"
 
 namespace tauext {
@@ -53,12 +53,13 @@ struct Flags {
   bool list = false, list_metrics = false, list_tests = false, paper = false;
   std::string lock;
   std::optional<std::string> scenarios, out, out_format, format, golden, commands, lcm, lcm_log;
-  std::vector<std::uint64_t> seeds = GoldenOptions().seeds;
+  std::optional<std::string> seeds;
 };
 
 int run_golden(const Flags& f, const std::string& filter) {
   AtomicFile file(*f.golden);
-  GoldenOptions o{.suite = f.suite, .selection = f.selection, .seeds = f.seeds, .filter = filter};
+  GoldenOptions o{.suite = f.suite, .selection = f.selection, .filter = filter};
+  if (f.seeds) o.seeds = seeds_of(*f.seeds);
   o.built = build();
   Progress progress("scoring");
   o.progress = progress.callback();
@@ -73,25 +74,31 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   const bool golden = f.golden.has_value(), commands = f.commands.has_value();
   if (study + f.list + f.list_metrics + golden + commands > 1) {
     throw std::invalid_argument(
-        "one at a time: --list, --list-metrics, --golden, --commands, or a study (--reliability, "
-        "--equal-bandwidth, --pareto)");
+        "one at a time: --list, --list-metrics, --golden, --commands, or a study (--seeds, "
+        "--reliability, --equal-bandwidth, --pareto)");
   }
   const bool suite = !study && !listing && !golden && !commands;
   require_mode(app, suite, "the suite alone", {"--paper", "--lcm", "--lcm-log"});
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
-  require_mode(app, suite || golden || f.list, "the suite, --golden and --list",
-               {"--estimator", "--detector"});
-  require_mode(app, golden, "--golden", {"--seeds"});
-  require_mode(app, !golden, "the suite; --golden takes --seeds", {"--seed"});
+  const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
+  const bool seeds = !f.studies.seeds.empty();
+  const bool selects = suite || golden || f.list || seeds;
+  require_mode(app, selects, "the suite, --seeds, --golden and --list", {"--detector"});
+  require_mode(app, selects || (tuned && !f.studies.reliability),
+               "the suite, --seeds, --golden, --list, --equal-bandwidth and --pareto",
+               {"--estimator"});
+  require_mode(app, seeds, "--seeds", {"--against"});
+  require_mode(app, !golden && !seeds, "one seed, not with --seeds or --golden", {"--seed"});
   if (!suite && (f.out || f.format)) {
     throw std::invalid_argument(
         "--benchmark_out and --benchmark_format go with the suite alone; a study has --out and "
         "--format");
   }
-  if (!all && !suite && !golden) {
+  if (!all && !suite && !golden && !seeds) {
     throw std::invalid_argument(
-        "--benchmark_filter goes with the suite and --golden; --benchmark_list_tests lists what it "
-        "selects");
+        "--benchmark_filter goes with the suite, --seeds and --golden; --benchmark_list_tests "
+        "lists "
+        "what it selects");
   }
 }
 
@@ -106,6 +113,7 @@ int run(const CLI::App& app, Flags& flags) {
   }
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
+  if (flags.seeds && !flags.golden) flags.studies.seeds = seeds_of(*flags.seeds);
   const bool study = wants_study(flags.studies);
   require_mode_of_flags(app, flags, study, all);
   if (flags.lcm_log == "")
@@ -114,7 +122,11 @@ int run(const CLI::App& app, Flags& flags) {
     fmt::print("{}", list_of_metrics());
     return kGood;
   }
-  if (study) return run_study(flags.studies, flags.suite);
+  if (study) {
+    flags.studies.selection = flags.selection;
+    flags.studies.filter = all ? "" : filter;
+    return run_study(flags.studies, flags.suite);
+  }
   if (flags.golden) return run_golden(flags, all ? "" : filter);
   if (flags.commands) {
     fmt::print("{}", record_and_replay(*flags.commands, flags.suite, flags.selection));
@@ -122,7 +134,7 @@ int run(const CLI::App& app, Flags& flags) {
   }
   if (flags.list) {
     for (const Entry& e : entries(flags.selection)) fmt::print("{}\n", e.name());
-    fmt::print("\n{}", list_fields());
+    fmt::print("\n{}", list_fields(flags.selection.robot));
     return kGood;
   }
   return run_suite({.suite = flags.suite,
@@ -187,7 +199,10 @@ void add_output_flags(CLI::App& app, Flags& flags) {
   app.add_option("--golden", flags.golden,
                  "write every metric of --seeds 1,2,.. for tauext-gate, and stop")
       ->type_name("FILE");
-  app.add_option("--seeds", flags.seeds)->delimiter(',')->check(whole_number)->group("");
+  app.add_option("--seeds", flags.seeds,
+                 "study instead: means and intervals over these (--against mo2)")
+      ->type_name("1-30");
+  app.add_option("--against", flags.studies.against)->group("");
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
       ->type_name("[URL]")
@@ -212,7 +227,7 @@ void add_flags(CLI::App& app, Flags& flags) {
   app.add_option("--noise_probe", flags.suite.noise_probe)->group("");  // bench/score/README.md
   add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
   for (const char* less_used : {"--kp", "--kd", "--velocity_noise", "--loadcell", "--degrade",
-                                "--list-metrics", "--lcm-log"}) {
+                                "--list-metrics", "--lcm-log", "--golden"}) {
     app.get_option(less_used)->group("");
   }
 }

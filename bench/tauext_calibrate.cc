@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tauext-calibrate: what nobody's file knows of an arm, from recordings.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -46,7 +47,8 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns, "what the logs' columns mean (see tauext-replay --help)")
       ->type_name("PRESET|FILE.toml");
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
-  app.add_option("--terms", f.terms, "to find, apart by commas (see --list)")
+  app.add_option("--terms", f.terms,
+                 "to find, apart by commas (see --list); of a robot's joints all")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,..");
@@ -75,6 +77,16 @@ void write_file(const std::string& text, const std::string& out) {
   file.commit();
 }
 
+// what `make` makes of the logs, and of which logs it cannot
+template <class Make>
+auto naming(const std::vector<std::string>& logs, Make&& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("{}: {}", fmt::join(logs, ", "), e.what()));
+  }
+}
+
 int identify_one(const Flags& f) {
   if (f.logs.size() != 1)
     throw std::invalid_argument("a log of one joint, or --robot FILE and logs of it, are required");
@@ -82,7 +94,7 @@ int identify_one(const Flags& f) {
       f.terms.empty() ? std::vector<std::string>{"inertia", "gravity_cos", "gravity_sin", "coulomb"}
                       : f.terms);
   const RecordedLog recorded = read_any_log(f.logs[0], {f.channel, f.columns});
-  const Identification id = identify(recorded.trace, model, f.windows);
+  const auto id = naming(f.logs, [&] { return identify(recorded.trace, model, f.windows); });
   if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
   fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
   return recorded.usable() ? kGood : kAnswerIsNo;
@@ -120,8 +132,8 @@ int calibrate(const Flags& f, const ArmTree& arm) {
     for (Trace& log : logs) make_torques(log, arm.gain);
   CalibrateOptions o;
   o.windows = f.windows;
-  if (!f.terms.empty()) o.terms = f.terms;
-  std::vector<CalibratedJoint> joints = calibrate_arm(arm, logs, o);
+  o.terms = f.terms;
+  const auto joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
   std::FILE* const to = f.out == "-" ? stderr : stdout;
   const TableFormat format = table_format(f.format);
   fmt::print(to, "{}", parameter_table(joints, format));
@@ -140,7 +152,7 @@ int weigh_payload(const Flags& f, const ArmTree& arm) {
                      loaded = read_logs(f, arm, f.loaded, usable);
   for (std::vector<Trace>* const all : {&empty, &loaded})
     for (Trace& log : *all) make_torques(log, arm.gain);
-  const Weighing w = weigh(arm, loaded, empty, f.windows);
+  const auto w = naming(f.loaded, [&] { return weigh(arm, loaded, empty, f.windows); });
   fmt::print(f.out == "-" ? stderr : stdout, "{}", weighing_table(w, table_format(f.format)));
   if (!f.out.empty()) {
     if (!(w.payload.mass > 0))

@@ -5,9 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/logs/read_log.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
@@ -26,18 +29,19 @@ using namespace tauext;
 struct Flags {
   study::StudyOptions study;
   study::CalibrationOptions calibration;
-  std::string lock, calibrate_to, thresholds, out, format = "text";
+  std::vector<std::string> logs;  // to calibrate from
+  std::string channel, columns, lock, calibrate_to, thresholds, out, format = "text";
   bool list = false;
 };
 
-void list_conditions(const std::string& robot) {
-  const study::StudyRuns& runs = study::touched_runs(robot);
+void list_conditions(const std::string& robot_name) {
+  const study::StudyRuns& runs = study::touched_runs(robot_name);
   TableWriter table({{"condition", "", true}, {"what is so", "", true}});
   for (const study::Condition& c : runs.conditions) {
     const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
     table.add({c.name, c.description + (trained ? " (trained on)" : "")});
   }
-  fmt::print("{}\n{}", table.format(), list_fields());
+  fmt::print("{}\n{}", table.format(), list_fields(&robot(runs.robot)));
 }
 
 Thresholds calibrated(const Flags& f) {
@@ -49,6 +53,41 @@ Thresholds calibrated(const Flags& f) {
   o.threads = f.study.threads;
   o.progress = progress.callback();
   return study::calibrate(o);
+}
+
+// from recordings without contact; says whether these thresholds would have held
+Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
+  if (f.study.robot.empty())
+    throw std::invalid_argument("recordings: of which --robot NAME or FILE?");
+  const Robot& r = robot(f.study.robot);
+  std::vector<study::FreeRecording> recordings;
+  for (const std::string& path : f.logs) {
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    usable = usable && log.usable();
+    r.make_torques(log.trace);
+    recordings.push_back({path, std::move(log.trace)});
+  }
+  Progress progress("calibrating");
+  study::CalibrationOptions o = f.calibration;
+  o.estimators = f.study.estimators;
+  o.detectors = f.study.detectors;
+  o.threads = f.study.threads;
+  o.progress = progress.callback();
+  std::vector<study::HeldOut> held_out;
+  const Thresholds thresholds = study::calibrate_on(r, recordings, o, held_out);
+  TableWriter table({{"estimator", "", true}, {"detector", "", true}, {"alarms", "recordings"}});
+  for (const study::HeldOut& h : held_out)
+    table.add({h.estimator, h.detector, fmt::format("{} of {}", h.alarms, h.recordings)});
+  std::FILE* const to = f.calibrate_to == "-" ? stderr : stdout;
+  fmt::print(to, "trained on {}, margin {:g}\n", printable(thresholds.trained_on),
+             thresholds.margin);
+  if (held_out.empty()) {
+    fmt::print(to, "With one recording nobody can say whether these thresholds hold on another.\n");
+  } else {
+    fmt::print(to, "\n{}alarms: recordings in which the thresholds of all others would mark.\n",
+               table.format());
+  }
+  return thresholds;
 }
 
 std::vector<study::Cell> studied(study::StudyOptions o, const Thresholds& thresholds) {
@@ -64,9 +103,10 @@ void require_writable(const std::string& path) {
 
 int run_calibration(const Flags& f) {
   require_writable(f.calibrate_to);
-  write_thresholds(calibrated(f), f.calibrate_to);
+  bool usable = true;
+  write_thresholds(f.logs.empty() ? calibrated(f) : calibrated_on_logs(f, usable), f.calibrate_to);
   if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
-  return kGood;
+  return usable ? kGood : kAnswerIsNo;
 }
 
 int run_study(const Flags& f) {
@@ -103,14 +143,19 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, studies, "a study, not with --calibrate",
                {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
                 "--clampings", "--hours", "--seed"});
-  require_mode(app, f.thresholds.empty(), "training, not with --thresholds",
-               {"--margin", "--train", "--runs"});
+  require_mode(app, f.thresholds.empty(), "training, not with --thresholds", {"--margin"});
+  require_mode(app, f.thresholds.empty() && f.logs.empty(),
+               "training on simulated runs, not with --thresholds or recordings",
+               {"--train", "--runs"});
+  require_mode(app, !f.logs.empty(), "recordings to calibrate from", {"--columns", "--channel"});
+  if (studies && !f.logs.empty())
+    throw std::invalid_argument(f.logs[0] + ": recordings are for --calibrate FILE");
   return studies ? run_study(f) : run_calibration(f);
 }
 
 template <class T>
-void add_count(CLI::App& app, const char* flag, T& to, T least, T most, const char* help) {
-  app.add_option(flag, to, help)
+CLI::Option* add_count(CLI::App& app, const char* flag, T& to, T least, T most, const char* help) {
+  return app.add_option(flag, to, help)
       ->check(CLI::Range(least, most).description(""))
       ->capture_default_str()
       ->type_name("N");
@@ -121,16 +166,19 @@ void add_names(CLI::App& app, const char* flag, std::vector<std::string>& to, co
 }
 
 void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("logs", f.logs,
+                 "to --calibrate from: without contact (--columns as tauext-replay)");
+  app.add_option("--channel", f.channel)->group("");
+  app.add_option("--columns", f.columns)->group("");
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
       ->type_name("FILE");
   app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
       ->capture_default_str();
   app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE");
-  app.add_option("--out", f.out, "write all of it as JSON, with points of the ROC")
+  app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
       ->type_name("FILE");
-  app.add_option("--format", f.format, "of the printed table: text, csv, json, md or latex")
-      ->type_name("NAME");
+  app.add_option("--format", f.format)->group("");
   app.add_option("--robot", f.study.robot,
                  "robot to study, or its file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
@@ -141,9 +189,10 @@ void add_flags(CLI::App& app, Flags& f) {
   add_names(app, "--conditions", f.study.conditions, "study only these (see --list)");
   add_names(app, "--estimator", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
   add_names(app, "--detector", f.study.detectors, "only these, like high_pass:w=60");
-  add_count(app, "--collisions", f.study.blows, 0, 100000, "blows, at least, for each condition");
-  add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "brisk pushes, at least");
-  add_count(app, "--clampings", f.study.clampings, 0, 100000, "soft clampings, at least");
+  add_count(app, "--collisions", f.study.blows, 0, 100000,
+            "blows, at least, for each condition; so --pushes, --clampings");
+  add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "")->group("");
+  add_count(app, "--clampings", f.study.clampings, 0, 100000, "")->group("");
   app.add_option("--hours", f.study.hours, "of free motion and slow pushes, at least")
       ->capture_default_str();
   add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
@@ -158,7 +207,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Tries every detector behind every estimator of a robot; without --thresholds it "
       "calibrates.\n\n"
-      "  tauext-detect --calibrate thresholds.json\n"
+      "  tauext-detect --calibrate t.json --robot arm.json --columns ur_rtde free*.csv\n"
       "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
       "tauext-detect");
   app.get_formatter()->column_width(34);

@@ -86,6 +86,9 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
 }
 
 int import(const std::string& path, const ImportOptions& how, const std::string& out) {
+  if (out != "-" && !out.ends_with(".xml") && !out.ends_with(".h"))
+    throw std::invalid_argument(
+        fmt::format("--out {}: MJCF goes to a name that ends in .xml, C++ to one in .h", out));
   const auto [file, options] = robot_file(path, how);
   const ArmTree arm = arm_of(file, options);
   const ImportedText text = import_mjcf(file, options);
@@ -99,11 +102,13 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
   to.write(out.ends_with(".h") ? cpp_of(arm, file, options, out) : text.xml);
   to.commit();
   const std::size_t followers = arm.joints.size() - static_cast<std::size_t>(arm.dof());
-  say(fmt::format("{}: {} joints, {} of them slides, that move {:.4g} kg{}", out, arm.joints.size(),
-                  slides, mass,
-                  followers > 0
-                      ? fmt::format("; {} follow{} another", followers, followers == 1 ? "s" : "")
-                      : ""));
+  say(fmt::format(
+      "{}: {} joints, {} of them slides, that move {:.4g} kg{}", out, arm.joints.size(), slides,
+      mass,
+      followers > 0 ? fmt::format("; {} follow{} another, which triples the time of a step (--lock "
+                                  "fixes joints)",
+                                  followers, followers == 1 ? "s" : "")
+                    : ""));
   if (arm.dof() > kMostCoordinates || followers > kMostFollowers)
     say(
         fmt::format("note: estimators take arms of 1 to {} joints and up to {} more that follow "

@@ -4,20 +4,65 @@
 
 #include <CLI/CLI.hpp>
 #include <cctype>
+#include <filesystem>
+#include <iterator>
+#include <utility>
 
 #include "bench/logs/lcm_trace.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
 #include "bench/run/scenario_file.h"
+#include "bench/run/study_flags.h"
+#include "bench/score/parallel.h"
+#include "bench/study/calibration.h"
+#include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/layout_writer.h"
 #include "mjcf/trace/read/npy_writer.h"
 
 namespace {
 
+using namespace tauext;
+
+struct Flags {
+  std::string robot, lock, scenario, scenarios, out, stop, layout, type = "tauext", set, seeds;
+  int every = 1;
+  Sensors sensors;
+  ModelError model_error;
+  Recording recording;
+  bool list = false;
+};
+
+void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX")
+      ->check(not_empty);
+  app.add_option("--scenario", f.scenario,
+                 "scenario (see --list; --scenarios FILE.json adds yours)");
+  app.add_option("--scenarios", f.scenarios)->group("");  // bench/run/README.md
+  app.add_option("--set", f.set, "training or test instead: runs of --seeds 1-100 to --out FOLDER")
+      ->check(CLI::IsMember({"training", "test"}).description(""))
+      ->type_name("NAME");
+  app.add_option("--seeds", f.seeds)->group("");
+  app.add_option("--out", f.out, "file to write; - is standard output");
+  app.add_option("--type", f.type, "of an LCM log's messages: tauext, iiwa or panda")
+      ->capture_default_str();
+  app.add_option("--layout", f.layout, "of other people's logs: libfranka, ur_rtde or joint_state")
+      ->type_name("NAME");
+  app.add_option("--every", f.every, "write each N-th sample alone: 8 for 125 Hz")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+  app.add_option("--stop", f.stop, "ESTIMATOR+DETECTOR whose first mark stops the motor");
+  add_recording_flags(app, f.sensors, f.model_error, f.recording);
+  app.add_flag("--list", f.list, "list robots and scenarios, and stop");
+}
+
 // What --stop names on this robot: nothing if it is empty.
-tauext::Supervisor supervisor_of(const tauext::Robot& robot, const std::string& stop) {
+Supervisor supervisor_of(const Robot& robot, const std::string& stop) {
   if (stop.empty()) {
     return nullptr;
   }
@@ -33,73 +78,110 @@ tauext::Supervisor supervisor_of(const tauext::Robot& robot, const std::string& 
   return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
 }
 
-// as its name ends
-void write(const tauext::Trace& trace, tauext::MessageType type, const std::string& out) {
-  using namespace tauext;
-  if (out.ends_with(".npz")) return write_npz(out, trace);
-  if (!is_lcm_log(out)) return write_csv(trace, out);
+// every n-th sample; what was held between them is then read at instants
+Trace thinned(const Trace& trace, int every) {
+  if (every == 1) return trace;
+  std::vector<int> kept;
+  for (int k = 0; k < trace.size(); k += every) kept.push_back(k);
+  Trace thin = select_samples(trace, kept);
+  thin.torque_at_instants = true;
+  return thin;
+}
+
+// in the layout that is asked for, or as its name ends
+void write(const Trace& trace, const Flags& f, const Robot& r) {
+  if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), f.out);
+  if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
+  if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
   LogBuffer log;
-  append_samples(readings_of(trace), type, log);
-  AtomicFile file(out);
+  append_samples(readings_of(trace), message_type(f.type), log);
+  AtomicFile file(f.out);
   file.write(log.bytes());
   file.commit();
+}
+
+// runs that seeds draw, each with touches of one kind, as NumPy's arrays; no seed of a training set
+// is one of a study or of a test set
+int record_set(const Flags& f) {
+  if (f.robot.empty() || f.seeds.empty() || f.out.empty())
+    throw std::invalid_argument("--set wants --robot, --seeds and --out FOLDER");
+  constexpr std::pair<const char*, TouchKind> kKinds[] = {{"blow", TouchKind::kBlow},
+                                                          {"slow_push", TouchKind::kSlowPush},
+                                                          {"brisk_push", TouchKind::kBriskPush},
+                                                          {"clamp", TouchKind::kClamp}};
+  const study::StudyRuns& runs = study::touched_runs(with_lock(f.robot, f.lock));
+  const std::vector<std::uint64_t> seeds = seeds_of(f.seeds);
+  study::Condition condition;
+  condition.panel = runs.carries;
+  condition.degradation = {f.sensors, f.model_error};
+  const study::PlantKey plant = study::plant_of(condition);
+  const Model model = runs.model(plant);
+  std::filesystem::create_directories(f.out);
+  Progress progress("recording");
+  const auto record = [&](int i) {
+    const std::uint64_t seed = seeds[static_cast<std::size_t>(i)];
+    if (seed >= study::kTrainingSeed)
+      throw std::invalid_argument(
+          fmt::format("--seeds: {} is not below {}", seed, study::kTrainingSeed));
+    for (const auto& [name, kind] : kKinds) {
+      const study::Job job{plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)};
+      const Trace trace = study::measured(study::simulated(runs, job, model), f.sensors, job);
+      write_npz(fmt::format("{}/{}_{:04}.npz", f.out, name, seed), thinned(trace, f.every));
+    }
+  };
+  parallel_for(static_cast<int>(seeds.size()), 0, record, progress.callback());
+  say(fmt::format("{}: {} runs of {}, 30 s each", f.out, std::size(kKinds) * seeds.size(),
+                  f.robot));
+  return kGood;
+}
+
+int run(const CLI::App& app, const Flags& f) {
+  if (f.list) {
+    fmt::print("{}", list_known(with_lock(f.robot, f.lock)));
+    return kGood;
+  }
+  require_mode(app, !f.set.empty(), "--set", {"--seeds"});
+  require_mode(
+      app, f.set.empty(), "one run, not with --set",
+      {"--scenario", "--scenarios", "--type", "--layout", "--stop", "--kp", "--kd", "--seed"});
+  if (!f.set.empty()) return record_set(f);
+  if (f.robot.empty() || f.scenario.empty() || f.out.empty()) {
+    throw std::invalid_argument(
+        "--robot, --scenario and --out are required; see tauext-record --help");
+  }
+  if (message_type(f.type) != MessageType::kTauext && !is_lcm_log(f.out)) {
+    throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", f.type, f.out));
+  }
+  if (!f.layout.empty() && (is_lcm_log(f.out) || f.out.ends_with(".npz")))
+    throw std::invalid_argument(
+        fmt::format("--layout {}: --out {} is of another kind", f.layout, f.out));
+  const Robot& r = robot(with_lock(f.robot, f.lock));
+  if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
+  const Scenario& s = scenario_of(r, f.scenario);
+  const Sensors sensors = sensors_for(s, f.sensors);
+  const Supervisor supervisor = supervisor_of(r, f.stop);
+  const Trace trace =
+      measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
+  const Trace thin = thinned(trace, f.every);
+  write(thin, f, r);
+  const std::string stopped = trace.stopped_at >= 0
+                                  ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
+                              : f.stop.empty() ? ""
+                                               : "; nothing stopped it";
+  say(fmt::format("{}: {} samples of {}/{}{}", f.out, thin.size(), f.robot, f.scenario, stopped));
+  return kGood;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace tauext;
   CLI::App app(
       "Records a scenario on a simulated robot with its true tau_ext, 1 kHz, as CSV:\n"
       "t,q1..,qd1..,tau1..,tau_ext1..,contact  [s, rad, rad/s, N m; sign: see README];\n"
       "or, to a file that ends in .npz, as NumPy's arrays t, q, .., or in .lcm, as an LCM log.\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
-  std::string robot_name, lock, scenario_name, scenario_file, out, stop, type = "tauext";
-  Sensors sensors;
-  ModelError model_error;
-  Recording recording;
-  bool list = false;
-  app.add_option("--robot", robot_name, "robot (see --list), or a file of MJCF or URDF")
-      ->type_name("NAME|FILE");
-  app.add_option("--lock", lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX")
-      ->check(not_empty);
-  app.add_option("--scenario", scenario_name, "scenario (see --list)");
-  app.add_option("--scenarios", scenario_file, "add those of a JSON file (bench/run/README.md)")
-      ->type_name("FILE");
-  app.add_option("--out", out, "file to write; - is standard output");
-  app.add_option("--type", type, "of an LCM log's messages: tauext, iiwa or panda")
-      ->capture_default_str();
-  app.add_option("--stop", stop, "ESTIMATOR+DETECTOR whose first mark stops the motor");
-  add_recording_flags(app, sensors, model_error, recording);
-  app.add_flag("--list", list, "list robots and scenarios, and stop");
-  return run_program(app, argc, argv, [&] {
-    if (list) {
-      fmt::print("{}", list_known(with_lock(robot_name, lock)));
-      return kGood;
-    }
-    if (robot_name.empty() || scenario_name.empty() || out.empty()) {
-      throw std::invalid_argument(
-          "--robot, --scenario and --out are required; see tauext-record --help");
-    }
-    if (message_type(type) != MessageType::kTauext && !is_lcm_log(out)) {
-      throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", type, out));
-    }
-    const Robot& r = robot(with_lock(robot_name, lock));
-    if (!scenario_file.empty()) add_scenarios(scenario_file, r);
-    const Scenario& s = scenario_of(r, scenario_name);
-    sensors = sensors_for(s, sensors);
-    const Supervisor supervisor = supervisor_of(r, stop);
-    const Trace trace =
-        measure(simulate(r.load_for(s, model_error), s, recording, sensors, supervisor), sensors);
-    write(trace, message_type(type), out);
-    const std::string stopped = trace.stopped_at >= 0
-                                    ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
-                                : stop.empty() ? ""
-                                               : "; nothing stopped it";
-    say(fmt::format("{}: {} samples of {}/{}{}", out, trace.size(), robot_name, scenario_name,
-                    stopped));
-    return kGood;
-  });
+  Flags flags;
+  add_flags(app, flags);
+  return run_program(app, argc, argv, [&] { return run(app, flags); });
 }

@@ -15,6 +15,7 @@
 #include "bench/program/program.h"
 #include "bench/replay/replayed.h"
 #include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
@@ -82,7 +83,7 @@ void warn_of_torque(const Robot& r, const Trace& trace, bool assumed_instant) {
 }
 
 struct Flags {
-  std::string log, channel, columns, robot, lock, detector, torque, wrench, out;
+  std::string log, channel, columns, robot, lock, detector, thresholds, torque, wrench, out;
   std::vector<std::string> estimators;
   double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
@@ -103,6 +104,8 @@ void add_flags(CLI::App& app, Flags& f) {
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option("--detector", f.detector, "NAME[:KEY=VALUE].. behind each estimator");
+  app.add_option("--thresholds", f.thresholds, "of the detector: file of tauext-detect --calibrate")
+      ->type_name("FILE");
   app.add_option("--torque", f.torque,
                  "when tau acted: held from t on, or at t; else as the log says")
       ->type_name("held|instant")
@@ -111,11 +114,29 @@ void add_flags(CLI::App& app, Flags& f) {
                  "the force at this site or body (end_effector), and the link touched")
       ->type_name("SITE")
       ->check(not_empty);
-  app.add_option("--out", f.out, "file to write; - is standard output");
+  app.add_option("--out", f.out, "CSV to write, or .npz; - is standard output");
   app.add_option("--score_from", f.score_from,
                  "errors count from this time on [s]; else from the begin")
       ->type_name("S");
   app.add_flag("--list", f.list, "list robots, estimators and detectors, and stop");
+}
+
+// checks them, too, and puts --torque into them
+std::vector<DetectorSettings> settings_of(Flags& f, const Robot& r) {
+  if (!f.thresholds.empty() && f.detector.empty())
+    throw std::invalid_argument("--thresholds: of which --detector?");
+  const Thresholds trained = f.thresholds.empty() ? Thresholds() : read_thresholds(f.thresholds);
+  std::vector<DetectorSettings> settings;  // of each estimator
+  for (std::string& e : f.estimators) {
+    r.check(e, f.detector);
+    settings.push_back({trained_for(trained, r.name(), 0, e, f.detector)});
+    if (f.torque.empty()) continue;
+    if (key_of(e, "torque")) {
+      throw std::invalid_argument(fmt::format("--torque {}: {} says it, too", f.torque, e));
+    }
+    e = with_key(e, "torque", f.torque, r.estimator_fields(name_of_specification(e)));
+  }
+  return settings;
 }
 
 int replay(Flags& f) {
@@ -128,26 +149,23 @@ int replay(Flags& f) {
   }
   refuse_twice("estimator", f.estimators);
   const Robot& r = robot(with_lock(f.robot, f.lock));
-  for (std::string& e : f.estimators) {
-    r.check(e, f.detector);
-    if (f.torque.empty()) continue;
-    if (key_of(e, "torque")) {
-      throw std::invalid_argument(fmt::format("--torque {}: {} says it, too", f.torque, e));
-    }
-    e = with_key(e, "torque", f.torque, r.estimator_fields(name_of_specification(e)));
-  }
+  const std::vector<DetectorSettings> settings = settings_of(f, r);
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
   RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns, true});
   r.make_torques(recorded.trace);
   const Trace& trace = recorded.trace;
+  if (trace.dof() != r.dof())
+    throw std::invalid_argument(fmt::format("{}: {} has {} joints, the samples have {}", f.log,
+                                            r.name(), r.dof(), trace.dof()));
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));
   }
   std::vector<Replayed> columns;
-  for (const std::string& e : f.estimators) {
-    columns.push_back({e, f.detector, r.runner(e, f.detector, trace)->run(), {}});
+  for (std::size_t i = 0; i < f.estimators.size(); ++i) {
+    const std::string& e = f.estimators[i];
+    columns.push_back({e, f.detector, r.runner(e, f.detector, trace, settings[i])->run(), {}});
     if (forces) columns.back().acting = acting(*forces, trace, columns.back().output);
   }
   const std::string by_log = trace.torque_at_instants ? "instant" : "held";

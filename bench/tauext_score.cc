@@ -11,6 +11,7 @@
 #include "bench/outside/outside_score.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
 #include "bench/run/recording_flags.h"
 #include "bench/run/suite_run.h"
 #include "bench/score/suite.h"
@@ -22,8 +23,9 @@ namespace {
 using namespace tauext;
 
 struct Flags {
-  std::vector<std::string> files, ours;
-  std::string log, channel, columns, robot, lock, scenario, name, out, format = "text";
+  std::vector<std::string> files, ours, logs;
+  std::string detector, thresholds, channel, columns, robot, lock, scenario, name, out,
+      format = "text";
   double score_from = -std::numeric_limits<double>::infinity();
   Sensors sensors;
   ModelError error;
@@ -32,7 +34,10 @@ struct Flags {
 
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("estimates", f.files, "files: CSV, .npy or .npz; or --estimator alone");
-  app.add_option("--log", f.log, "log that they are made of (--columns, --channel: tauext-replay)");
+  app.add_option("--log", f.logs,
+                 "log that they are of; several: ours alone (--columns: tauext-replay)")
+      ->allow_extra_args(false)
+      ->type_name("LOG");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--robot", f.robot, "robot, or a file of MJCF or URDF (with --lock REGEX)")
@@ -44,16 +49,18 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--estimator", f.ours, "ours beside them, like mo2:bandwidth=50,ekf")
       ->delimiter(',')
       ->allow_extra_args(false);
+  app.add_option("--detector", f.detector,
+                 "behind ours, like cusum; --thresholds FILE of tauext-detect");
+  app.add_option("--thresholds", f.thresholds)->group("");
   app.add_option("--score_from", f.score_from, "errors count from this time on [s]")
       ->type_name("S");
-  app.add_option("--format", f.format, "of the table: text, csv, json, md or latex")
-      ->type_name("NAME");
-  app.add_option("--out", f.out, "JSON to write, as tauext-bench does")->type_name("FILE");
+  app.add_option("--out", f.out, "JSON to write; --format csv|json|md|latex is that of the table")
+      ->type_name("FILE");
+  app.add_option("--format", f.format)->group("");
 }
 
-// the rows of these files and of ours, on one trace
-std::vector<Row> scored(const Flags& f, const OutsideRun& run) {
-  std::vector<Row> rows;
+// the rows of these files, on one trace
+void add_files(const Flags& f, const OutsideRun& run, std::vector<Row>& rows) {
   std::set<std::string> names;
   for (const std::string& file : f.files) {
     const std::string name = f.name.empty() ? std::filesystem::path(file).stem().string() : f.name;
@@ -64,43 +71,86 @@ std::vector<Row> scored(const Flags& f, const OutsideRun& run) {
             "{}: {} is there already; --name calls it otherwise", file, rows.back().entry.name()));
     }
   }
-  for (const std::string& e : f.ours) {
-    const Output out = run.robot->runner(e, "", *run.trace)->run();
-    rows.push_back(score_outside(run, {e, "", out}));
-  }
-  return rows;
 }
 
-int score(const Flags& f) {
+// and of ours
+void add_ours(const Flags& f, const std::vector<OutsideRun>& runs, std::vector<Row>& rows) {
+  if (f.ours.empty()) return;
+  const Robot& r = *runs.front().robot;
+  const Thresholds trained = f.thresholds.empty() ? Thresholds() : read_thresholds(f.thresholds);
+  for (const std::string& e : f.ours) {
+    const DetectorSettings settings{trained_for(trained, r.name(), 0, e, f.detector)};
+    std::vector<OutsideEstimates> all;
+    for (const OutsideRun& run : runs)
+      all.push_back({e, f.detector, r.runner(e, f.detector, *run.trace, settings)->run()});
+    rows.push_back(runs.size() == 1 ? score_outside(runs.front(), all.front())
+                                    : score_outside(runs, all));
+  }
+}
+
+void require_flags(const CLI::App& app, const Flags& f) {
   const bool simulated = !f.scenario.empty();
-  if (simulated == !f.log.empty())
+  if (simulated == !f.logs.empty())
     throw std::invalid_argument("a --log, or --robot and --scenario, are required");
   if (f.robot.empty() && (simulated || !f.ours.empty()))
     throw std::invalid_argument("--scenario and --estimator want a --robot");
   if (f.files.empty() && f.ours.empty())
     throw std::invalid_argument("files of estimates, or --estimator, are required");
-  const TableFormat format = table_format(f.format);
-  OutsideRun run;
-  if (!f.robot.empty()) run.robot = &robot(with_lock(f.robot, f.lock));
+  if (f.logs.size() > 1 && !f.files.empty())
+    throw std::invalid_argument(
+        fmt::format("{}: a file of estimates goes with one --log", f.files.front()));
+  require_mode(app, !f.ours.empty(), "--estimator", {"--detector", "--thresholds"});
+  if (!f.thresholds.empty() && f.detector.empty())
+    throw std::invalid_argument("--thresholds: of which --detector?");
   refuse_twice("estimator", f.ours);
-  for (const std::string& e : f.ours) run.robot->check(e, "");
-  RecordedLog log;
-  if (simulated) {
-    run.scenario = &scenario_of(*run.robot, f.scenario);
-    const Sensors sensors = sensors_for(*run.scenario, f.sensors);
-    log.trace =
-        record(run.robot->load_for(*run.scenario, f.error), *run.scenario, sensors, f.recording);
-    run.group = run.robot->label() + "/" + run.scenario->name;
-  } else {
-    log = read_any_log(f.log, {f.channel, f.columns, true});
-    if (!f.ours.empty()) run.robot->make_torques(log.trace);
-    run.group = std::filesystem::path(f.log).stem().string();
+  refuse_twice("log", f.logs);
+}
+
+// what is scored: a simulated run, or logs
+struct Recorded {
+  std::vector<RecordedLog> logs;
+  std::vector<OutsideRun> runs;  // whose traces are these
+  bool usable = true;
+};
+
+Recorded recorded(const Flags& f) {
+  Recorded all;
+  const Robot* const r = f.robot.empty() ? nullptr : &robot(with_lock(f.robot, f.lock));
+  for (const std::string& e : f.ours) r->check(e, f.detector);
+  if (!f.scenario.empty()) {
+    const Scenario& s = scenario_of(*r, f.scenario);
+    const Sensors sensors = sensors_for(s, f.sensors);
+    all.logs.push_back({record(r->load_for(s, f.error), s, sensors, f.recording)});
+    all.runs.push_back(
+        {nullptr, r->label() + "/" + s.name, r, &s, std::max(s.score_from, f.score_from)});
   }
-  run.trace = &log.trace;
-  run.score_from = simulated ? std::max(run.scenario->score_from, f.score_from) : f.score_from;
-  const std::vector<Row> rows = scored(f, run);
+  const std::string group = f.logs.size() == 1 ? std::filesystem::path(f.logs[0]).stem().string()
+                                               : fmt::format("{}_logs", f.logs.size());
+  for (const std::string& path : f.logs) {
+    all.logs.push_back(read_any_log(path, {f.channel, f.columns, true}));
+    RecordedLog& log = all.logs.back();
+    if (!f.ours.empty()) r->make_torques(log.trace);
+    if (r != nullptr && r->dof() != log.trace.dof())
+      throw std::invalid_argument(fmt::format("{}: {} has {} joints, the samples have {}", path,
+                                              r->name(), r->dof(), log.trace.dof()));
+    all.usable = all.usable && log.usable();
+    all.runs.push_back({nullptr, group, r, nullptr, f.score_from});
+  }
+  for (std::size_t i = 0; i < all.runs.size(); ++i) all.runs[i].trace = &all.logs[i].trace;
+  return all;
+}
+
+int score(const CLI::App& app, const Flags& f) {
+  require_flags(app, f);
+  const TableFormat format = table_format(f.format);
+  const Recorded all = recorded(f);
+  std::vector<Row> rows;
+  if (!f.files.empty()) add_files(f, all.runs.front(), rows);
+  add_ours(f, all.runs, rows);
+  const bool truth = std::all_of(all.logs.begin(), all.logs.end(),
+                                 [](const RecordedLog& l) { return l.trace.has_truth(); });
   std::vector<Metric> also;
-  if (!log.trace.has_truth()) also = {Metric::kRecall, Metric::kFalseAlarmsPerHour};
+  if (!truth) also = {Metric::kRecall, Metric::kFalseAlarmsPerHour};
   fmt::print("{}", format_table(rows, format, also));
   if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
   if (!f.out.empty()) {
@@ -110,7 +160,7 @@ int score(const Flags& f) {
   }
   const bool good =
       std::all_of(rows.begin(), rows.end(), [](const Row& r) { return r.score.error.empty(); });
-  return good && log.usable() ? kGood : kAnswerIsNo;
+  return good && all.usable ? kGood : kAnswerIsNo;
 }
 
 }  // namespace
@@ -123,5 +173,5 @@ int main(int argc, char** argv) {
       "tauext-score");
   Flags flags;
   add_flags(app, flags);
-  return run_program(app, argc, argv, [&] { return score(flags); });
+  return run_program(app, argc, argv, [&] { return score(app, flags); });
 }

@@ -31,7 +31,7 @@ struct Rows {
 
 // what a joint's friction may have beside the terms that were asked for
 constexpr JointTerm kSuspects[] = {
-    {"viscous_skew (|qd|)", "", "", kJointTerms[3].column},
+    {"viscous_skew (--terms)", "", "", kJointTerms[3].column},
     {"friction with the square of the speed", "", "",
      [](double qd, double, double) { return qd * std::abs(qd); }},
     {"friction that falls with the speed (Stribeck)", "", "",
@@ -74,10 +74,11 @@ double column(const JointTerm& term, const Trace& log, int joint, const Window& 
 Terms find_joint_terms(const std::vector<std::string>& names) {
   refuse_twice("term", names);
   Terms all;
+  if (names.empty())
+    for (const JointTerm& t : kJointTerms) all.push_back(&t);
   for (const std::string& name : names)
     all.push_back(
         &find_known(kJointTerms, "term", name, [](const JointTerm& j) { return j.name; }));
-  if (all.empty()) throw std::invalid_argument("no term to calibrate");
   return all;
 }
 
@@ -203,6 +204,12 @@ CalibratedJoint calibrated(const Rows& r, const std::vector<std::string>& names,
   }
   joint.before = rms(a.gain * r.measured - r.rigid);
   joint.after = rms(left_over(r, a));
+  if (joint.after > joint.torque)
+    throw std::invalid_argument(fmt::format(
+        "what is left over, {:.3g} N m, is more than the torque that was measured, {:.3g} N m: is "
+        "this the arm of the recordings, and do their columns have the right order, units (rad, "
+        "rad/s, N m or A) and signs? --columns tells them",
+        joint.after, joint.torque));
   hold_out(r, names, currents, a, joint);
   if (joint.after <= 1e-6 * joint.torque) return joint;  // no noise, but the integration's error
   joint.colour = colour(a.fit.residuals);
@@ -242,6 +249,8 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
                                            const CalibrateOptions& o) {
   check_windows(o.windows);
   const Terms terms = find_joint_terms(o.terms);
+  std::vector<std::string> names;
+  for (const JointTerm* t : terms) names.emplace_back(t->name);
   if (logs.empty()) throw std::invalid_argument("no recording to calibrate from");
   const bool currents = logs.front().tau_is_current;
   const ArmTree without = bare(arm, terms);
@@ -263,10 +272,10 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
             too_few(static_cast<std::size_t>(r.rigid.size()), needed, r.left_out, o.windows));
       for (int pass = 0; pass < 3; ++pass) {  // how friction slips depends on what is found
         const double v_s =
-            slip_speed(arm, static_cast<int>(leader), o.terms, answer(r, o.terms, currents).theta);
+            slip_speed(arm, static_cast<int>(leader), names, answer(r, names, currents).theta);
         r = rows_of(logs, motions, i, terms, o.windows, v_s);
       }
-      all.push_back(calibrated(r, o.terms, currents));
+      all.push_back(calibrated(r, names, currents));
       all.back().name = name;
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(fmt::format("joint {} '{}': {}", i + 1, name, e.what()));

@@ -43,8 +43,8 @@ inline constexpr JointTerm kJointTerms[] = {
 
 /// How to calibrate.
 struct CalibrateOptions {
-  std::vector<std::string> terms = {"armature", "coulomb", "viscous", "offset"};  ///< of them
-  Windows windows;                                                                ///< of the logs
+  std::vector<std::string> terms;  ///< of them; none: all
+  Windows windows;                 ///< of the logs
 };
 
 /// [1] of a joint's torque that masses must take, rms, for its gain to be seen: else what a file
@@ -87,8 +87,9 @@ std::string joint_name_in_file(const ArmTree& arm, int coordinate);
 /// @param arm of which is left aside what is to be found: the joints' armature, and all of their
 /// friction and offset if any of these is
 /// @throws std::invalid_argument for an unknown term, an arm whose coordinates mix joints, another
-/// number of joints, currents and torques together, too few windows, a gain that cannot be seen, or
-/// a motion that cannot tell the terms apart: naming the joint, the term and the remedy
+/// number of joints, currents and torques together, too few windows, a gain that cannot be seen, a
+/// motion that cannot tell the terms apart, or a fit that leaves more than the torque that was
+/// measured: naming the joint, the term and the remedy
 std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector<Trace>& logs,
                                            const CalibrateOptions& options = {});
 

@@ -25,6 +25,7 @@ std::string missing(const std::vector<Suspect>& all, const std::string& where) {
         "errors).\n",
         where, s.name, 100 * s.share, s.surely);
   }
+  if (!all.empty()) out += where + "The errors above do not know of what is missing.\n";
   return out;
 }
 
@@ -94,26 +95,38 @@ std::string fit_report(const std::vector<CalibratedJoint>& joints) {
 }
 
 std::string weighing_table(const Weighing& w, TableFormat format) {
-  TableWriter table({{"seen", "", true},
-                     {"mass", "kg"},
-                     {"std error", "kg"},
-                     {"x", "kg m"},
-                     {"y", "kg m"},
-                     {"z", "kg m"},
-                     {"std error", "kg m"},
-                     {"windows"},
-                     {"left", "N m rms"}});
+  const bool text = format == TableFormat::kText;
+  std::vector<TableWriter::Column> columns = {
+      {"seen", "", true},    {"mass", "kg"}, {"std error", "kg"},
+      {"x", "kg m"},         {"y", "kg m"},  {"z", "kg m"},
+      {"std error", "kg m"}, {"windows"},    {"left", "N m rms"}};
+  if (!text)  // else in a sentence
+    for (const char* axis : {"x", "y", "z"})
+      for (const char* of : {"center ", "std error of center "})
+        columns.push_back({std::string(of) + axis, "m"});
+  TableWriter table(std::move(columns));
   const auto add = [&](const char* what, const Weight& s, bool measured) {
-    table.add({what, fmt::format("{:.3f}", s.mass), fmt::format("{:.2g}", s.mass_error),
-               fmt::format("{:.4f}", s.moment[0]), fmt::format("{:.4f}", s.moment[1]),
-               fmt::format("{:.4f}", s.moment[2]), fmt::format("{:.2g}", s.moment_error.maxCoeff()),
-               measured ? fmt::format("{}", s.windows) : "", measured ? number(s.residual) : ""});
+    std::vector<std::string> cells = {what,
+                                      fmt::format("{:.3f}", s.mass),
+                                      fmt::format("{:.2g}", s.mass_error),
+                                      fmt::format("{:.4f}", s.moment[0]),
+                                      fmt::format("{:.4f}", s.moment[1]),
+                                      fmt::format("{:.4f}", s.moment[2]),
+                                      fmt::format("{:.2g}", s.moment_error.maxCoeff()),
+                                      measured ? fmt::format("{}", s.windows) : "",
+                                      measured ? number(s.residual) : ""};
+    for (int i = 0; i < 3 && !text; ++i) {
+      const bool known = !measured && w.payload.mass > 3 * w.payload.mass_error;
+      cells.push_back(known ? fmt::format("{:.4f}", w.center[i]) : "");
+      cells.push_back(known ? fmt::format("{:.2g}", w.center_error[i]) : "");
+    }
+    table.add(std::move(cells));
   };
   add("loaded", w.loaded, true);
   if (w.empty.windows > 0) add("empty", w.empty, true);
   add("payload", w.payload, false);
   std::string out = table.format(format);
-  if (format != TableFormat::kText) return out;
+  if (!text) return out;
   out += fmt::format("\nMoments are about the origin of the body '{}', in its axes.\n",
                      printable_name(w.body));
   if (w.payload.mass > 3 * w.payload.mass_error) {

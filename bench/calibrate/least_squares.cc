@@ -41,7 +41,7 @@ Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& na
     root.maxCoeff(&least);
     throw std::invalid_argument(fmt::format(
         "the motion cannot tell '{}' from the other terms (condition {:.1e}): record one "
-        "that excites it, or leave it out",
+        "that excites it, or leave it out (--terms)",
         names[static_cast<std::size_t>(least)], f.condition));
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);

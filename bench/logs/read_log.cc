@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -25,6 +26,32 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
 }
 
+// Says what can hardly be s, rad and rad/s.
+void doubt_units(const Trace& log, const std::string& path) {
+  constexpr double kTwoTurns = 12.6;   // [rad]
+  constexpr double kLongestGap = 0.1;  // [s]
+  constexpr const char* kRemedy =
+      "are t, q and qd in s, rad and rad/s? --columns tells other units";
+  for (int j = 0; j < log.dof(); ++j) {
+    double xx = 0, xy = 0, yy = 0;  // of the steps of q, by qd and by q
+    for (int k = 1; k < log.size(); ++k) {
+      const double h = log.t[k] - log.t[k - 1];
+      const double x = h * (log.qd(j, k) + log.qd(j, k - 1)) / 2, y = log.q(j, k) - log.q(j, k - 1);
+      xx += x * x, xy += x * y, yy += y * y;
+    }
+    const double times = xy / xx;
+    if (xy > 0.9 * std::sqrt(xx * yy) && (times > 2 || times < 0.5))
+      return say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1,
+                             times, j + 1, kRemedy));
+    if (const double most = log.q.row(j).cwiseAbs().maxCoeff(); most > kTwoTurns)
+      return say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,
+                             kRemedy));
+  }
+  if (log.size() > 2 && log.t.back() - log.t.front() > kLongestGap * log.size())
+    say(fmt::format("{}: {:.3g} lie between two samples on average: {}", path,
+                    (log.t.back() - log.t.front()) / (log.size() - 1), kRemedy));
+}
+
 RecordedLog read_lcm_log(const std::string& path, const LogOptions& o) {
   if (!o.columns.empty())
     throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
@@ -45,6 +72,7 @@ RecordedLog read_rows(const std::string& path, const LogOptions& o) {
     throw std::runtime_error(
         path + ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
   if (!o.columns.empty() || regularity.gaps > 0) say(path + ": " + regularity.in_words());
+  if (trace.size() > 0) doubt_units(trace, path);
   return {std::move(trace), skipped.total()};
 }
 

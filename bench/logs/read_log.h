@@ -27,8 +27,8 @@ struct LogOptions {
   bool currents = false;  ///< whether tau may be currents, which Robot::make_torques() then mends
 };
 
-/// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag. What was skipped, and what is irregular in
-/// it, goes to standard error.
+/// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag. What was skipped, what is irregular in it,
+/// and what can hardly be in the units of a Trace, goes to standard error.
 /// @throws std::runtime_error or std::invalid_argument naming the path and the reason
 RecordedLog read_any_log(const std::string& path, const LogOptions& options = {});
 

@@ -113,17 +113,27 @@ class Collector {
   void take(const std::vector<double>& row) {
     const int k = found_.t_ < 0 ? row_ : samples_.at(row[static_cast<std::size_t>(found_.t_)]);
     ++row_;
-    if (k < 0 || k >= trace_.size()) return;
+    if (k < 0 || k >= trace_.size()) {
+      ++elsewhere_;
+      return;
+    }
     std::size_t i = 0;
     for (const auto& [name, columns] : found_.all_) fill(all_[i++].output, columns, row, k);
   }
 
   std::vector<OutsideEstimates> finish() {
+    if (row_ == 0) throw std::runtime_error(path_ + ": no row of numbers");
     if (found_.t_ < 0 && row_ != trace_.size())
       throw std::runtime_error(
           fmt::format("{}: {} rows without times, and {} samples: a column t says which belong "
                       "together",
                       path_, row_, trace_.size()));
+    if (2 * elsewhere_ > row_)
+      throw std::runtime_error(
+          fmt::format("{}: {} of its {} rows are at times of no sample; the log goes from {:g} to "
+                      "{:g} s: is the "
+                      "file of another log?",
+                      path_, elsewhere_, row_, trace_.t.front(), trace_.t.back()));
     for (OutsideEstimates& e : all_) finish(e);
     return std::move(all_);
   }
@@ -173,7 +183,7 @@ class Collector {
   const Trace& trace_;
   Samples samples_;
   std::vector<OutsideEstimates> all_;
-  int row_ = 0;
+  int row_ = 0, elsewhere_ = 0;
 };
 
 }  // namespace

@@ -22,7 +22,8 @@ struct OutsideEstimates {
 /// of its time.
 /// @param name of an estimator that the file does not name
 /// @throws std::runtime_error naming the path and what is wrong: unreadable, no tau_ext, another
-/// number of joints or samples, an estimator without estimates for most of the samples
+/// number of joints or samples, most rows at times of no sample, an estimator without estimates for
+/// most of the samples
 std::vector<OutsideEstimates> read_estimates(const std::string& path, const std::string& name,
                                              const Trace& trace);
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bench/outside/log_metrics.h"
 #include "bench/score/detection_metrics.h"
@@ -12,30 +13,82 @@
 
 namespace tauext {
 
-Row score_outside(const OutsideRun& run, const OutsideEstimates& e) {
-  const Trace& trace = *run.trace;
-  Row row{Entry::made_elsewhere(run.group, e.estimator, e.detector, run.robot), {}};
-  Score& score = row.score;
-  score.error = bad_status(trace, e.output);
-  score.counts = e.output.counts;
-  score.set(Metric::kLeftOut, static_cast<double>(e.output.counts.left_out()));
-  const std::vector<LogRun> log = {{&trace, &e.output, run.score_from}};
-  if (trace.has_truth()) {
-    add_error_metrics(trace, e.output, run.score_from, score);
-  } else {
-    add_floor_metrics(log, score);
+namespace {
+
+// the first log that fails, and why
+std::string failure(const std::vector<OutsideRun>& runs, const std::vector<OutsideEstimates>& all) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (std::string why = bad_status(*runs[i].trace, all[i].output); !why.empty()) return why;
   }
-  add_maker_metrics(log, score);
-  if (run.scenario != nullptr) add_response_metrics(trace, e.output, *run.scenario, score);
+  return "";
+}
+
+// times, truth and estimates of all samples that count, one log after the other
+std::pair<Trace, Output> joined(const std::vector<LogRun>& logs) {
+  Trace trace;
+  Output out;
+  Eigen::Index n = 0;
+  for (const LogRun& log : logs) {
+    for (const double t : log.trace->t) n += t >= log.from;
+  }
+  const Eigen::Index dof = logs.front().trace->dof();
+  trace.tau_ext.resize(dof, n), out.tau_ext.resize(dof, n);
+  for (const LogRun& log : logs) {
+    const double shift = trace.t.empty() ? 0 : trace.t.back() + 1 - log.trace->t.front();
+    for (int k = 0; k < log.trace->size(); ++k) {
+      const double t = log.trace->t[static_cast<std::size_t>(k)];
+      if (t < log.from) continue;
+      const auto at = static_cast<Eigen::Index>(trace.t.size());
+      trace.tau_ext.col(at) = log.trace->tau_ext.col(k);
+      out.tau_ext.col(at) = log.output->tau_ext.col(k);
+      trace.t.push_back(t + shift);
+    }
+  }
+  trace.q.resize(dof, 0);  // of so many joints
+  return {std::move(trace), std::move(out)};
+}
+
+}  // namespace
+
+Row score_outside(const OutsideRun& run, const OutsideEstimates& e) {
+  Row row = score_outside(std::vector{run}, std::vector{e});
+  const Trace& trace = *run.trace;
+  if (run.scenario != nullptr) add_response_metrics(trace, e.output, *run.scenario, row.score);
   if (run.robot != nullptr && trace.force.cols() > 0) {
     const auto arm = run.robot->forces_at(kEndEffector, false);
     const double force = metrics::force_rmse(*arm, trace, e.output.tau_ext, run.score_from);
-    if (!std::isnan(force)) score.set(Metric::kForce, force);
+    if (!std::isnan(force)) row.score.set(Metric::kForce, force);
   }
-  if (trace.has_truth()) {
-    add_detection_metrics(trace, e.output, score);
+  return row;
+}
+
+Row score_outside(const std::vector<OutsideRun>& runs,
+                  const std::vector<OutsideEstimates>& estimates) {
+  const OutsideRun& first = runs.front();
+  const OutsideEstimates& name = estimates.front();
+  Row row{Entry::made_elsewhere(first.group, name.estimator, name.detector, first.robot), {}};
+  Score& score = row.score;
+  score.error = failure(runs, estimates);
+  std::vector<LogRun> logs;
+  bool truth = true;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Trace& trace = *runs[i].trace;
+    logs.push_back({&trace, &estimates[i].output, runs[i].score_from});
+    score.counts.add(estimates[i].output.counts);
+    truth = truth && trace.has_truth();
+  }
+  score.set(Metric::kLeftOut, static_cast<double>(score.counts.left_out()));
+  if (truth) {
+    const auto [trace, out] = joined(logs);
+    add_error_metrics(trace, out, trace.t.empty() ? 0 : trace.t.front(), score);
   } else {
-    add_label_metrics(log, score);
+    add_floor_metrics(logs, score);
+  }
+  add_maker_metrics(logs, score);
+  if (truth && runs.size() == 1) {
+    add_detection_metrics(*first.trace, name.output, score);
+  } else {
+    add_label_metrics(logs, score);
   }
   return row;
 }

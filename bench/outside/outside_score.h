@@ -24,6 +24,12 @@ struct OutsideRun {
 /// what that asks for. No time, no noise and no allocations.
 Row score_outside(const OutsideRun& run, const OutsideEstimates& estimates);
 
+/// The same of one estimator's estimates of several logs, all samples and marks together.
+/// @param runs of one robot and group, without scenarios
+/// @param estimates of each of them
+Row score_outside(const std::vector<OutsideRun>& runs,
+                  const std::vector<OutsideEstimates>& estimates);
+
 /// The rows as tauext-bench writes them, a benchmark for each, with this line about the run.
 std::string results_json(const std::vector<Row>& rows, const std::string& about);
 

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <list>
 #include <utility>
 
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/read/npy_writer.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext {
@@ -55,6 +57,34 @@ void append_forces(const Acting& a, int dof, fmt::memory_buffer& out) {
   add(a.touch.line.direction, 0, 3);
 }
 
+// the same as arrays of NumPy, a row for each sample
+void write_arrays(const Trace& trace, const std::vector<Replayed>& all, const std::string& path) {
+  const auto n = static_cast<std::size_t>(trace.size());
+  std::list<std::vector<double>> kept;  // where the arrays lie
+  std::vector<NpyArray> arrays = {{"t", trace.t.data(), n}};
+  const auto add = [&](std::string name, std::size_t columns, auto&& of) {
+    std::vector<double>& values = kept.emplace_back();
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t c = 0; c < std::max<std::size_t>(columns, 1); ++c)
+        values.push_back(static_cast<double>(of(k, c)));
+    arrays.push_back({std::move(name), values.data(), n, columns});
+  };
+  for (const Replayed& c : all) {
+    const Output& o = c.output;
+    arrays.push_back(
+        {c.estimator + "_tau_ext", o.tau_ext.data(), n, static_cast<std::size_t>(trace.dof())});
+    add(c.estimator + "_status", 0, [&](auto k, auto) { return static_cast<int>(o.status[k]); });
+    if (!o.marks.empty())
+      add(marks_name(c, all.size() > 1), 0, [&](auto k, auto) { return int{o.marks[k]}; });
+    if (c.acting.empty()) continue;
+    add(c.estimator + "_force", 3, [&](auto k, auto i) { return c.acting[k].force.force[i]; });
+    if (trace.dof() >= kJointsOfMoment)
+      add(c.estimator + "_moment", 3, [&](auto k, auto i) { return c.acting[k].force.moment[i]; });
+    add(c.estimator + "_link", 0, [&](auto k, auto) { return c.acting[k].touch.link + 1; });
+  }
+  write_npz(path, arrays);
+}
+
 // what a detector was worth; nothing where the log does not say what happened
 std::string verdict(const Score& s) {
   const auto alarms = s.get(Metric::kFalseAlarms);
@@ -80,6 +110,7 @@ std::vector<Acting> acting(const ArmForces& arm, const Trace& trace, const Outpu
 
 void write_estimates(const Trace& trace, const std::vector<Replayed>& all,
                      const std::string& path) {
+  if (path.ends_with(".npz")) return write_arrays(trace, all, path);
   // with one estimator, <detector>_mark is unambiguous; with more, the estimator's name comes first
   const bool several = all.size() > 1;
   fmt::memory_buffer out;
@@ -116,6 +147,7 @@ void print_metrics(const Trace& trace, const std::vector<Replayed>& all, double 
     titles.push_back({title_of(m), std::string(row_of(m).unit)});
   }
   TableWriter table(std::move(titles));
+  std::string verdicts;  // without a truth they stand alone
   for (const Replayed& c : all) {
     Score s;
     if (trace.has_truth()) add_error_metrics(trace, c.output, score_from, s);
@@ -125,9 +157,12 @@ void print_metrics(const Trace& trace, const std::vector<Replayed>& all, double 
       for (const Metric m : kShown) cells.push_back(fmt::format("{:.6g}", s.joint(m, j)));
       table.add(std::move(cells));
     }
-    if (const std::string v = verdict(s); !v.empty()) table.add_note("  " + c.detector + ": " + v);
+    const std::string v = verdict(s);
+    if (v.empty()) continue;
+    if (trace.has_truth()) table.add_note("  " + c.detector + ": " + v);
+    verdicts += fmt::format("{} behind {}: {}\n", c.detector, c.estimator, v);
   }
-  if (!table.empty()) fmt::print(to, "{}", table.format());
+  fmt::print(to, "{}", table.empty() ? verdicts : table.format());
 }
 
 void print_forces(const Trace& trace, const std::vector<Replayed>& all, std::FILE* to) {

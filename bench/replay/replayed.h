@@ -29,7 +29,9 @@ struct Replayed {
 std::vector<Acting> acting(const ArmForces& arm, const Trace& trace, const Output& output);
 
 /// Writes a CSV with a row for each sample: t, and of each estimator its tau_ext, status, mark and
-/// forces. To standard output if the path is "-"; the file appears whole or not at all.
+/// forces; or a .npz with the arrays t, NAME_tau_ext, NAME_status, the marks, and NAME_force,
+/// NAME_moment and NAME_link. To standard output if the path is "-"; the file appears whole or not
+/// at all.
 /// @throws std::runtime_error naming the path
 void write_estimates(const Trace& trace, const std::vector<Replayed>& all, const std::string& path);
 

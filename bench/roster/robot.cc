@@ -73,12 +73,23 @@ std::string Robot::label() const {
   if (!is_robot_file(name_)) return name_;
   const std::filesystem::path path = name_.substr(0, name_.find(kLock));
   const std::vector<std::string> known = robot_names();
-  const bool taken = std::count(known.begin(), known.end(), path.stem().string()) > 0;
+  const bool taken = path.extension() == ".json" ||  // beside the file that it is about
+                     std::count(known.begin(), known.end(), path.stem().string()) > 0;
   return (taken ? path.filename() : path.stem()).string();
 }
 
 Eigen::VectorXd Robot::small_torque() const {
   return file_ ? Eigen::VectorXd(usual_torque_ / 240) : Eigen::VectorXd::Constant(dof_, 5);
+}
+
+ModelError Robot::hidden_friction() const {
+  return file_ ? ModelError{.friction_share = 0.05} : ModelError{.friction = 5};
+}
+
+std::string Robot::hidden_friction_in_words() const {
+  if (!file_) return "5 N m of dry friction";
+  const Eigen::VectorXd dry = hidden_friction().friction_share * usual_torque_;
+  return fmt::format("{:.2g} to {:.2g} N m of dry friction", dry.minCoeff(), dry.maxCoeff());
 }
 
 const std::vector<Scenario>& Robot::scenarios() const {
@@ -102,7 +113,11 @@ std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool 
 }
 
 void Robot::make_torques(Trace& trace) const {
-  tauext::make_torques(trace, file_ ? tree_of(file_).gain : Eigen::VectorXd::Zero(dof_));
+  tauext::make_torques(trace, gains());
+}
+
+Eigen::VectorXd Robot::gains() const {
+  return file_ ? tree_of(file_).gain : Eigen::VectorXd::Zero(dof_);
 }
 
 Model Robot::model() const {

@@ -47,15 +47,19 @@ class Robot {
   virtual ~Robot() = default;
 
   const std::string& name() const { return name_; }  ///< by which robot() finds it
-  /// Its name, or its file's without folder and, unless another robot is called so, ending.
+  /// Its name, or its file's without folder and, unless it is a .json or another robot is called
+  /// so, ending.
   std::string label() const;
   int dof() const { return dof_; }  ///< joints
 
   /// [N m] that matters little, of each joint: 5, or of a file's robot 1/240 of
   /// ArmScale::usual_torque.
   Eigen::VectorXd small_torque() const;
-  /// [N m] of a dry friction that studies hide from its estimators: the least of these.
-  double hidden_friction() const { return small_torque().minCoeff(); }
+  /// The dry friction that studies hide from its estimators: 5 N m, or of a file's robot 5 % of
+  /// what each joint is used to (ArmScale::usual_torque).
+  ModelError hidden_friction() const;
+  /// The same, like "5 N m of dry friction".
+  std::string hidden_friction_in_words() const;
 
   /// Whether it is known by its MJCF alone: from a file, or of kRobotsByMjcf (roster.h).
   bool is_from_file() const { return file_ != nullptr; }
@@ -70,6 +74,8 @@ class Robot {
   /// Makes torques of currents, by the gains of the robot's file.
   /// @throws std::invalid_argument as tauext::make_torques()
   void make_torques(Trace& trace) const;
+  /// [N m/A] of each drive; 0 where nobody says.
+  Eigen::VectorXd gains() const;
   /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.
   Eigen::VectorXd home() const;
 

@@ -16,6 +16,7 @@
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext {
@@ -73,20 +74,24 @@ std::string list_of(const Robot& r) {
 std::string list_scale(const Robot& r) {
   const Model model = r.load_for(quiet());
   const ArmScale scale = scale_of(model);
+  const ArmTree arm = tree_of(model);
   TableWriter table({{"  joint", ""},
+                     {"name", "", true},
                      {"home", "rad, m"},
                      {"amplitude", "rad, m"},
                      {"load", "N m, N"},
                      {"used to", "N m, N"}});
   for (int i = 0; i < r.dof(); ++i) {
-    table.add({fmt::format("{}", i + 1), fmt::format("{:.3f}", scale.home[i]),
-               fmt::format("{:.3f}", scale.amplitude[i]), fmt::format("{:.3g}", scale.torque[i]),
+    const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
+    table.add({fmt::format("{}", i + 1), printable_name(arm.names[leader]),
+               fmt::format("{:.3f}", scale.home[i]), fmt::format("{:.3f}", scale.amplitude[i]),
+               fmt::format("{:.3g}", scale.torque[i]),
                fmt::format("{:.3g}", scale.usual_torque[i])});
   }
   return fmt::format(
       "{}  its end effector is {}\n  it weighs {:.3g} kg where it gives way, and is hit by {:.3g} "
       "N{}\n",
-      table.format(), tree_of(model).end_effector, scale.mass, scale.force,
+      table.format(), arm.end_effector, scale.mass, scale.force,
       scale.gives_way ? ", as a joint would give way to more" : "");
 }
 
@@ -151,7 +156,7 @@ bool study_only(std::string_view detector) {
 
 std::string list_known(const std::string& name) {
   if (is_robot_file(name) || is_by_mjcf(name))
-    return list_of(robot(name)) + list_scale(robot(name)) + "\n" + list_fields();
+    return list_of(robot(name)) + list_scale(robot(name)) + "\n" + list_fields(&robot(name));
   std::string out;
   for (const auto& r : robots()) out += list_of(*r);
   for (const std::string_view r : kRobotsByMjcf)
@@ -160,7 +165,7 @@ std::string list_known(const std::string& name) {
          list_fields();
 }
 
-std::string list_fields() {
+std::string list_fields(const Robot* of) {
   TableWriter table(
       {{"what can be set", "", true}, {"limits", "", true}, {"what larger does", "", true}});
   std::set<std::string> told;
@@ -171,10 +176,15 @@ std::string list_fields() {
       table.add({"  :" + f.key, f.range + (f.unit.empty() ? "" : " " + f.unit), f.effect});
     }
   };
-  for (const auto& r : robots()) {
-    for (const std::string& e : r->estimators())
-      add(std::string(name_of_specification(e)), r->estimator_fields(e));
-    for (const std::string& d : r->detectors()) add(d, r->detector_fields(d));
+  const auto add_all = [&](const Robot& r) {
+    for (const std::string& e : r.estimators())
+      add(std::string(name_of_specification(e)), r.estimator_fields(e));
+    for (const std::string& d : r.detectors()) add(d, r.detector_fields(d));
+  };
+  if (of != nullptr) {
+    add_all(*of);
+  } else {
+    for (const auto& r : robots()) add_all(*r);
   }
   return "keys of specifications, NAME:KEY=VALUE:KEY=VALUE; a value for each joint is 1/2/3\n" +
          table.format();

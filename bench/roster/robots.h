@@ -52,8 +52,8 @@ const Scenario& scenario_of(const Robot& robot, std::string_view name);
 /// @param robot by which robot() finds it; "" and a known one stand for all of them
 std::string list_known(const std::string& robot = "");
 
-/// A line for each key that an estimator or a detector of any robot has: unit, limits, what larger
-/// does.
-std::string list_fields();
+/// A line for each key that an estimator or a detector of any robot has, or of that one: unit,
+/// limits, what larger does.
+std::string list_fields(const Robot* of = nullptr);
 
 }  // namespace tauext

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "bench/score/degradation.h"
-#include "bench/score/golden.h"
+#include "bench/seeds/golden.h"
 
 namespace tauext {
 namespace {

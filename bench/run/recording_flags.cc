@@ -49,8 +49,9 @@ void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r)
   app.add_option("--seed", s.seed, "of the sensors' faults")
       ->check(whole_number, "WHOLE")
       ->capture_default_str();
-  app.add_option("--kp", r.Kp, "tracking stiffness [1/s^2], else the scenario's own");
-  app.add_option("--kd", r.Kd, "tracking damping [1/s], else the scenario's own");
+  app.add_option("--kp", r.Kp,
+                 "tracking stiffness [1/s^2] and --kd damping [1/s], else the scenario's");
+  app.add_option("--kd", r.Kd)->group("");
 }
 
 }  // namespace tauext

@@ -4,11 +4,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <regex>
 #include <stdexcept>
 #include <vector>
 
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
+#include "bench/score/degradation.h"
+#include "bench/seeds/golden.h"
+#include "bench/seeds/seeds.h"
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
 #include "bench/study/reliability.h"
@@ -46,17 +51,78 @@ std::string run_reliability(const StudyFlags& f, const Sensors& sensors) {
 std::string run_equal_bandwidth(const StudyFlags& f) {
   Progress progress("tuning");
   const double w = *f.equal_bandwidth;
-  const auto rows = study::at_equal_bandwidth(robot_of(f), w, 0, progress.callback());
+  const auto rows =
+      study::at_equal_bandwidth(robot_of(f), w, 0, progress.callback(), f.selection.estimators);
   return study::format_equal_bandwidth(robot_of(f), w, rows, format_of(f));
 }
 
 std::string run_pareto(const StudyFlags& f) {
   Progress progress("sweeping");
-  const auto points = study::pareto(robot_of(f), 0, progress.callback());
+  const auto points = study::pareto(robot_of(f), 0, progress.callback(), f.selection.estimators);
   return study::format_pareto(robot_of(f), points, format_of(f));
 }
 
+std::vector<Entry> chosen_entries(const StudyFlags& f) {
+  std::regex wanted;
+  try {
+    wanted = std::regex(f.filter);
+  } catch (const std::regex_error& e) {
+    throw std::invalid_argument(
+        fmt::format("'{}' is no regular expression: {}", f.filter, e.what()));
+  }
+  std::vector<Entry> all = entries(f.selection);
+  std::erase_if(all, [&](const Entry& e) { return !std::regex_search(e.name(), wanted); });
+  if (all.empty())
+    throw std::invalid_argument(
+        fmt::format("the filter '{}' matches nothing; see --list", f.filter));
+  return all;
+}
+
+std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
+  SeedOptions o{.suite = suite, .entries = chosen_entries(f), .seeds = f.seeds};
+  if (o.suite.sensors.ideal()) o.suite.sensors = golden_sensors();
+  Progress progress("scoring");
+  o.progress = progress.callback();
+  const std::vector<SeededRow> rows = score_over_seeds(o);
+  const TableFormat format = format_of(f);
+  const std::string table = format_seeds(rows, f.against, format);
+  if (format != TableFormat::kText) return table;
+  return fmt::format("sensors: {}\n\n{}", describe({o.suite.sensors, o.suite.model_error}), table);
+}
+
+// one, or the ends of a range
+void add_seeds(const std::string& part, std::vector<std::uint64_t>& to) {
+  constexpr std::size_t kMost = 10'000;
+  const std::size_t dash = part.find('-');
+  const std::string first = part.substr(0, dash),
+                    last = dash == part.npos ? first : part.substr(dash + 1);
+  for (const std::string& end : {first, last}) {
+    if (const std::string why = whole_number(end); !why.empty())
+      throw std::invalid_argument(
+          fmt::format("--seeds: '{}' is no seed, nor a range like 1-30", part));
+  }
+  const std::uint64_t from = std::stoull(first), until = std::stoull(last);
+  if (until < from || until - from >= kMost || to.size() + (until - from) >= kMost)
+    throw std::invalid_argument(
+        fmt::format("--seeds: '{}' is not a range of at most {} seeds", part, kMost));
+  for (std::uint64_t seed = from; seed <= until; ++seed) to.push_back(seed);
+}
+
 }  // namespace
+
+std::vector<std::uint64_t> seeds_of(const std::string& text) {
+  std::vector<std::uint64_t> all;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    add_seeds(text.substr(at, end - at), all);
+    at = end + 1;
+  }
+  std::vector<std::uint64_t> sorted = all;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    throw std::invalid_argument(fmt::format("--seeds {}: one is there twice", text));
+  return all;
+}
 
 void add_study_flags(CLI::App& app, StudyFlags& f) {
   app.add_flag("--reliability", f.reliability,
@@ -64,7 +130,7 @@ void add_study_flags(CLI::App& app, StudyFlags& f) {
   app.add_option("--equal-bandwidth", f.equal_bandwidth,
                  "study instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
-  app.add_flag("--pareto", f.pareto, "study instead: noise against delay (all three: --out)");
+  app.add_flag("--pareto", f.pareto, "study instead: noise against delay (all of them: --out)");
   app.add_option("--format", f.format, "of the tables: text, csv, json, md or latex")
       ->type_name("NAME");
   app.add_option("--out", f.out)->group("");  // the help fits a screen: bench/study/README.md
@@ -72,7 +138,8 @@ void add_study_flags(CLI::App& app, StudyFlags& f) {
 
 bool wants_study(const StudyFlags& f) {
   if (f.studies() == 0 && f.out) {
-    throw std::invalid_argument("--out goes with --reliability, --equal-bandwidth or --pareto");
+    throw std::invalid_argument(
+        "--out goes with --seeds, --reliability, --equal-bandwidth or --pareto");
   }
   if (format_of(f) != TableFormat::kText && f.studies() > 1) {
     throw std::invalid_argument(
@@ -82,7 +149,8 @@ bool wants_study(const StudyFlags& f) {
 }
 
 int run_study(const StudyFlags& f, const SuiteOptions& suite) {
-  if (!suite.model_error.none()) {
+  const bool others = f.reliability || f.equal_bandwidth || f.pareto;
+  if (others && !suite.model_error.none()) {
     throw std::invalid_argument("a study brings its own model errors, or none: no --model_error");
   }
   const bool seed = suite.sensors.seed != Sensors().seed;
@@ -91,10 +159,11 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
         "--equal-bandwidth and --pareto bring their own sensors: they take no faults and no "
         "--seed");
   }
-  if (!suite.thresholds.sets.empty() || suite.recording.Kp || suite.recording.Kd) {
+  if (others && (!suite.thresholds.sets.empty() || suite.recording.Kp || suite.recording.Kd)) {
     throw std::invalid_argument("a study takes no --thresholds, --kp and --kd");
   }
   AtomicFile file(f.out.value_or("-"));  // an unwritable path should not cost a run
+  if (!f.seeds.empty()) file.write(run_seeds(f, suite));
   if (f.reliability) file.write(run_reliability(f, suite.sensors));
   if (f.equal_bandwidth) file.write(run_equal_bandwidth(f));
   if (f.pareto) file.write(run_pareto(f));

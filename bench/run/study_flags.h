@@ -3,8 +3,10 @@
 /// The studies that tauext-bench runs instead of its suite, by flags.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/score/suite.h"
 
@@ -16,16 +18,26 @@ namespace tauext {
 
 /// What is studied, of which robot, and where it goes.
 struct StudyFlags {
+  std::vector<std::uint64_t> seeds;  ///< of the suite's scores over seeds; none: not asked for
+  std::string against = "mo2";       ///< with whom they are compared
   bool reliability = false, pareto = false;  ///< whether that study is asked for
   std::optional<double> equal_bandwidth;     ///< [rad/s]
   /// By which robot() finds it; else the roster's first one that can be studied so.
   std::optional<std::string> robot;
+  Selection selection;                ///< of seeds; its estimators also of the last two
+  std::string filter;                 ///< regular expression on the entries of seeds; "": all
   std::optional<std::string> format;  ///< of all tables, as table_format() knows it; else text
   std::optional<std::string> out;     ///< file, else standard output
 
   /// How many are asked for.
-  int studies() const { return reliability + pareto + equal_bandwidth.has_value(); }
+  int studies() const {
+    return reliability + pareto + equal_bandwidth.has_value() + !seeds.empty();
+  }
 };
+
+/// Numbers and ranges apart by commas, like 1-30,40.
+/// @throws std::invalid_argument for anything else, and for more than 10,000 of them
+std::vector<std::uint64_t> seeds_of(const std::string& text);
 
 /// Adds --reliability, --equal-bandwidth, --pareto and --out of these, and --format of all tables.
 void add_study_flags(CLI::App& app, StudyFlags& flags);

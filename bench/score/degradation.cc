@@ -54,6 +54,8 @@ struct FieldsOf<ModelError> {
         Field{"mass", &M::mass, "1", 0.01, 100, "factor on the last link's mass and inertia"},
         Field{"com", &M::com, "m", -10, 10, "how much farther its centre of mass is"},
         Field{"friction", &M::friction, "N m", 0, 1e4, "more dry friction of every joint"},
+        Field{"friction_share", &M::friction_share, "1", 0, 10,
+              "the same, as a share of what the joint is used to"},
         Field{"viscous", &M::viscous, "N m s/rad", 0, 1e4, "more viscous friction"},
         Field{"armature", &M::armature, "kg m^2", 0, 1e4, "more inertia of every rotor"});
   }

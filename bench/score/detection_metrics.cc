@@ -110,6 +110,7 @@ Interval share_interval(int found, int all) {
 void add_detection_metrics(const Trace& trace, const Output& out, Score& score) {
   if (out.marks.empty() || trace.contact.empty()) return;
   const metrics::DetectionScore d = metrics::detection_score(trace.t, trace.contact, out.marks);
+  score.collisions = d.collisions;
   if (d.collisions > 0) {
     score.set(Metric::kDelay, d.delay);
     score.set(Metric::kRecall, static_cast<double>(d.detected) / d.collisions);

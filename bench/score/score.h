@@ -25,6 +25,7 @@ class Score {
  public:
   std::string error;    ///< why the entry failed; "" if it did not
   StatusCounts counts;  ///< of the samples that were scored, by reason and joint
+  int collisions = 0;   ///< of which the recall is a share
 
   /// Nothing for a metric that does not exist for the run.
   std::optional<double> get(Metric m) const { return values_[index(m)]; }

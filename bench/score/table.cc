@@ -151,7 +151,12 @@ std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>
                   [](const Row& r) { return r.entry.has_robot() && r.entry.robot().slides(); }))
     out += "Where a joint slides, N m is N and rad is m.\n";
   const std::vector<const MetricRow*> columns = columns_of(rows, also);
-  for (const MetricRow* m : columns) out += fmt::format("{:<10}  {}\n", m->title, m->meaning);
+  for (const MetricRow* m : columns) {
+    const auto same = [&](const MetricRow* other) { return other->title == m->title; };
+    const bool one = std::count_if(columns.begin(), columns.end(), same) == 1;
+    const std::string title = one ? std::string(m->title) : fmt::format("{} {}", m->title, m->unit);
+    out += fmt::format("{:<10}  {}\n", title, m->meaning);
+  }
   const auto some = [&](auto&& has) { return std::any_of(rows.begin(), rows.end(), has); };
   const auto lacks = [&](bool asked) {
     return some([&](const Row& r) {

@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/roster/robots.h"
 #include "bench/score/parallel.h"
+#include "bench/score/suite.h"
 #include "bench/study/study_runs.h"
 
 namespace tauext::study {
@@ -46,31 +50,38 @@ Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances,
   return (metric + metric.transpose()) / 2;
 }
 
+// a run as sensors of one quality see it
+struct Seen {
+  std::size_t set;  // of thresholds
+  const Robot& robot;
+  const Trace& trace;
+  const std::string& name;  // of a recording
+};
+using Look = std::function<void(const Seen&)>;
+
+// where training runs come from
+struct Source {
+  int runs;
+  std::function<void(int run, const Look& look)> show;
+};
+
 // two passes over the training runs: what the metrics have to undo, then what is the largest
 class Training {
  public:
-  explicit Training(const CalibrationOptions& o)
-      : o_(o),
-        runs_(touched_runs(o.robot)),
-        robot_(robot(runs_.robot)),
-        names_(chosen_conditions(runs_, o.conditions, runs_.training)) {
-    const std::vector<std::string> estimators = chosen_estimators(robot_, o.estimators);
-    const std::vector<std::string> detectors = trained_detectors(robot_, o.detectors);
-    for (const std::string& name : names_) {
-      const double believed = condition(runs_, name).believed;
-      if (!believers_.contains(believed)) believers_[believed] = runs_.believer(believed);
-    }
+  Training(const CalibrationOptions& o, const Robot& robot, Source source,
+           const std::vector<double>& velocity_noises, std::string trained_on)
+      : o_(o), robot_(robot), source_(std::move(source)) {
+    if (!(o.margin >= 1))
+      throw std::invalid_argument(fmt::format("a margin of {} is below 1", o.margin));
     result_.margin = o.margin;
-    result_.trained_on =
-        fmt::format("{}, {}: {} runs each of free motion and slow pushes, seeds from {} on",
-                    runs_.robot, fmt::join(names_, ", "), o.runs, kTrainingSeed);
+    result_.trained_on = std::move(trained_on);
     // all places exist before threads write to them
-    for (const double velocity_noise : {1e-4, 1e-3}) {
-      ThresholdSet set{.robot = runs_.robot,
-                       .fingerprint = robot(runs_.robot).fingerprint(),
+    for (const double velocity_noise : velocity_noises) {
+      ThresholdSet set{.robot = robot.name(),
+                       .fingerprint = robot.fingerprint(),
                        .velocity_noise = velocity_noise};
-      for (const std::string& e : estimators) {
-        for (const std::string& d : detectors) set.by_estimator[e][d];
+      for (const std::string& e : chosen_estimators(robot, o.estimators)) {
+        for (const std::string& d : trained_detectors(robot, o.detectors)) set.by_estimator[e][d];
       }
       result_.sets.push_back(std::move(set));
     }
@@ -79,95 +90,185 @@ class Training {
   Thresholds run() {
     find_metrics();
     find_thresholds();
-    return std::move(result_);
+    return result_;
+  }
+
+  // every run by the thresholds of all others
+  std::vector<HeldOut> held_out() const {
+    std::vector<HeldOut> rows;
+    if (source_.runs < 2) return rows;
+    for_each(result_, [&](const std::string& e, const std::string& d, const Trained& trained) {
+      HeldOut row{e, d, source_.runs, 0};
+      for (int i = 0; i < source_.runs; ++i) {
+        const Eigen::ArrayXd threshold = threshold_of(d, trained, i);
+        row.alarms += (largest_.at(&trained).at(i).array() > threshold).any();
+      }
+      rows.push_back(std::move(row));
+    });
+    return rows;
   }
 
  private:
+  template <class Value>
+  using ByRun = std::map<const Trained*, std::map<int, Value>>;
+
   void find_metrics() {
-    std::map<const Trained*, std::map<int, Eigen::MatrixXd>> covariances;  // by run
-    pass(0, [&](int i, const Robot& r, const std::string& d, const Trace& t, const Output& out,
-                const Trained& to) {
-      if (!r.calibration(d).has_metric) return;
-      const Eigen::MatrixXd C = r.covariance(d, t, out, {.start_up = kStartUp}, kScoreFrom);
+    ByRun<Eigen::MatrixXd> covariances;
+    pass(0, [&](int i, const Seen& s, const std::string& d, const Output& out, const Trained& to) {
+      if (!s.robot.calibration(d).has_metric) return;
+      const Eigen::MatrixXd C =
+          s.robot.covariance(d, s.trace, out, {.start_up = kStartUp}, begin_of(s.trace));
       const std::lock_guard lock(mutex_);
       covariances[&to][i] = C;
     });
-    for_each([&](const std::string&, Trained& to) {
+    for_each(result_, [&](const std::string&, const std::string&, Trained& to) {
       const auto found = covariances.find(&to);
       if (found != covariances.end()) to.metric = metric_of(found->second, robot_.small_torque());
     });
   }
 
   void find_thresholds() {
-    pass(1, [&](int, const Robot& r, const std::string& d, const Trace& t, const Output& out,
-                Trained& to) {
+    pass(1, [&](int i, const Seen& s, const std::string& d, const Output& out, const Trained& to) {
       // thresholds that nothing reaches, so that nothing saturates at them
-      const Trained none{Eigen::VectorXd::Constant(r.dof(), 1e12), to.metric};
+      const Trained none{Eigen::VectorXd::Constant(s.robot.dof(), 1e12), to.metric};
       const DetectorSettings settings{{{name_of(d), none}}, kStartUp};
-      const Eigen::VectorXd largest = r.largest_statistic(d, t, out, settings, kScoreFrom);
+      const Eigen::VectorXd largest =
+          s.robot.largest_statistic(d, s.trace, out, settings, begin_of(s.trace));
       const std::lock_guard lock(mutex_);
-      to.threshold =
-          to.threshold.size() == 0 ? largest : Eigen::VectorXd(to.threshold.cwiseMax(largest));
+      Eigen::VectorXd& known = largest_[&to][i];
+      known = known.size() == 0 ? largest : Eigen::VectorXd(known.cwiseMax(largest));
     });
-    for_each([&](const std::string& detector, Trained& to) {
-      const Calibration& c = robot_.calibration(detector);
-      // a statistic that training leaves at 0, like a sum below its drift, would have no threshold
-      to.threshold = (to.threshold * std::pow(o_.margin, c.degree)).cwiseMax(kFloor * c.threshold);
+    for_each(result_, [&](const std::string&, const std::string& d, Trained& to) {
+      to.threshold = threshold_of(d, to, -1);
     });
   }
 
-  // calls look(number of the run, robot, detector, trace, estimates, what is known) for all runs,
+  static double begin_of(const Trace& t) { return t.t.front() + kScoreFrom; }
+
+  // from all runs but that one
+  Eigen::VectorXd threshold_of(const std::string& detector, const Trained& trained,
+                               int without) const {
+    Eigen::VectorXd largest = Eigen::VectorXd::Zero(robot_.dof());
+    for (const auto& [run, of_run] : largest_.at(&trained)) {
+      if (run != without) largest = largest.cwiseMax(of_run);
+    }
+    const Calibration& c = robot_.calibration(detector);
+    // a statistic that training leaves at 0, like a sum below its drift, would have no threshold
+    return (largest * std::pow(o_.margin, c.degree)).cwiseMax(kFloor * c.threshold);
+  }
+
+  // calls look(number of the run, what is seen, detector, estimates, what is known) for all runs,
   // estimators, detectors
-  template <class Look>
-  void pass(int number, Look&& look) {
-    const int count = static_cast<int>(names_.size());
+  template <class Visit>
+  void pass(int number, Visit&& visit) {
     const auto work = [&](int i) {
-      const Condition& c = condition(runs_, names_[static_cast<std::size_t>(i % count)]);
-      const Job job{plant_of(c), TouchKind::kSlowPush,
-                    kTrainingSeed + static_cast<std::uint64_t>(i / count)};
-      const Trace truth = simulated(runs_, job, runs_.model(job.plant));
-      const Robot& r = *believers_.at(c.believed);
-      for (ThresholdSet& set : result_.sets) {
-        Sensors sensors = c.degradation.sensors;
-        sensors.velocity_noise = set.velocity_noise;
-        const Trace t = measured(truth, sensors, job);
-        for (auto& [e, by_detector] : set.by_estimator) {
-          const Output estimates = r.runner(e, "", t)->run();
-          for (auto& [d, trained] : by_detector) look(i, r, d, t, estimates, trained);
+      source_.show(i, [&](const Seen& s) {
+        for (auto& [e, by_detector] : result_.sets[s.set].by_estimator) {
+          const Output estimates = s.robot.runner(e, "", s.trace)->run();
+          require_estimates(s, e, estimates);
+          for (auto& [d, trained] : by_detector) visit(i, s, d, estimates, trained);
         }
-      }
+      });
     };
-    parallel_for(count * o_.runs, o_.threads, work, [&](double share) {
+    parallel_for(source_.runs, o_.threads, work, [&](double share) {
       if (o_.progress) o_.progress((number + share) / 2);
     });
   }
 
-  template <class Change>
-  void for_each(Change&& change) {
-    for (ThresholdSet& set : result_.sets) {
+  static void require_estimates(const Seen& s, const std::string& estimator, const Output& out) {
+    if (s.name.empty()) return;
+    if (const std::string why = bad_status(s.trace, out); !why.empty())
+      throw std::invalid_argument(fmt::format("{}: {}: {}", s.name, estimator, why));
+  }
+
+  template <class All, class Visit>
+  static void for_each(All& thresholds, Visit&& visit) {
+    for (auto& set : thresholds.sets) {
       for (auto& [estimator, by_detector] : set.by_estimator) {
-        for (auto& [detector, trained] : by_detector) change(detector, trained);
+        for (auto& [detector, trained] : by_detector) visit(estimator, detector, trained);
       }
     }
   }
 
   const CalibrationOptions& o_;
-  const StudyRuns& runs_;
   const Robot& robot_;
-  std::vector<std::string> names_;
-  std::map<double, std::shared_ptr<const Robot>> believers_;
+  Source source_;
   Thresholds result_;
-  std::mutex mutex_;  // of result_
+  std::mutex mutex_;
+  ByRun<Eigen::VectorXd> largest_;  // [the statistic's unit] joint by joint
 };
+
+void require_free(const FreeRecording& r, const Robot& robot) {
+  const Trace& t = r.trace;
+  const auto fail = [&](const std::string& why) {
+    throw std::invalid_argument(fmt::format("{}: {}", r.name, why));
+  };
+  if (t.dof() != robot.dof())
+    fail(fmt::format("{} joints, and {} has {}", t.dof(), robot.name(), robot.dof()));
+  const double length = t.size() == 0 ? 0 : t.t.back() - t.t.front();
+  if (length < 2 * kScoreFrom)
+    fail(fmt::format("{:.3g} s long; {:g} s are needed, of which the first {:g} do not count",
+                     length, 2 * kScoreFrom, kScoreFrom));
+  const auto contact =
+      std::find_if(t.contact.begin(), t.contact.end(), [](auto c) { return c != 0; });
+  if (contact != t.contact.end())
+    fail(
+        fmt::format("something touches at {:g} s, by its column contact; thresholds come from "
+                    "recordings without",
+                    t.t[static_cast<std::size_t>(contact - t.contact.begin())]));
+}
 
 }  // namespace
 
 Thresholds calibrate(const CalibrationOptions& o) {
   if (o.runs < 1) throw std::invalid_argument("calibration needs at least one run");
-  if (!(o.margin >= 1)) {
-    throw std::invalid_argument(fmt::format("a margin of {} is below 1", o.margin));
+  const StudyRuns& runs = touched_runs(o.robot);
+  const Robot& r = robot(runs.robot);
+  const std::vector<std::string> names = chosen_conditions(runs, o.conditions, runs.training);
+  const std::vector<double> velocity_noises = {1e-4, 1e-3};
+  std::map<double, std::shared_ptr<const Robot>> believers;
+  for (const std::string& name : names) {
+    const double believed = condition(runs, name).believed;
+    if (!believers.contains(believed)) believers[believed] = runs.believer(believed);
   }
-  return Training(o).run();
+  const int count = static_cast<int>(names.size());
+  const auto show = [&](int i, const Look& look) {
+    const Condition& c = condition(runs, names[static_cast<std::size_t>(i % count)]);
+    const Job job{plant_of(c), TouchKind::kSlowPush,
+                  kTrainingSeed + static_cast<std::uint64_t>(i / count)};
+    const Trace truth = simulated(runs, job, runs.model(job.plant));
+    for (std::size_t set = 0; set < velocity_noises.size(); ++set) {
+      Sensors sensors = c.degradation.sensors;
+      sensors.velocity_noise = velocity_noises[set];
+      look({set, *believers.at(c.believed), measured(truth, sensors, job), ""});
+    }
+  };
+  return Training(
+             o, r, {count * o.runs, show}, velocity_noises,
+             fmt::format("{}, {}: {} runs each of free motion and slow pushes, seeds from {} on",
+                         runs.robot, fmt::join(names, ", "), o.runs, kTrainingSeed))
+      .run();
+}
+
+Thresholds calibrate_on(const Robot& r, const std::vector<FreeRecording>& recordings,
+                        const CalibrationOptions& o, std::vector<HeldOut>& held_out) {
+  if (recordings.empty()) throw std::invalid_argument("no recording to calibrate from");
+  double seconds = 0;
+  std::vector<std::string> names;
+  for (const FreeRecording& x : recordings) {
+    require_free(x, r);
+    seconds += x.trace.t.back() - x.trace.t.front() - kScoreFrom;
+    names.push_back(x.name);
+  }
+  const auto show = [&](int i, const Look& look) {
+    const FreeRecording& x = recordings[static_cast<std::size_t>(i)];
+    look({0, r, x.trace, x.name});
+  };
+  Training training(o, r, {static_cast<int>(recordings.size()), show}, {0},
+                    fmt::format("{}, {:.0f} s of {}", r.name(), seconds, fmt::join(names, ", ")));
+  Thresholds thresholds = training.run();
+  held_out = training.held_out();
+  return thresholds;
 }
 
 }  // namespace tauext::study

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Detector thresholds from training runs in which nothing is hit.
+/// Detector thresholds from training runs, or from recordings, in which nothing is hit.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/roster/robot.h"
 #include "bench/roster/thresholds.h"
+#include "mjcf/trace/trace.h"
 
 namespace tauext::study {
 
@@ -32,5 +34,27 @@ struct CalibrationOptions {
 /// noises. A specification with keys is trained for itself.
 /// @throws std::invalid_argument for a margin below 1, a robot without runs and unknown names
 Thresholds calibrate(const CalibrationOptions& options);
+
+/// A recording in which nothing touches the arm.
+struct FreeRecording {
+  std::string name;  ///< for errors
+  Trace trace;       ///< what was recorded
+};
+
+/// Whether thresholds hold on what they have not seen.
+struct HeldOut {
+  std::string estimator, detector;  ///< specifications
+  int recordings = 0;               ///< that were held out, one by one
+  int alarms = 0;                   ///< of them, where thresholds from all others would have marked
+};
+
+/// The same from recordings, which are all of one set of thresholds; their first kScoreFrom
+/// (study_runs.h) do not count.
+/// @param options whose robot, conditions and runs have no meaning here
+/// @param held_out gets a row for each pair, if there is more than one recording
+/// @throws std::invalid_argument also for a recording that is too short, that has a contact, or of
+/// which most makes no estimate, naming it
+Thresholds calibrate_on(const Robot& robot, const std::vector<FreeRecording>& recordings,
+                        const CalibrationOptions& options, std::vector<HeldOut>& held_out);
 
 }  // namespace tauext::study

@@ -27,9 +27,9 @@ constexpr const char* kBandwidthLegend =
     R"(bandwidth: where the gain of the slowest joint falls to -3 dB in `chirp`; design: the parameter
 `bandwidth` that gives it. noise: what a velocity noise of 1e-3 rad/s and an encoder of 17 bits
 add. lag: how far the estimate is behind `sine`. rise 0-90 %, overshoot: the answer to `step`. mass:
-mean error if the last link is 5 % heavier than the model says. friction: rms error under a dry
-friction of {:.2g} N m that the model does not know. step: CPU time. Every figure is that of the
-worst joint.
+mean error if the last link is 5 % heavier than the model says. friction: rms error under
+{} that the model does not know.
+step: CPU time. Every figure is that of the worst joint.
 )";
 constexpr double kNear = 0.05;  // of the bandwidth that is asked for
 constexpr const char* kFar =
@@ -62,7 +62,7 @@ struct SharedRuns : StepRuns {
         chirp(run_of(r, "chirp")),
         sine(run_of(r, "sine")),
         heavy(run_of(r, "free", {.mass = 1.05})),
-        rubbing(run_of(r, "free", {.friction = r.hidden_friction()})) {}
+        rubbing(run_of(r, "free", r.hidden_friction())) {}
 
   Trace chirp, sine, heavy, rubbing;
 };
@@ -184,16 +184,33 @@ NoiseAndDelay noise_and_delay(const StepRuns& runs, const std::string& specifica
   return x;
 }
 
+std::vector<std::string> tunable_of(const Robot& r, const std::vector<std::string>& asked) {
+  const std::vector<std::string> all = r.tunable();
+  if (asked.empty()) return all;
+  std::vector<std::string> chosen;
+  for (const std::string& e : asked) {
+    r.check(e, "");
+    if (key_of(e, "bandwidth"))
+      throw std::invalid_argument(fmt::format("{}: the study sets its bandwidth", e));
+    if (std::count(all.begin(), all.end(), name_of_specification(e)) > 0) chosen.push_back(e);
+  }
+  return chosen;
+}
+
 std::vector<AtBandwidth> at_equal_bandwidth(const Robot& r, double w, int threads,
-                                            const std::function<void(double)>& progress) {
+                                            const std::function<void(double)>& progress,
+                                            const std::vector<std::string>& asked) {
   if (!(w >= 1 && w <= 200)) {
     throw std::invalid_argument(
         fmt::format("a bandwidth of {} rad/s: 1 to 200 can be measured", w));
   }
   require_scenarios(r, {"chirp", "step", "sine", "free"});
-  const SharedRuns runs(r);
   std::vector<AtBandwidth> rows;
-  for (const std::string& e : r.tunable()) rows.push_back({.estimator = e});
+  for (const std::string& e : tunable_of(r, asked)) rows.push_back({.estimator = e});
+  if (rows.empty())
+    throw std::invalid_argument(fmt::format(
+        "no estimator with the key bandwidth; these have it: {}", fmt::join(r.tunable(), ", ")));
+  const SharedRuns runs(r);
   const auto work = [&](int i) {
     AtBandwidth& row = rows[static_cast<std::size_t>(i)];
     const auto design = design_for(runs, row.estimator, w);
@@ -228,7 +245,7 @@ std::string format_equal_bandwidth(const Robot& r, double w, const std::vector<A
   const bool far =
       std::any_of(rows.begin(), rows.end(), [&](const AtBandwidth& x) { return is_far(x, w); });
   return fmt::format("{}, every estimator at {:g} rad/s\n{}{}{}{}", r.name(), w, table.format(),
-                     fmt::format(kBandwidthLegend, r.hidden_friction()), far ? kFar : "",
+                     fmt::format(kBandwidthLegend, r.hidden_friction_in_words()), far ? kFar : "",
                      all ? "" : kNever);
 }
 

@@ -53,11 +53,18 @@ struct AtBandwidth {
   std::optional<Worth> worth;  ///< nothing if no design came within 25 % of it
 };
 
-/// Sets every tunable estimator of the robot so that its measured bandwidth is w [rad/s].
-/// @throws std::invalid_argument unless 1 <= w <= 200, and for a robot without the scenarios,
-/// naming them
+/// Those of the asked specifications whose estimators have the key `bandwidth`, without it; of the
+/// robot's all if none is asked for.
+/// @throws std::invalid_argument for an unknown one, and for one with the key in it
+std::vector<std::string> tunable_of(const Robot& robot, const std::vector<std::string>& asked);
+
+/// Sets every tunable estimator of the robot, or of those that are asked for, so that its measured
+/// bandwidth is w [rad/s].
+/// @throws std::invalid_argument unless 1 <= w <= 200, for a robot without the scenarios, naming
+/// them, and as tunable_of
 std::vector<AtBandwidth> at_equal_bandwidth(const Robot& robot, double w, int threads = 0,
-                                            const std::function<void(double)>& progress = nullptr);
+                                            const std::function<void(double)>& progress = nullptr,
+                                            const std::vector<std::string>& asked = {});
 
 /// As text with a head and with what the columns mean.
 std::string format_equal_bandwidth(const Robot& robot, double w,

@@ -86,17 +86,18 @@ bool ParetoPoint::has_value() const {
 }
 
 std::vector<ParetoPoint> pareto(const Robot& r, int threads,
-                                const std::function<void(double)>& progress) {
-  const StepRuns runs(r);
+                                const std::function<void(double)>& progress,
+                                const std::vector<std::string>& asked) {
   std::vector<ParetoPoint> points;
-  for (const std::string& e : r.tunable()) {
+  for (const std::string& e : tunable_of(r, asked)) {
     for (const double w : {3., 6., 12., 25., 50., 100., 200., 400.}) {
       points.push_back({.estimator = e, .design = w});
     }
   }
-  for (const std::string& e : r.estimators()) {
+  for (const std::string& e : asked.empty() ? r.estimators() : asked) {
     if (!is_baseline(e)) points.push_back({.estimator = e});
   }
+  const StepRuns runs(r);
   const auto work = [&](int i) {
     ParetoPoint& p = points[static_cast<std::size_t>(i)];
     p.value =

@@ -28,10 +28,12 @@ struct ParetoPoint {
 };
 
 /// Sweeps every tunable estimator of the robot, and adds all as the roster has them, one point
-/// each.
-/// @throws std::invalid_argument for a robot without the scenarios `step` and `free`
+/// each; or those that are asked for.
+/// @throws std::invalid_argument for a robot without the scenarios `step` and `free`, and as
+/// tunable_of (equal_bandwidth.h)
 std::vector<ParetoPoint> pareto(const Robot& robot, int threads = 0,
-                                const std::function<void(double)>& progress = nullptr);
+                                const std::function<void(double)>& progress = nullptr,
+                                const std::vector<std::string>& asked = {});
 
 /// Marks who is dominated: the front of another estimator, on straight lines between its points in
 /// the logarithms, lies below, or a point of its own does.

@@ -39,11 +39,11 @@ Degradation dry_friction() {
 }
 
 ModelError error_of(const PlantKey& p) {
-  return {.mass = p.mass, .friction = p.friction};
+  return {.mass = p.mass, .friction = p.friction, .friction_share = p.friction_share};
 }
 
 StudyRuns runs_of_wallmobot3() {
-  StudyRuns r{.robot = "wallmobot3"};
+  StudyRuns r{.robot = "wallmobot3", .carries = 150};
   r.conditions = {
       {"known_0", "no panel, and the estimators know", 0, 0, noisy(1e-4)},
       {"known_50", "a panel of 50 kg, known", 50, 50, noisy(1e-4)},
@@ -81,15 +81,13 @@ StudyRuns runs_of_any(const Robot& r) {
   StudyRuns runs{.robot = r.name()};
   Degradation heavy = noisy(1e-4), rubbing = noisy(1e-4);
   heavy.model_error.mass = 1.05;
-  rubbing.model_error.friction = r.hidden_friction();
+  rubbing.model_error = r.hidden_friction();
   runs.conditions = {
       {"known", "the estimators know the arm", 0, 0, noisy(1e-4)},
       {"noise", "known; velocity noise 1e-3 rad/s", 0, 0, noisy(1e-3)},
       {"heavy", "the last link weighs 5 % more than the estimators know", 0, 0, heavy},
-      {"dry_friction",
-       fmt::format("{:.2g} N m of dry friction that the estimators do not know",
-                   rubbing.model_error.friction),
-       0, 0, rubbing},
+      {"dry_friction", r.hidden_friction_in_words() + " that the estimators do not know", 0, 0,
+       rubbing},
   };
   runs.training = {"known", "heavy"};
   const ArmScale scale = scale_of(r.load_for(quiet()));
@@ -156,7 +154,8 @@ std::vector<std::string> competitors(const Robot& r) {
 }  // namespace
 
 PlantKey plant_of(const Condition& c) {
-  return {c.panel, c.degradation.model_error.mass, c.degradation.model_error.friction};
+  const ModelError& e = c.degradation.model_error;
+  return {c.panel, e.mass, e.friction, e.friction_share};
 }
 
 const StudyRuns& touched_runs(const std::string& robot) {

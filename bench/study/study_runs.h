@@ -32,7 +32,7 @@ struct Condition {
 
 /// Conditions that differ in the sensors alone share their simulated runs.
 struct PlantKey {
-  double panel, mass, friction;                       ///< [kg], [1] of the last link, [N m]
+  double panel, mass, friction, friction_share;       ///< [kg], [1] of the last link, [N m], [1]
   auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 };
 
@@ -41,7 +41,8 @@ PlantKey plant_of(const Condition& c);
 
 /// The runs of one robot. A function that is empty stands for runs that the robot does not have.
 struct StudyRuns {
-  std::string robot;  ///< its name
+  std::string robot;   ///< its name
+  double carries = 0;  ///< [kg] the panel that its own model has
 
   // of the detection study and of calibration
   std::vector<Condition> conditions;  ///< all that there are

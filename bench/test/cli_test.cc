@@ -15,7 +15,7 @@ namespace {
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
   for (const std::string name :
        {"tauext-bench", "tauext-detect", "tauext-calibrate", "tauext-import", "tauext-live",
-        "tauext-record", "tauext-render", "tauext-replay", "tauext-score"}) {
+        "tauext-record", "tauext-render", "tauext-replay", "tauext-score", "tauext-tune"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;
@@ -164,11 +164,14 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
   const std::vector<std::pair<std::string, std::string>> refused = {
       {"tauext-bench --golden g.tsv --benchmark_out=r.json", "--benchmark_out and"},
       {"tauext-bench --golden g.tsv --paper", "--paper goes with the suite"},
-      {"tauext-bench --golden g.tsv --seed 3", "--golden takes --seeds"},
+      {"tauext-bench --golden g.tsv --seed 3", "--seed goes with one seed"},
       {"tauext-bench --list --benchmark_filter=step/", "--benchmark_filter goes with"},
       {"tauext-bench --list --list-metrics", "one at a time"},
-      {"tauext-bench --seeds 1,2", "--seeds goes with --golden"},
-      {"tauext-bench --pareto --estimator ekf", "--estimator goes with"},
+      {"tauext-bench --seeds 1,2 --seed 3", "--seed goes with one seed"},
+      {"tauext-bench --seeds 1-2-3", "'1-2-3' is no seed, nor a range"},
+      {"tauext-bench --seeds 1-3,2", "one is there twice"},
+      {"tauext-bench --against mo1", "--against goes with --seeds"},
+      {"tauext-bench --reliability --estimator ekf", "--estimator goes with"},
       {"tauext-bench --pareto --seed 3", "bring their own sensors"},
       {"tauext-detect --calibrate x.json --conditions known_0", "--conditions goes with a study"},
       {"tauext-detect --thresholds x.json --margin 2", "--margin goes with training"},

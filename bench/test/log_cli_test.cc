@@ -270,6 +270,11 @@ TEST_F(Programs, ScoreOfAFileIsThatOfTheSuite) {
   }
   for (const char* key : {"delay_s", "recall", "false_alarms"})
     EXPECT_EQ(scores[0].at(key), suite[1].at(key)) << key;
+  // and by a file of NumPy
+  run("tauext-replay log.csv --robot wallmobot3 --estimator mo2 --detector pan_tompkins --out "
+      "theirs.npz");
+  run("tauext-score theirs.npz --out n.json" + run_of);
+  EXPECT_EQ(nlohmann::json::parse(content("n.json")).at("benchmarks")[0], scores[0]);
   const Outcome by_log = run("tauext-score theirs.csv --log log.csv --format csv");
   EXPECT_EQ(by_log.code, 0) << by_log.text;
   EXPECT_TRUE(by_log.says("log/mo2+pan_tompkins,")) << by_log.text;

@@ -23,6 +23,17 @@ class StatusCounts {
     for (std::size_t j = 0; j < kJoints; ++j) by_joint_[index(s)][j] += joints >> j & 1;
   }
 
+  /// All of another run, too, but for its first sample if that starts: one start is no news.
+  void add(const StatusCounts& run) noexcept {
+    const std::int64_t starts = of(Status::kStarted) > 0 && run.of(Status::kStarted) > 0 ? 1 : 0;
+    samples_ += run.samples_ - starts;
+    by_status_[index(Status::kStarted)] -= starts;
+    for (std::size_t s = 0; s < kStatuses; ++s) {
+      by_status_[s] += run.by_status_[s];
+      for (std::size_t j = 0; j < kJoints; ++j) by_joint_[s][j] += run.by_joint_[s][j];
+    }
+  }
+
   std::int64_t samples() const noexcept { return samples_; }                 ///< all
   std::int64_t of(Status s) const noexcept { return by_status_[index(s)]; }  ///< of this status
   /// Of this status and joint, from 0; one sample may be about several.

@@ -169,7 +169,8 @@ class Import {
       const std::string_view attributes = attributes_of(e);
       if (attributes.empty()) {
         if (!has_word(detail::kLeftOutElements, name_of(e)))
-          fail("line {}: this import knows no <{}>; take it out", e, name_of(e));
+          fail("line {}: this import knows no <{}>; {}", e, name_of(e),
+               detail::remedy_for(name_of(e), detail::elements_of(detail::kKept)));
         return drop_section(e);
       }
       if (name_of(e) == "geom" && e.Attribute("mesh") != nullptr && !inside(e, "default")) {
@@ -211,8 +212,8 @@ class Import {
       a = a->Next();
       if (has_word(kept, attribute)) continue;
       if (!is_left_out(e, attribute)) {
-        fail("line {}: <{}> has no attribute '{}' that this import knows; take it out", e,
-             name_of(e), attribute);
+        fail("line {}: <{}> has no attribute '{}' that this import knows; {}", e, name_of(e),
+             attribute, detail::remedy_for(attribute, kept));
       }
       if (attribute != "rgba" && attribute != "material" && attribute != "group")
         ++out_.dropped[fmt::format("{}.{}", name_of(e), attribute)];

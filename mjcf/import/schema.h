@@ -3,14 +3,43 @@
 /// What of MJCF the dynamics of an arm needs, as far as MuJoCo 2.2.2 knows it; and what of URDF.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace tauext::detail {
 
 /// Whether a word stands in a list of words that are apart by blanks, one before and behind each.
 inline bool has_word(std::string_view list, std::string_view word) {
   return list.find(' ' + std::string(word) + ' ') != list.npos;
+}
+
+/// How many letters must be put in, taken out or exchanged to make one word of the other.
+inline std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);  // from the beginning of a to each beginning of b
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t other = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({other, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// What to do about a word that is in no list: take it out, but for what may be a typing error of
+/// one in the list (as in has_word).
+inline std::string remedy_for(std::string_view word, std::string_view list) {
+  for (std::size_t at = 0, end; (end = list.find(' ', at)) != list.npos; at = end + 1) {
+    const std::string_view known = list.substr(at, end - at);
+    if (known.size() > 2 && edits(word, known) <= 2)
+      return "did you mean '" + std::string(known) + "'? If not, take it out";
+  }
+  return "take it out";
 }
 
 /// An element that is kept, with the attributes that are; those of other elements go with them.
@@ -53,6 +82,14 @@ inline constexpr Kept kKept[] = {
     {"custom", " "},
     {"numeric", " name size data "},
 };
+
+/// The elements of a list, as has_word takes them.
+template <std::size_t n>
+std::string elements_of(const Kept (&list)[n]) {
+  std::string all = " ";
+  for (const Kept& k : list) all += std::string(k.element) + ' ';
+  return all;
+}
 
 /// Of <equality><joint>, which is another element than a body's.
 inline constexpr std::string_view kJointEquality =

@@ -66,6 +66,29 @@ void set(XMLElement& e, const char* attribute, std::initializer_list<double> val
   e.SetAttribute(attribute, fmt::format("{}", fmt::join(values, " ")).c_str());
 }
 
+bool is_known(std::string_view element) {
+  return std::any_of(std::begin(kUrdf), std::end(kUrdf),
+                     [&](const Kept& k) { return k.element == element; });
+}
+
+// a second one would be overlooked
+void refuse_doubles(const XMLElement& e, const std::string& owner) {
+  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
+    if (is_known(name_of(*c)) && c->NextSiblingElement(c->Name()) != nullptr)
+      fail(*c->NextSiblingElement(c->Name()), "{}: a second <{}>", owner, name_of(*c));
+  }
+}
+
+// beside links and joints; what has links or parts of them in it is none of these, but misspelt
+void drop_other(const XMLElement& e, std::map<std::string, int>& dropped) {
+  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
+    if (name_of(e) != "transmission" && name_of(e) != "gazebo" && is_known(name_of(*c)))
+      fail(e, "<{}> has a <{}>: {}", name_of(e), name_of(*c),
+           remedy_for(name_of(e), " link joint "));
+  }
+  ++dropped[std::string(name_of(e))];
+}
+
 // typing errors would change the arm, and nobody would see it
 void refuse_unknown(const XMLElement& e, const std::string& owner,
                     std::map<std::string, int>& dropped) {
@@ -74,7 +97,8 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
   if (known == std::end(kUrdf)) {
     const bool other = name_of(e).find(':') != std::string_view::npos;
     if (!other && !has_word(kUrdfLeftOut, name_of(e)))
-      fail(e, "{}: this import knows no <{}>; take it out", owner, name_of(e));
+      fail(e, "{}: this import knows no <{}>; {}", owner, name_of(e),
+           remedy_for(name_of(e), elements_of(kUrdf)));
     ++dropped[std::string(name_of(e))];
     return;
   }
@@ -85,6 +109,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
       fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
            known->attributes.substr(0, known->attributes.size() - 1));
   }
+  refuse_doubles(e, owner);
   for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
     refuse_unknown(*c, owner, dropped);
 }
@@ -108,6 +133,8 @@ class Urdf {
       const std::string_view kind = name_of(*e);
       if (kind.starts_with("xacro:"))
         fail(*e, "<{}>: this is no URDF yet; run it through xacro", kind);
+      if ((kind == "link" || kind == "joint") && text(*e, "name").empty())
+        fail(*e, "a {} without a name", kind);
       if (kind == "link") {
         if (!links_.emplace(text(*e, "name"), e).second)
           fail(*e, "there are two links '{}'", text(*e, "name"));
@@ -119,7 +146,7 @@ class Urdf {
         refuse_unknown(*e, fmt::format("joint '{}'", text(*e, "name")), dropped);
         joints_.push_back(e);
       } else {
-        ++dropped[std::string(kind)];
+        drop_other(*e, dropped);
       }
     }
     for (const XMLElement* j : joints_) {
@@ -221,6 +248,10 @@ class Urdf {
     if (has_range) set(out, "range", {lower, upper});
     if (!has_range && type != "continuous") ++dropped_["limit without a range"];
     const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
+    for (const char* term : {"damping", "friction", "armature"}) {
+      if (const double x = number(dynamics, term, 0); !(x >= 0))
+        fail(*dynamics, "joint '{}': its {} is {:g}, and must be 0 or more", name, term, x);
+    }
     set(out, "damping", {number(dynamics, "damping", 0)});
     set(out, "frictionloss", {number(dynamics, "friction", 0)});
     set(out, "armature", {number(dynamics, "armature", 0)});  // URDF itself has no word for it

@@ -10,6 +10,7 @@
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
+#include "mjcf/plant/tree.h"
 
 namespace tauext {
 namespace {
@@ -26,6 +27,7 @@ void check(const ModelError& e) {
   check("mass [1]", e.mass, 0.01, 100);
   check("com [m]", e.com, -10, 10);
   check("friction [N m]", e.friction, 0, 1e4);
+  check("friction_share [1]", e.friction_share, 0, 10);
   check("viscous [N m s/rad]", e.viscous, 0, 1e4);
   check("armature [kg m^2]", e.armature, 0, 1e4);
 }
@@ -55,15 +57,20 @@ Model with_errors(const Model& robot, const ModelError& e) {
   check(e);
   const std::vector<int> arm = arm_of(robot);
   const int last = robot->dof_bodyid[arm.back()];
+  const Eigen::VectorXd usual = e.friction_share > 0
+                                    ? tree_of(robot).usual_torque
+                                    : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.size()));
   return changed(robot, [&](mjModel& m) {
     m.body_mass[last] *= e.mass;
     for (int i = 0; i < 3; ++i) m.body_inertia[3 * last + i] *= e.mass;
     if (e.com != 0) move_com(m, arm.back(), e.com);
-    for (const int dof : arm) {
+    for (std::size_t i = 0; i < arm.size(); ++i) {
+      const int dof = arm[i];
       m.dof_damping[dof] += e.viscous;
       m.dof_armature[dof] += e.armature;
-      if (e.friction == 0) continue;
-      m.dof_frictionloss[dof] += e.friction;
+      const double dry = e.friction + e.friction_share * usual[static_cast<Eigen::Index>(i)];
+      if (dry == 0) continue;
+      m.dof_frictionloss[dof] += dry;
       if ((m.opt.disableflags & kSimulated) != 0) continue;  // these say something else there
       // as stiff as the testbed's: full friction above some mrad/s
       m.dof_solref[mjNREF * dof] = 0.002;

@@ -13,8 +13,9 @@ struct ModelError {
   double mass = 1;      ///< [1] factor on mass and inertia of the arm's last link, panel included
   double com = 0;       ///< [m] by which that link's centre of mass lies farther from its joint
   double friction = 0;  ///< [N m] dry friction, on top of what the robot has, on every joint
-  double viscous = 0;   ///< [N m s/rad] viscous friction, likewise
-  double armature = 0;  ///< [kg m^2] inertia of a rotor on every joint, likewise
+  double friction_share = 0;  ///< [1] of ArmTree::usual_torque of each joint, likewise
+  double viscous = 0;         ///< [N m s/rad] viscous friction, likewise
+  double armature = 0;        ///< [kg m^2] inertia of a rotor on every joint, likewise
 
   bool operator==(const ModelError&) const = default;
 

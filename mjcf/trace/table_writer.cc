@@ -199,7 +199,11 @@ std::string TableWriter::markdown() const {
 }
 
 std::string TableWriter::latex() const {
-  const auto tex = [](const std::string& text) { return escaped(text, "_%&#$", "\\"); };
+  const auto tex = [](const std::string& text) {
+    std::string out = escaped(text, "_%&#$", "\\");
+    if (const auto at = out.find("+-"); at != out.npos) out.replace(at, 2, "$\\pm$");
+    return out;
+  };
   std::string alignment, titles, units, out;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     alignment += columns_[c].left ? 'l' : 'r';

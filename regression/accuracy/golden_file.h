@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Reads golden metrics; bench/score/golden.h writes them and says what they are.
+/// Reads golden metrics; bench/seeds/golden.h writes them and says what they are.
 #pragma once
 
 #include <limits>

@@ -86,7 +86,7 @@ double truth(int joint, const std::string& name) {
                                   : *j.offset;
 }
 
-const CalibrateOptions kAll = {{"armature", "coulomb", "viscous", "viscous_skew", "offset"}, {}};
+const CalibrateOptions kAll;
 
 TEST(ArmCalibration, FindsWhatASimulatedArmHas) {
   const Trace log = swinging(arm6(some_terms()), 30, 0);
@@ -159,7 +159,8 @@ TEST(ArmCalibration, AScaleIsSeenByWeightAlone) {
 
 TEST(ArmCalibration, SaysWhatIsMissing) {
   const Trace log = swinging(arm6(some_terms()), 30, 1e-4);
-  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log});  // without viscous_skew
+  const auto joints = calibrate_arm(tree_of(load_mjcf(kArm6)), {log},
+                                    {{"armature", "coulomb", "viscous", "offset"}, {}});
   ASSERT_FALSE(joints[4].missing.empty());
   EXPECT_NE(joints[4].missing[0].name.find("viscous_skew"), std::string::npos);
 }
@@ -202,6 +203,24 @@ TEST(ArmCalibration, RefusesWhatItCannotTell) {
             std::string::npos);
   EXPECT_NE(error_of(tree_of(load_robot("wallmobot3")), {log}, {}).find("mix its joints"),
             std::string::npos);
+}
+
+TEST(ArmCalibration, RefusesRecordingsThatCannotBeOfTheArm) {
+  const ArmTree arm = tree_of(load_mjcf(kArm6));
+  const Trace good = swinging(arm6(some_terms()), 30, 1e-3);
+  Trace degrees = good, reversed = good;
+  degrees.q *= 180 / M_PI, degrees.qd *= 180 / M_PI;
+  reversed.tau *= -1;
+  for (const Trace* log : {&degrees, &reversed}) {
+    try {
+      calibrate_arm(arm, {*log});
+      FAIL() << "it fits";
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("is more than the torque that was measured"),
+                std::string::npos)
+          << e.what();
+    }
+  }
 }
 
 TEST(Weighing, FindsMassAndCenter) {

@@ -116,10 +116,17 @@ TEST_F(Outside, NumPysArraysAreRowsOfTheSamples) {
 }
 
 TEST_F(Outside, WhatDoesNotBelongToTheLogIsRefused) {
-  EXPECT_NE(error(put("t,tau_ext1,tau_ext2", [](int k) { return fmt::format("{},0,0\n", k); }))
-                .find("999 of the 1000 samples have no estimate of theirs; the log goes from 5 to "
-                      "5.999 s"),
+  const auto both = [&](auto&& line) { return error(put("t,tau_ext1,tau_ext2", line)); };
+  EXPECT_NE(
+      both([](int k) {
+        return fmt::format("{},0,0\n", k);
+      }).find("999 of its 1000 rows are at times of no sample; the log goes from 5 to 5.999 s"),
+      std::string::npos);
+  EXPECT_NE(both([](int k) {
+              return k < 400 ? fmt::format("{},0,0\n", 5 + 0.001 * k) : "";
+            }).find("600 of the 1000 samples have no estimate of theirs"),
             std::string::npos);
+  EXPECT_NE(both([](int) { return ""; }).find("no row of numbers"), std::string::npos);
   EXPECT_NE(error(put("t,tau_ext1", [](int k) { return fmt::format("{},0\n", k); }))
                 .find("theirs has 1 columns of tau_ext, and the log 2 joints"),
             std::string::npos);

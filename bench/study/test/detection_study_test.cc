@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
 #include "bench/study/calibration.h"
 #include "bench/study/detection_report.h"
+#include "mjcf/record.h"
 #include "mjcf/scenarios/touch.h"
 #include "mjcf/test/error_of.h"
 
@@ -119,6 +122,60 @@ TEST(Calibration, TrainsASpecificationForItself) {
   const Eigen::VectorXd difference =
       named.at("high_pass").threshold - named.at("high_pass:w=100").threshold;
   EXPECT_GT(difference.minCoeff(), 0);
+}
+
+// of wallmobot3 at rest, with so much noise of its loadcells [N m]
+FreeRecording at_rest(const std::string& name, double noise, std::uint64_t seed) {
+  Sensors sensors{.velocity_noise = 1e-4, .loadcell = {.noise = noise}};
+  sensors.seed = seed;
+  const Scenario& s = scenario_of(robot("wallmobot3"), "free");
+  Trace t = record(robot("wallmobot3").load_for(s), s, sensors);
+  for (double& x : t.t) x += 100;  // as clocks of logs are
+  t.tau_ext.resize(0, 0);
+  t.contact.clear();
+  return {name, std::move(t)};
+}
+
+TEST(Calibration, OnRecordingsTakesTheLargestAndTriesItOnTheOthers) {
+  CalibrationOptions o;
+  o.estimators = {"mo1"};
+  o.detectors = {"threshold"};
+  const Robot& r = robot("wallmobot3");
+  const FreeRecording quiet = at_rest("quiet.csv", 0.1, 1), loud = at_rest("loud.csv", 50, 2);
+  std::vector<HeldOut> none, three;
+  const auto of = [](const Thresholds& t) {
+    return t.sets.at(0).by_estimator.at("mo1").at("threshold").threshold;
+  };
+  const Thresholds of_quiet = calibrate_on(r, {quiet}, o, none);
+  EXPECT_TRUE(none.empty()) << "nobody to try it on";
+  const Thresholds all = calibrate_on(r, {quiet, loud, at_rest("as_quiet.csv", 0.1, 3)}, o, three);
+  EXPECT_GT((of(all) - 2 * of(of_quiet)).minCoeff(), 0);
+  EXPECT_EQ(of(all), of(calibrate_on(r, {loud}, o, none)));
+  ASSERT_FALSE(three.empty());
+  for (const HeldOut& h : three) {
+    EXPECT_EQ(h.recordings, 3);
+    EXPECT_EQ(h.alarms, 1) << h.detector << ": the loud one, by those of the quiet ones";
+  }
+  EXPECT_NE(all.trained_on.find("quiet.csv, loud.csv, as_quiet.csv"), std::string::npos);
+  EXPECT_EQ(trained_for(all, "wallmobot3", 0, "mo1", "threshold").at("threshold").threshold,
+            of(all));
+}
+
+TEST(Calibration, OnRecordingsRefusesContactsAndWhatIsTooShort) {
+  const auto error = [](FreeRecording recording, auto&& change) {
+    change(recording.trace);
+    std::vector<HeldOut> held_out;
+    return error_of(
+        [&] { calibrate_on(robot("wallmobot3"), {recording}, {.estimators = {"mo1"}}, held_out); });
+  };
+  const FreeRecording good = at_rest("a.csv", 1, 1);
+  EXPECT_NE(error(good, [](Trace& t) { t.contact.assign(t.t.size(), 0), t.contact[500] = 1; })
+                .find("a.csv: something touches at 100.5 s"),
+            std::string::npos);
+  EXPECT_NE(error(good, [](Trace& t) { t.t.resize(3000); }).find("a.csv: 3 s long; 8 s are needed"),
+            std::string::npos);
+  EXPECT_NE(error(good, [](Trace& t) { t.q = t.q.topRows(2).eval(); }).find("a.csv: 2 joints"),
+            std::string::npos);
 }
 
 TEST(DetectionStudy, TestsOnSeedsThatNoTrainingKnows) {

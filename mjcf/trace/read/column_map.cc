@@ -130,6 +130,11 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     if (wanted == wanted_.end()) continue;
     const Wanted& w = wanted->second;
     MappedQuantity m{find(q.name, w, columns, path), {}};
+    if (m.columns.empty() && (q.name == "t" || q.name == "q"))
+      throw std::runtime_error(fmt::format(
+          "{}: no column for [{}]: none matches '{}'; --columns says which it is. There are: {}",
+          path, q.name, w.expression,
+          printable_name(fmt::format("{}", fmt::join(columns, ", ")), 200)));
     if (m.columns.empty()) continue;
     const std::size_t count = m.columns.size();
     m.has_gain = !w.gain.empty();

@@ -194,7 +194,8 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(error_of_reading("t,q1,q1,qd1,tau1\n"), path() + ": column 'q1' appears twice");
   EXPECT_EQ(
       error_of_reading("a,b,c\n"),
-      path() + ": no columns for the time; --columns says which they are. There are: a, b, c");
+      path() +
+          ": no column for [t]: none matches 't'; --columns says which it is. There are: a, b, c");
   SkippedRows skipped;
   EXPECT_EQ(error_of([&] { read_csv("/nowhere/x.csv", &skipped); }),
             "/nowhere/x.csv: No such file or directory");

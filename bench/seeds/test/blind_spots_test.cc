@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/roster/robots.h"
-#include "bench/score/golden.h"
+#include "bench/seeds/golden.h"
 
 namespace tauext::test {
 namespace {

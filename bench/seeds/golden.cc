@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/score/golden.h"
+#include "bench/seeds/golden.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <mutex>
 #include <regex>
 #include <set>
 #include <stdexcept>
@@ -16,7 +15,7 @@
 
 #include "bench/roster/robots.h"
 #include "bench/score/degradation.h"
-#include "bench/score/parallel.h"
+#include "bench/seeds/seeds.h"
 
 namespace tauext {
 namespace {
@@ -44,21 +43,22 @@ class Golden {
       add(e, "", wanted);
       if (also_degraded(e)) add(e, kDegraded, wanted);
     }
-    if (groups_.empty()) {
+    if (entries_.empty()) {
       throw std::invalid_argument(
           fmt::format("the filter '{}' matches nothing; see --list", o.filter));
     }
     if (o.seeds.empty()) throw std::invalid_argument("golden metrics need a seed");
-    for (const auto& [name, ignored] : groups_) jobs_.push_back(name);
-    std::stable_sort(jobs_.begin(), jobs_.end(), [&](const auto& a, const auto& b) {
-      return cost(a) > cost(b);  // so that no thread is left alone at the end
-    });
   }
 
   std::string run() {
-    parallel_for(
-        static_cast<int>(jobs_.size()), o_.threads,
-        [&](int i) { score(jobs_[static_cast<std::size_t>(i)]); }, o_.progress);
+    double done = 0;
+    for (const auto& [how, entries] : entries_) {
+      const double share = 1. / static_cast<double>(entries_.size());
+      SeedOptions s{suite_options(how), entries, o_.seeds, o_.threads, {}};
+      if (o_.progress) s.progress = [&](double part) { o_.progress(done + share * part); };
+      for (const SeededRow& row : score_over_seeds(s)) put(row, name_of(row.entry, how));
+      done += share;
+    }
     return text();
   }
 
@@ -72,66 +72,51 @@ class Golden {
     return !own_sensors() && std::find(std::begin(kAlsoDegraded), end, e.scenario().name) != end;
   }
   void add(const Entry& e, const std::string& how, const std::regex& wanted) {
-    if (std::regex_search(name_of(e, how), wanted)) groups_[e.group()][how].push_back(e);
+    if (std::regex_search(name_of(e, how), wanted)) entries_[how].push_back(e);
   }
   static std::string name_of(const Entry& e, const std::string& how) {
     return e.group() + how + e.name().substr(e.group().size());
   }
-  // [s] simulated, by all entries
-  double cost(const std::string& group) const {
-    std::size_t entries = 0;
-    for (const auto& [how, rivals] : groups_.at(group)) entries += rivals.size();
-    return groups_.at(group).begin()->second.front().scenario().duration *
-           static_cast<double>(entries);
-  }
 
-  SuiteOptions options(const std::string& how, std::size_t seed) const {
+  SuiteOptions suite_options(const std::string& how) const {
     SuiteOptions s = o_.suite;
     if (s.sensors.ideal()) s.sensors = how == kDegraded ? degraded_sensors() : golden_sensors();
-    s.sensors.seed = o_.seeds[seed];
     return s;
   }
 
-  void score(const std::string& group) {
-    Suite suite(options("", 0));
-    for (const auto& [how, rivals] : groups_.at(group)) {
-      for (std::size_t seed = 0; seed < o_.seeds.size(); ++seed) {
-        suite.set_sensors(options(how, seed).sensors);
-        for (const Entry& e : rivals) score(suite, e, name_of(e, how), seed);
-      }
-    }
-  }
-
-  void score(Suite& suite, const Entry& e, const std::string& name, std::size_t seed) {
-    Score score = suite.score(e);
-    score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
-    const std::lock_guard lock(mutex_);
-    const auto put = [&](const std::string& key, double value) {
-      auto& values = table_[name][key];
-      values.resize(o_.seeds.size(), std::nan(""));
-      values[seed] = value;
-    };
-    for (const MetricRow& metric : kMetrics) {
-      const auto value = score.get(metric.metric);
-      if (!metric.is(MetricRow::kGate) || !value) continue;
-      put(key_of(metric.metric), *value);
-      const Score::Joints& joints = score.joints(metric.metric);
-      if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
-      for (std::size_t j = 0; j < joints.size(); ++j) {
-        if (joints[j]) put(key_of(metric.metric, static_cast<int>(j) + 1), *joints[j]);
+  void put(const SeededRow& row, const std::string& name) {
+    for (std::size_t seed = 0; seed < row.scores.size(); ++seed) {
+      Score score = row.scores[seed];
+      score.set(Metric::kFailed, score.error.empty() ? 0 : 1);
+      const auto put = [&](const std::string& key, double value) {
+        auto& values = table_[name][key];
+        values.resize(row.scores.size(), std::nan(""));
+        values[seed] = value;
+      };
+      for (const MetricRow& metric : kMetrics) {
+        const auto value = score.get(metric.metric);
+        if (!metric.is(MetricRow::kGate) || !value) continue;
+        put(key_of(metric.metric), *value);
+        const Score::Joints& joints = score.joints(metric.metric);
+        if (!metric.is(MetricRow::kGateJoints) || joints.size() < 2) continue;
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+          if (joints[j]) put(key_of(metric.metric, static_cast<int>(j) + 1), *joints[j]);
+        }
       }
     }
   }
 
   std::string text() const {
     std::set<std::string> contacts;
-    for (const auto& [group, ways] : groups_) {
-      for (const auto& [how, rivals] : ways) {
-        if (rivals.front().scenario().has_obstacle()) contacts.insert(group + how);
+    for (const auto& [how, entries] : entries_) {
+      for (const Entry& e : entries) {
+        if (e.scenario().has_obstacle()) contacts.insert(e.group() + how);
       }
     }
     const auto described = [&](const std::string& how) {
-      return describe({options(how, 0).sensors, o_.suite.model_error});
+      Sensors sensors = suite_options(how).sensors;
+      sensors.seed = o_.seeds.front();
+      return describe({sensors, o_.suite.model_error});
     };
     std::string out = fmt::format(
         "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n{}# contacts: {}\n# built: {}\n"
@@ -150,11 +135,8 @@ class Golden {
   }
 
   const GoldenOptions& o_;
-  // by group, and "" or kDegraded
-  std::map<std::string, std::map<std::string, std::vector<Entry>>> groups_;
-  std::vector<std::string> jobs_;  // groups, the dearest first
+  std::map<std::string, std::vector<Entry>> entries_;  // by "" or kDegraded
   Table table_;
-  std::mutex mutex_;  // of table_
 };
 
 }  // namespace

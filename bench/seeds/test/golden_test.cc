@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/score/golden.h"
+#include "bench/seeds/golden.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-tune: the best parameters of an estimator, and of a detector behind it.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/logs/read_log.h"
+#include "bench/outside/outside_score.h"
+#include "bench/program/program.h"
+#include "bench/roster/robots.h"
+#include "bench/run/recording_flags.h"
+#include "bench/run/scenario_file.h"
+#include "bench/run/study_flags.h"
+#include "bench/score/degradation.h"
+#include "bench/seeds/golden.h"
+#include "bench/seeds/seeds.h"
+#include "bench/tune/tune.h"
+#include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
+
+namespace {
+
+using namespace tauext;
+
+struct Flags {
+  std::string robot, lock, minimize, scenarios, seeds = "1-3", test_seeds = "101-110";
+  std::string columns, channel, format = "text";
+  TunedPair pair;
+  std::vector<std::string> keys, limits, scenario, logs, test_logs;
+  int evaluations = 60;
+  SuiteOptions suite;
+};
+
+void add_flags(CLI::App& app, Flags& f) {
+  const auto list = [&](const char* name, std::vector<std::string>& to, const char* help) {
+    return app.add_option(name, to, help)->delimiter(',')->allow_extra_args(false);
+  };
+  app.add_option("--robot", f.robot, "robot, or its file (with --lock REGEX)")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", f.lock)->group("")->check(not_empty);
+  app.add_option("--estimator", f.pair.estimator, "to tune, like mo2")->type_name("SPEC");
+  app.add_option("--detector", f.pair.detector, "behind it, like high_pass")->type_name("SPEC");
+  list("--tune", f.keys, "of either, KEY or KEY=LOW:HIGH (tauext-replay --list shows them)")
+      ->type_name("KEY,..");
+  app.add_option("--minimize", f.minimize, "a metric; else rmse_Nm, or of a detector delay_s")
+      ->type_name("METRIC");
+  list("--limit", f.limits, "that must hold in every run, like noise_Nm=1")
+      ->type_name("METRIC=X,..");
+  list("--scenario", f.scenario,
+       "on these; else step,sine,in_motion, or a detector's blows, pushes")
+      ->type_name("NAME,..");
+  app.add_option("--scenarios", f.scenarios)->group("");
+  app.add_option("--seeds", f.seeds, "of the sensors, to tune on")->type_name("1-3");
+  app.add_option("--test_seeds", f.test_seeds, "to tell what it is worth")->type_name("101-110");
+  list("--log", f.logs, "instead: labelled recordings to tune on (--columns: tauext-replay)")
+      ->type_name("LOG");
+  list("--test_log", f.test_logs, "and to tell what it is worth")->type_name("LOG");
+  app.add_option("--columns", f.columns)->group("");
+  app.add_option("--channel", f.channel)->group("");
+  app.add_option("--evaluations", f.evaluations, "that may be made")
+      ->check(CLI::Range(3, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--format", f.format, "of the table: text, csv, json, md or latex")
+      ->type_name("NAME");
+  add_recording_flags(app, f.suite.sensors, f.suite.model_error, f.suite.recording);
+  for (const char* less_used : {"--kp", "--velocity_noise", "--degrade", "--seed"})
+    app.get_option(less_used)->group("");
+}
+
+Metric metric_of(const std::string& key) {
+  return find_known(kMetrics, "metric", key, [](const MetricRow& m) { return std::string(m.key); })
+      .metric;
+}
+
+std::vector<Limit> limits_of(const std::vector<std::string>& texts) {
+  std::vector<Limit> limits;
+  for (const std::string& text : texts) {
+    const auto [key, value] = key_and_value(text);
+    limits.emplace_back(metric_of(key), detail::number_of(key, value, -1e12, 1e12));
+  }
+  return limits;
+}
+
+// what is usual, of those that the robot has
+std::vector<std::string> scenarios_of(const Flags& f, const Robot& r) {
+  if (!f.scenario.empty()) return f.scenario;
+  std::vector<std::string> wanted = {"step", "sine", "in_motion"};
+  if (!f.pair.detector.empty()) wanted = {"collision", "blow", "push"};
+  std::vector<std::string> there;
+  for (const Scenario& s : r.scenarios()) {
+    if (std::count(wanted.begin(), wanted.end(), s.name) > 0) there.push_back(s.name);
+  }
+  return there;
+}
+
+using Scores = std::vector<std::vector<Score>>;  // by run, by seed
+
+// scores on simulated runs
+class Simulated {
+ public:
+  Simulated(const Flags& f, const Robot& r, const std::string& seeds)
+      : robot_(r.name()), scenarios_(scenarios_of(f, r)), scorer_(f.suite, seeds_of(seeds)) {}
+
+  std::vector<SeededRow> rows(const std::vector<TunedPair>& pairs) {
+    std::vector<Entry> entries;
+    for (const std::string& s : scenarios_)
+      for (const TunedPair& p : pairs) entries.emplace_back(robot_, s, p.estimator, p.detector);
+    return scorer_(entries);
+  }
+  Scores operator()(const TunedPair& p) {
+    Scores scores;
+    for (SeededRow& row : rows({p})) scores.push_back(std::move(row.scores));
+    return scores;
+  }
+
+ private:
+  std::string robot_;
+  std::vector<std::string> scenarios_;
+  SeedScorer scorer_;
+};
+
+// scores on recordings, all of them together
+class Recordings {
+ public:
+  Recordings(const Flags& f, const Robot& r, const std::vector<std::string>& paths) : robot_(r) {
+    for (const std::string& path : paths) {
+      logs_.push_back(read_any_log(path, {f.channel, f.columns, true}));
+      r.make_torques(logs_.back().trace);
+    }
+    for (const RecordedLog& log : logs_)
+      runs_.push_back(
+          {&log.trace, fmt::format("{}_logs", paths.size()), &r, nullptr, log.trace.t.front()});
+  }
+  Recordings(const Recordings&) = delete;
+  Recordings& operator=(const Recordings&) = delete;
+
+  Row row(const TunedPair& p) const {
+    std::vector<OutsideEstimates> all;
+    for (const OutsideRun& run : runs_)
+      all.push_back(
+          {p.estimator, p.detector, robot_.runner(p.estimator, p.detector, *run.trace)->run()});
+    return score_outside(runs_, all);
+  }
+  Scores operator()(const TunedPair& p) const { return {{row(p).score}}; }
+
+ private:
+  const Robot& robot_;
+  std::vector<RecordedLog> logs_;
+  std::vector<OutsideRun> runs_;
+};
+
+std::string name_of(const TunedPair& p) {
+  return p.detector.empty() ? p.estimator : p.estimator + "+" + p.detector;
+}
+
+void print_found(const Tuned& t, Metric minimize, std::FILE* to) {
+  const auto value = [&](double x) {
+    return std::isnan(x) ? "never, or beyond a limit" : fmt::format("{:.4g}", x);
+  };
+  fmt::print(to, "start  {}  {} {}\nbest   {}  {}\n{} evaluations\n", name_of(t.start),
+             key_of(minimize), value(t.of_start), name_of(t.best), value(t.of_best), t.evaluations);
+  if (!t.at_bound.empty())
+    fmt::print(to, "at an end of its range: {}; a wider one may have a better value\n",
+               fmt::join(t.at_bound, ", "));
+}
+
+void require_flags(const Flags& f) {
+  if (f.robot.empty() || f.pair.estimator.empty() || f.keys.empty())
+    throw std::invalid_argument(
+        "--robot, --estimator and --tune are required; see tauext-tune --help");
+  if (f.logs.empty() != f.test_logs.empty())
+    throw std::invalid_argument(
+        "--log and --test_log go together: no recording says what tuning on itself is worth");
+  for (const std::string& log : f.logs) {
+    if (std::count(f.test_logs.begin(), f.test_logs.end(), log) > 0)
+      throw std::invalid_argument(log + ": --test_log cannot be what was tuned on");
+  }
+  if (!f.logs.empty()) return;
+  for (const std::uint64_t seed : seeds_of(f.seeds)) {
+    const std::vector<std::uint64_t> test = seeds_of(f.test_seeds);
+    if (std::count(test.begin(), test.end(), seed) > 0)
+      throw std::invalid_argument(fmt::format("seed {} is of --seeds and of --test_seeds", seed));
+  }
+}
+
+int run(const CLI::App& app, Flags& f) {
+  require_flags(f);
+  const TableFormat format = table_format(f.format);
+  require_mode(app, f.logs.empty(), "simulated runs, not with --log",
+               {"--scenario", "--scenarios", "--seeds", "--test_seeds", "--sensors", "--loadcell",
+                "--model_error"});
+  const Robot& r = robot(with_lock(f.robot, f.lock));
+  if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
+  r.check(f.pair.estimator, f.pair.detector);
+  if (f.suite.sensors.ideal()) f.suite.sensors = golden_sensors();
+  TuneOptions o;
+  o.keys = keys_of(
+      f.keys, f.pair, r.estimator_fields(f.pair.estimator),
+      f.pair.detector.empty() ? std::vector<FieldHelp>() : r.detector_fields(f.pair.detector));
+  o.pair = without(f.pair, o.keys);
+  if (f.minimize.empty())
+    f.minimize = key_of(f.pair.detector.empty() ? Metric::kRmse : Metric::kDelay);
+  o.minimize = metric_of(f.minimize);
+  o.limits = limits_of(f.limits);
+  o.evaluations = f.evaluations;
+  Progress progress("tuning");
+  o.progress = progress.callback();
+  std::FILE* const words = format == TableFormat::kText ? stdout : stderr;
+  if (f.logs.empty()) {
+    Simulated training(f, r, f.seeds), test(f, r, f.test_seeds);
+    o.score = [&](const TunedPair& p) { return training(p); };
+    const Tuned t = tune(o);
+    print_found(t, o.minimize, words);
+    fmt::print(words, "\nOn seeds that no tuning has seen, {}:\n\n",
+               describe({f.suite.sensors, f.suite.model_error}));
+    fmt::print("{}", format_seeds(test.rows({t.start, t.best}), name_of(t.start), format));
+    return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
+  }
+  const Recordings training(f, r, f.logs), test(f, r, f.test_logs);
+  o.score = [&](const TunedPair& p) { return training(p); };
+  const Tuned t = tune(o);
+  print_found(t, o.minimize, words);
+  fmt::print(words, "\nOn recordings that no tuning has seen:\n\n");
+  const std::vector<Row> rows = {test.row(t.start), test.row(t.best)};
+  const std::vector<Metric> also = {Metric::kRecall, Metric::kFalseAlarmsPerHour, o.minimize};
+  fmt::print("{}", format_table(rows, format, also));
+  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
+  return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Finds the best parameters of an estimator, and of a detector behind it, on training seeds "
+      "or\n"
+      "recordings, and tells what they are worth on others. Exit code 1: no place keeps the "
+      "limits.\n\n"
+      "  tauext-tune --robot wallmobot3 --estimator mo2 --tune bandwidth=5:300 --limit "
+      "noise_Nm=1\n",
+      "tauext-tune");
+  Flags f;
+  add_flags(app, f);
+  return run_program(app, argc, argv, [&] { return run(app, f); });
+}

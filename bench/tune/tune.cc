@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/tune/tune.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlopt.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "bench/roster/specification.h"
+
+namespace tauext {
+namespace {
+
+constexpr double kUnbearable = 1e30;  // from here on something never comes, or breaks a limit
+
+double largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+// the mean of a metric over the seeds that have it; nothing where no seed is asked for it
+struct Mean {
+  double value = 0, never = 0;  // share of the seeds without a value
+};
+std::optional<Mean> mean_of(const std::vector<Score>& seeds, Metric m) {
+  Mean mean;
+  double asked = 0, values = 0;
+  for (const Score& s : seeds) {
+    const auto value = s.get(m);
+    if (!value) continue;
+    ++asked;
+    if (std::isnan(*value) || !s.error.empty()) continue;
+    ++values;
+    mean.value += *value;
+  }
+  if (asked == 0) return std::nullopt;
+  mean.never = 1 - values / asked;
+  if (values > 0) mean.value /= values;
+  return mean;
+}
+
+bool is_more_better(Metric m) {
+  return row_of(m).better == Better::kMore;
+}
+
+class Search {
+ public:
+  explicit Search(const TuneOptions& o) : o_(o) {
+    for (const TunedKey& k : o.keys) {
+      low_.push_back(std::log(k.low));
+      high_.push_back(std::log(k.high));
+      first_.push_back(std::clamp(std::log(largest(k.start)), low_.back(), high_.back()));
+    }
+  }
+
+  Tuned run() {
+    tuned_.start = pair_at(first_);
+    const std::vector<std::vector<Score>> at_start = o_.score(tuned_.start);
+    tuned_.evaluations = 1;
+    if (std::none_of(at_start.begin(), at_start.end(),
+                     [&](const auto& seeds) { return mean_of(seeds, o_.minimize).has_value(); }))
+      throw std::invalid_argument(fmt::format("no run has the metric {}", key_of(o_.minimize)));
+    best_ = first_;
+    best_value_ = objective(at_start);
+    tuned_.of_start = in_units(best_value_);
+    search(nlopt::GN_DIRECT_L, o_.evaluations / 2);
+    search(nlopt::LN_SBPLX, o_.evaluations);
+    tuned_.best = pair_at(best_);
+    tuned_.of_best = in_units(best_value_);
+    for (std::size_t i = 0; i < o_.keys.size(); ++i) {
+      const double margin = 1e-3 * (high_[i] - low_[i]);
+      if (best_[i] < low_[i] + margin || best_[i] > high_[i] - margin)
+        tuned_.at_bound.push_back(o_.keys[i].key);
+    }
+    return tuned_;
+  }
+
+ private:
+  using Place = std::vector<double>;  // logarithms
+
+  TunedPair pair_at(const Place& x) const {
+    TunedPair pair = o_.pair;
+    for (std::size_t i = 0; i < o_.keys.size(); ++i) {
+      const TunedKey& k = o_.keys[i];
+      const double factor = std::exp(x[i]) / largest(k.start);
+      std::vector<std::string> values;
+      for (const double v : k.start) values.push_back(fmt::format("{:.4g}", v * factor));
+      std::string& specification = k.of_detector ? pair.detector : pair.estimator;
+      specification += fmt::format(":{}={}", k.key, fmt::join(values, "/"));
+    }
+    return pair;
+  }
+
+  double objective(const std::vector<std::vector<Score>>& runs) const {
+    double sum = 0, count = 0, broken = 0;
+    for (const std::vector<Score>& seeds : runs) {
+      if (const auto m = mean_of(seeds, o_.minimize)) {
+        const double value = std::log(std::max(m->value, 1e-9));
+        if (m->never < 1) sum += is_more_better(o_.minimize) ? -value : value, ++count;
+        broken += m->never;
+      }
+      for (const auto& [metric, limit] : o_.limits) broken += excess(seeds, metric, limit);
+    }
+    if (broken > 0) return kUnbearable * (1 + broken);  // the less broken, the better
+    return std::exp(sum / std::max(count, 1.));
+  }
+
+  static double excess(const std::vector<Score>& seeds, Metric metric, double limit) {
+    const auto m = mean_of(seeds, metric);
+    if (!m) return 0;
+    const double over = is_more_better(metric) ? limit - m->value : m->value - limit;
+    return std::max(over, 0.) / std::max(std::abs(limit), 1e-9 + std::abs(m->value)) + m->never;
+  }
+
+  // of the metric; NaN for what never comes, or breaks a limit
+  double in_units(double objective) const {
+    if (objective >= kUnbearable) return kNoValue;
+    return is_more_better(o_.minimize) ? 1 / objective : objective;
+  }
+
+  double evaluate(const Place& x) {
+    const TunedPair pair = pair_at(x);
+    const auto [known, is_new] = known_.try_emplace(pair.estimator + "+" + pair.detector, 0);
+    if (is_new) {
+      known->second = objective(o_.score(pair));
+      ++tuned_.evaluations;
+      if (o_.progress) o_.progress(std::min(1., 1. * tuned_.evaluations / o_.evaluations));
+    }
+    if (known->second < best_value_) best_value_ = known->second, best_ = x;
+    return known->second;
+  }
+
+  // until so many evaluations have been made in all
+  void search(nlopt::algorithm algorithm, int until) {
+    if (tuned_.evaluations >= until) return;
+    nlopt::opt search(algorithm, static_cast<unsigned>(o_.keys.size()));
+    search.set_lower_bounds(low_);
+    search.set_upper_bounds(high_);
+    Place step;
+    for (std::size_t i = 0; i < low_.size(); ++i) step.push_back((high_[i] - low_[i]) / 10);
+    search.set_initial_step(step);
+    search.set_xtol_abs(3e-3);  // 0.3 % of a number
+    search.set_maxeval(4 * o_.evaluations);
+    using Function = std::function<double(const Place&)>;
+    Function f = [&, until](const Place& x) {
+      const double value = evaluate(x);
+      if (tuned_.evaluations >= until) search.force_stop();
+      return value;
+    };
+    search.set_min_objective([](const Place& x, Place&,
+                                void* function) { return (*static_cast<Function*>(function))(x); },
+                             &f);
+    Place x = best_;
+    double value = 0;
+    try {
+      search.optimize(x, value);
+    } catch (const nlopt::forced_stop&) {       // the budget is used up
+    } catch (const nlopt::roundoff_limited&) {  // nothing more can be won
+    }
+  }
+
+  const TuneOptions& o_;
+  Place low_, high_, first_, best_;
+  double best_value_ = std::numeric_limits<double>::infinity();
+  std::map<std::string, double> known_;
+  Tuned tuned_;
+};
+
+const FieldHelp* find(const std::vector<FieldHelp>& fields, const std::string& key) {
+  const auto it =
+      std::find_if(fields.begin(), fields.end(), [&](const FieldHelp& f) { return f.key == key; });
+  return it == fields.end() ? nullptr : &*it;
+}
+
+// a number, or nothing
+std::optional<double> number_in(const std::string& text) {
+  try {
+    std::size_t end = 0;
+    const double x = std::stod(text, &end);
+    if (end == text.size() && std::isfinite(x)) return x;
+  } catch (const std::exception&) {  // no number
+  }
+  return std::nullopt;
+}
+
+std::vector<double> numbers_in(std::string text) {
+  std::vector<double> all;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('/', at), text.size());
+    const auto x = number_in(text.substr(at, end - at));
+    if (!x) return {};
+    all.push_back(*x);
+    at = end + 1;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const TunedPair& pair,
+                              const std::vector<FieldHelp>& of_estimator,
+                              const std::vector<FieldHelp>& of_detector) {
+  std::vector<TunedKey> keys;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('='),
+                      colon = text.find(':', std::min(equals, text.size()));
+    TunedKey k;
+    k.key = text.substr(0, equals);
+    const FieldHelp* const e = find(of_estimator, k.key);
+    const FieldHelp* const d = pair.detector.empty() ? nullptr : find(of_detector, k.key);
+    if ((e == nullptr) == (d == nullptr))
+      throw std::invalid_argument(
+          fmt::format("--tune {}: {}; {}: {}{}", text,
+                      e == nullptr ? "nobody has that key" : "both have that key", pair.estimator,
+                      describe_fields(of_estimator),
+                      pair.detector.empty()
+                          ? ""
+                          : fmt::format("; {}: {}", pair.detector, describe_fields(of_detector))));
+    k.of_detector = d != nullptr;
+    const FieldHelp& field = d != nullptr ? *d : *e;
+    const auto set = key_of(d != nullptr ? pair.detector : pair.estimator, k.key);
+    k.start = numbers_in(set.value_or(field.value));
+    if (equals != text.npos) {
+      const auto low = number_in(text.substr(equals + 1, colon - equals - 1)),
+                 high = colon == text.npos ? std::nullopt : number_in(text.substr(colon + 1));
+      if (!low || !high || !(0 < *low && *low < *high))
+        throw std::invalid_argument(
+            fmt::format("--tune {}: KEY=LOW:HIGH, with 0 < LOW < HIGH", text));
+      k.low = *low, k.high = *high;
+      if (k.start.empty()) k.start = {std::sqrt(k.low * k.high)};
+    }
+    if (k.start.empty() || !(largest(k.start) > 0))
+      throw std::invalid_argument(fmt::format(
+          "--tune {}: no number above 0 to begin with; {}={} says where it lies, or set it in the "
+          "specification",
+          text, k.key, "LOW:HIGH"));
+    if (k.high == 0) k.low = largest(k.start) / 30, k.high = largest(k.start) * 30;
+    keys.push_back(std::move(k));
+  }
+  return keys;
+}
+
+TunedPair without(const TunedPair& pair, const std::vector<TunedKey>& keys) {
+  const auto stripped = [&](const std::string& text, bool of_detector) {
+    if (text.empty()) return text;
+    const Specification s = parse_specification(text);
+    std::string out = s.name;
+    for (const auto& [key, value] : s.keys) {
+      const bool tuned = std::any_of(keys.begin(), keys.end(), [&](const TunedKey& k) {
+        return k.key == key && k.of_detector == of_detector;
+      });
+      if (!tuned) out += ":" + key + "=" + value;
+    }
+    return out;
+  };
+  return {stripped(pair.estimator, false), stripped(pair.detector, true)};
+}
+
+Tuned tune(const TuneOptions& o) {
+  if (o.keys.empty()) throw std::invalid_argument("nothing to tune");
+  return Search(o).run();
+}
+
+}  // namespace tauext
