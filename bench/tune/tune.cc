@@ -250,11 +250,11 @@ TunedPair without(const TunedPair& pair, const std::vector<TunedKey>& keys) {
     if (text.empty()) return text;
     const Specification s = parse_specification(text);
     std::string out = s.name;
-    for (const auto& [key, value] : s.keys) {
+    for (const KeyValues::value_type& set : s.keys) {
       const bool tuned = std::any_of(keys.begin(), keys.end(), [&](const TunedKey& k) {
-        return k.key == key && k.of_detector == of_detector;
+        return k.key == set.first && k.of_detector == of_detector;
       });
-      if (!tuned) out += ":" + key + "=" + value;
+      if (!tuned) out += ":" + set.first + "=" + set.second;
     }
     return out;
   };
