@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "bench/study/detection_study.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/table_writer.h"
 
@@ -58,8 +60,12 @@ Thresholds calibrated(const Flags& f) {
 // from recordings without contact; says whether these thresholds would have held
 Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   if (f.study.robot.empty())
-    throw std::invalid_argument("recordings: of which --robot NAME or FILE?");
+    throw std::invalid_argument("calibrating from recordings needs --robot NAME or FILE");
   const Robot& r = robot(f.study.robot);
+  std::vector<std::string> files;
+  for (const std::string& path : f.logs)
+    files.push_back(std::filesystem::weakly_canonical(path).string());
+  refuse_twice("recording", files);
   std::vector<study::FreeRecording> recordings;
   for (const std::string& path : f.logs) {
     RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
@@ -84,7 +90,10 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   if (held_out.empty()) {
     fmt::print(to, "With one recording nobody can say whether these thresholds hold on another.\n");
   } else {
-    fmt::print(to, "\n{}alarms: recordings in which the thresholds of all others would mark.\n",
+    fmt::print(to,
+               "\n{}alarms: recordings in which the thresholds of all others would mark (the "
+               "metric by which "
+               "`clamping` weighs the joints has seen all of them).\n",
                table.format());
   }
   return thresholds;
@@ -102,6 +111,9 @@ void require_writable(const std::string& path) {
 }
 
 int run_calibration(const Flags& f) {
+  if (f.calibrate_to != "-" && !f.calibrate_to.ends_with(".json"))
+    throw std::invalid_argument(fmt::format(
+        "--calibrate {}: the name of a file of thresholds ends in .json", f.calibrate_to));
   require_writable(f.calibrate_to);
   bool usable = true;
   write_thresholds(f.logs.empty() ? calibrated(f) : calibrated_on_logs(f, usable), f.calibrate_to);

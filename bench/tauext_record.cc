@@ -116,13 +116,17 @@ int record_set(const Flags& f) {
   condition.degradation = {f.sensors, f.model_error};
   const study::PlantKey plant = study::plant_of(condition);
   const Model model = runs.model(plant);
-  std::filesystem::create_directories(f.out);
-  Progress progress("recording");
-  const auto record = [&](int i) {
-    const std::uint64_t seed = seeds[static_cast<std::size_t>(i)];
+  for (const std::uint64_t seed : seeds) {
     if (seed >= study::kTrainingSeed)
       throw std::invalid_argument(
           fmt::format("--seeds: {} is not below {}", seed, study::kTrainingSeed));
+  }
+  std::error_code error;
+  std::filesystem::create_directories(f.out, error);
+  if (error) throw std::runtime_error(fmt::format("{}: cannot create: {}", f.out, error.message()));
+  Progress progress("recording");
+  const auto record = [&](int i) {
+    const std::uint64_t seed = seeds[static_cast<std::size_t>(i)];
     for (const auto& [name, kind] : kKinds) {
       const study::Job job{plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)};
       const Trace trace = study::measured(study::simulated(runs, job, model), f.sensors, job);
@@ -152,9 +156,13 @@ int run(const CLI::App& app, const Flags& f) {
   if (message_type(f.type) != MessageType::kTauext && !is_lcm_log(f.out)) {
     throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", f.type, f.out));
   }
+  const bool bag = f.layout == "joint_state";
+  if (!f.layout.empty() && f.out != "-" && f.out.ends_with(".db3") != bag)
+    throw std::invalid_argument(fmt::format(
+        "--layout {}: --out {}: a bag's name ends in .db3, and no other's", f.layout, f.out));
   if (!f.layout.empty() && (is_lcm_log(f.out) || f.out.ends_with(".npz")))
     throw std::invalid_argument(
-        fmt::format("--layout {}: --out {} is of another kind", f.layout, f.out));
+        fmt::format("--layout {} writes text or a bag, and --out is {}", f.layout, f.out));
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   const Scenario& s = scenario_of(r, f.scenario);

@@ -124,7 +124,7 @@ void add_flags(CLI::App& app, Flags& f) {
 // checks them, too, and puts --torque into them
 std::vector<DetectorSettings> settings_of(Flags& f, const Robot& r) {
   if (!f.thresholds.empty() && f.detector.empty())
-    throw std::invalid_argument("--thresholds: of which --detector?");
+    throw std::invalid_argument("--thresholds needs a --detector");
   const Thresholds trained = f.thresholds.empty() ? Thresholds() : read_thresholds(f.thresholds);
   std::vector<DetectorSettings> settings;  // of each estimator
   for (std::string& e : f.estimators) {

@@ -17,6 +17,7 @@
 #include "bench/score/suite.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 
 namespace {
 
@@ -35,7 +36,7 @@ struct Flags {
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("estimates", f.files, "files: CSV, .npy or .npz; or --estimator alone");
   app.add_option("--log", f.logs,
-                 "log that they are of; several: ours alone (--columns: tauext-replay)")
+                 "their log; with --estimator alone several (--columns: tauext-replay)")
       ->allow_extra_args(false)
       ->type_name("LOG");
   app.add_option("--channel", f.channel)->group("");
@@ -78,6 +79,11 @@ void add_ours(const Flags& f, const std::vector<OutsideRun>& runs, std::vector<R
   if (f.ours.empty()) return;
   const Robot& r = *runs.front().robot;
   const Thresholds trained = f.thresholds.empty() ? Thresholds() : read_thresholds(f.thresholds);
+  for (const std::string& log : f.logs) {
+    if (trained.trained_on.find(std::filesystem::path(log).filename().string()) !=
+        std::string::npos)
+      say(log + ": the thresholds were trained on it, so it has no false alarms by itself");
+  }
   for (const std::string& e : f.ours) {
     const DetectorSettings settings{trained_for(trained, r.name(), 0, e, f.detector)};
     std::vector<OutsideEstimates> all;
@@ -101,7 +107,7 @@ void require_flags(const CLI::App& app, const Flags& f) {
         fmt::format("{}: a file of estimates goes with one --log", f.files.front()));
   require_mode(app, !f.ours.empty(), "--estimator", {"--detector", "--thresholds"});
   if (!f.thresholds.empty() && f.detector.empty())
-    throw std::invalid_argument("--thresholds: of which --detector?");
+    throw std::invalid_argument("--thresholds needs a --detector");
   refuse_twice("estimator", f.ours);
   refuse_twice("log", f.logs);
 }
@@ -124,6 +130,9 @@ Recorded recorded(const Flags& f) {
     all.runs.push_back(
         {nullptr, r->label() + "/" + s.name, r, &s, std::max(s.score_from, f.score_from)});
   }
+  if (!f.scenario.empty() && !(f.score_from < all.logs[0].trace.t.back()))
+    throw std::invalid_argument(fmt::format("--score_from {}: {} ends at {} s", f.score_from,
+                                            f.scenario, all.logs[0].trace.t.back()));
   const std::string group = f.logs.size() == 1 ? std::filesystem::path(f.logs[0]).stem().string()
                                                : fmt::format("{}_logs", f.logs.size());
   for (const std::string& path : f.logs) {
@@ -133,8 +142,15 @@ Recorded recorded(const Flags& f) {
     if (r != nullptr && r->dof() != log.trace.dof())
       throw std::invalid_argument(fmt::format("{}: {} has {} joints, the samples have {}", path,
                                               r->name(), r->dof(), log.trace.dof()));
+    if (log.trace.size() < 3)
+      throw std::invalid_argument(
+          fmt::format("{}: {} samples say nothing", path, log.trace.size()));
+    if (!(f.score_from < log.trace.t.back()))
+      throw std::invalid_argument(
+          fmt::format("--score_from {}: {} ends at {} s", f.score_from, path, log.trace.t.back()));
+    if (r != nullptr) take_sensor(*r, log.trace);
     all.usable = all.usable && log.usable();
-    all.runs.push_back({nullptr, group, r, nullptr, f.score_from});
+    all.runs.push_back({nullptr, group, r, nullptr, f.score_from, path});
   }
   for (std::size_t i = 0; i < all.runs.size(); ++i) all.runs[i].trace = &all.logs[i].trace;
   return all;

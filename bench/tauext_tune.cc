@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,19 +49,19 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--detector", f.pair.detector, "behind it, like high_pass")->type_name("SPEC");
   list("--tune", f.keys, "of either, KEY or KEY=LOW:HIGH (tauext-replay --list shows them)")
       ->type_name("KEY,..");
-  app.add_option("--minimize", f.minimize, "a metric; else rmse_Nm, or of a detector delay_s")
+  app.add_option("--minimize", f.minimize, "a metric; unless said rmse_Nm, with a detector delay_s")
       ->type_name("METRIC");
-  list("--limit", f.limits, "that must hold in every run, like noise_Nm=1")
+  list("--limit", f.limits, "that the mean over seeds must keep in each scenario, like noise_Nm=1")
       ->type_name("METRIC=X,..");
   list("--scenario", f.scenario,
        "on these; else step,sine,in_motion, or a detector's blows, pushes")
       ->type_name("NAME,..");
   app.add_option("--scenarios", f.scenarios)->group("");
   app.add_option("--seeds", f.seeds, "of the sensors, to tune on")->type_name("1-3");
-  app.add_option("--test_seeds", f.test_seeds, "to tell what it is worth")->type_name("101-110");
-  list("--log", f.logs, "instead: labelled recordings to tune on (--columns: tauext-replay)")
+  app.add_option("--test_seeds", f.test_seeds, "to test on")->type_name("101-110");
+  list("--log", f.logs, "labelled recordings to tune on instead (--columns: tauext-replay)")
       ->type_name("LOG");
-  list("--test_log", f.test_logs, "and to tell what it is worth")->type_name("LOG");
+  list("--test_log", f.test_logs, "labelled recordings to test on")->type_name("LOG");
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--evaluations", f.evaluations, "that may be made")
@@ -179,14 +180,16 @@ void require_flags(const Flags& f) {
     throw std::invalid_argument(
         "--log and --test_log go together: no recording says what tuning on itself is worth");
   for (const std::string& log : f.logs) {
-    if (std::count(f.test_logs.begin(), f.test_logs.end(), log) > 0)
-      throw std::invalid_argument(log + ": --test_log cannot be what was tuned on");
+    for (const std::string& test : f.test_logs) {
+      if (std::filesystem::weakly_canonical(log) == std::filesystem::weakly_canonical(test))
+        throw std::invalid_argument(test + ": --test_log cannot be what was tuned on");
+    }
   }
   if (!f.logs.empty()) return;
   for (const std::uint64_t seed : seeds_of(f.seeds)) {
     const std::vector<std::uint64_t> test = seeds_of(f.test_seeds);
     if (std::count(test.begin(), test.end(), seed) > 0)
-      throw std::invalid_argument(fmt::format("seed {} is of --seeds and of --test_seeds", seed));
+      throw std::invalid_argument(fmt::format("seed {} is in both --seeds and --test_seeds", seed));
   }
 }
 
@@ -209,6 +212,11 @@ int run(const CLI::App& app, Flags& f) {
     f.minimize = key_of(f.pair.detector.empty() ? Metric::kRmse : Metric::kDelay);
   o.minimize = metric_of(f.minimize);
   o.limits = limits_of(f.limits);
+  if (o.minimize == Metric::kDelay && o.limits.empty()) {
+    // else the lowest threshold is the quickest, and a missed collision is never late
+    o.limits = {{Metric::kFalseAlarms, 0}, {Metric::kRecall, 1}};
+    say("no --limit is given: false_alarms=0,recall=1 is taken");
+  }
   o.evaluations = f.evaluations;
   Progress progress("tuning");
   o.progress = progress.callback();

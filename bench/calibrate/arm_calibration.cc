@@ -202,6 +202,19 @@ CalibratedJoint calibrated(const Rows& r, const std::vector<std::string>& names,
   } else if (seen) {
     find_scale(r, names, joint);
   }
+  constexpr double kSurely = 5;  // standard errors
+  for (const CalibratedTerm& t : joint.terms) {
+    if (t.name == "coulomb" && t.value < -kSurely * t.error)
+      throw std::invalid_argument(fmt::format(
+          "its dry friction came out as {:.3g} +- {:.2g} N m, which no joint has: is the "
+          "sign of its torque or current right? `sign` in the map of columns turns it",
+          t.value, t.error));
+  }
+  if (joint.scale < -kSurely * joint.scale_error)
+    throw std::invalid_argument(
+        fmt::format("its torque fits its masses by a factor of {:.3g}: the sign is wrong, which "
+                    "`sign` in the map of columns turns",
+                    joint.scale));
   joint.before = rms(a.gain * r.measured - r.rigid);
   joint.after = rms(left_over(r, a));
   if (joint.after > joint.torque)

@@ -88,6 +88,13 @@ std::string fit_report(const std::vector<CalibratedJoint>& joints) {
   sentences +=
       currents ? "gains, friction and every estimate" : "torque's scale above and every estimate";
   sentences += ", by the same; a known payload shows it (--weigh).\n";
+  const bool all_unseen = std::all_of(joints.begin(), joints.end(), [](const CalibratedJoint& j) {
+    return j.gain == 0 && j.scale == 0;
+  });
+  if (all_unseen && !joints.empty())
+    sentences +=
+        "The masses take next to nothing of any joint's torque: are torques in N m, and currents "
+        "in A?\n";
   if (unseen)
     sentences += fmt::format(
         "Where the masses take less than {:g} of the torque, its scale is unseen.\n", kSeen);

@@ -19,7 +19,7 @@ RIDGE = 1e-5
 
 
 def low_pass(x, h):
-    """Two poles at BANDWIDTH; also its derivative."""
+    """Of x (samples, n), h [s] apart: the signal behind two poles at BANDWIDTH, and its derivative."""
     y, v = x[0].copy(), np.zeros_like(x[0])
     out, rate = np.empty_like(x), np.empty_like(x)
     for k, u in enumerate(x):
@@ -30,7 +30,7 @@ def low_pass(x, h):
 
 
 def features(run):
-    """What the torque of a motion depends on, and that torque, both filtered."""
+    """Of a run: what the torque of a motion depends on (samples, features), and that torque (samples, n) [N m], filtered."""
     h = np.median(np.diff(run["t"]))
     torque = run["tau"] if "tau" in run else run["tau_instant"]
     q, _ = low_pass(run["q"], h)
@@ -44,6 +44,7 @@ def features(run):
 
 
 def network(w, x):
+    """Of x (samples, features): the hidden layer, and torques (samples, n), all scaled."""
     hidden = np.tanh(x @ w["a"] + w["b"])
     return hidden, hidden @ w["c"] + x @ w["d"] + w["e"]
 

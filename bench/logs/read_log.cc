@@ -48,7 +48,7 @@ void doubt_units(const Trace& log, const std::string& path) {
                              kRemedy));
   }
   if (log.size() > 2 && log.t.back() - log.t.front() > kLongestGap * log.size())
-    say(fmt::format("{}: {:.3g} lie between two samples on average: {}", path,
+    say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
                     (log.t.back() - log.t.front()) / (log.size() - 1), kRemedy));
 }
 

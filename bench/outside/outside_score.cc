@@ -18,7 +18,8 @@ namespace {
 // the first log that fails, and why
 std::string failure(const std::vector<OutsideRun>& runs, const std::vector<OutsideEstimates>& all) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (std::string why = bad_status(*runs[i].trace, all[i].output); !why.empty()) return why;
+    const std::string why = bad_status(*runs[i].trace, all[i].output);
+    if (!why.empty()) return runs.size() == 1 ? why : runs[i].log + ": " + why;
   }
   return "";
 }
@@ -49,6 +50,14 @@ std::pair<Trace, Output> joined(const std::vector<LogRun>& logs) {
 }
 
 }  // namespace
+
+void take_sensor(const Robot& robot, Trace& trace) {
+  if (trace.force.cols() == 0 || trace.tau_ext_of_driver.cols() > 0) return;
+  const auto arm = robot.forces_at(kEndEffector, false);
+  trace.tau_ext_of_driver.resize(trace.dof(), trace.size());
+  for (int k = 0; k < trace.size(); ++k)
+    trace.tau_ext_of_driver.col(k) = arm->torque(trace.q.col(k), trace.force.col(k));
+}
 
 Row score_outside(const OutsideRun& run, const OutsideEstimates& e) {
   Row row = score_outside(std::vector{run}, std::vector{e});
@@ -81,6 +90,7 @@ Row score_outside(const std::vector<OutsideRun>& runs,
   if (truth) {
     const auto [trace, out] = joined(logs);
     add_error_metrics(trace, out, trace.t.empty() ? 0 : trace.t.front(), score);
+    if (runs.size() > 1) score.unset(Metric::kMaxAt);  // a time of no log
   } else {
     add_floor_metrics(logs, score);
   }

@@ -18,7 +18,12 @@ struct OutsideRun {
   const Robot* robot = nullptr;        ///< nullptr if nobody knows it
   const Scenario* scenario = nullptr;  ///< what the run is made of, likewise
   double score_from = 0;               ///< [s] errors count from this time on
+  std::string log;                     ///< its name, for errors of one of several
 };
+
+/// Puts what a force sensor saw in the place of the maker's estimate, if the trace has a force and
+/// none of that: as the torques with the sign of (3) that such a force at the end effector takes.
+void take_sensor(const Robot& robot, Trace& trace);
 
 /// Their scores: errors where the truth is known, marks where contacts are, and with a scenario
 /// what that asks for. No time, no noise and no allocations.

@@ -85,6 +85,14 @@ void write_arrays(const Trace& trace, const std::vector<Replayed>& all, const st
   write_npz(path, arrays);
 }
 
+// with Wilson's interval
+std::string shown_recall(const Score& s) {
+  const double recall = *s.get(Metric::kRecall);
+  const metrics::Interval i =
+      metrics::share_interval(static_cast<int>(std::lround(recall * s.collisions)), s.collisions);
+  return fmt::format("{:.3g} ({:.2f} to {:.2f} with 95 %)", recall, i.low, i.high);
+}
+
 // what a detector was worth; nothing where the log does not say what happened
 std::string verdict(const Score& s) {
   const auto alarms = s.get(Metric::kFalseAlarms);
@@ -94,7 +102,7 @@ std::string verdict(const Score& s) {
                      !delay               ? "no collision in the log"
                      : std::isnan(*delay) ? "no collision detected"
                                           : fmt::format("recall {}, largest delay {:.3f} s",
-                                                        *s.get(Metric::kRecall), *delay));
+                                                        shown_recall(s), *delay));
 }
 
 }  // namespace

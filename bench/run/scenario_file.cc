@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -92,7 +93,7 @@ std::vector<Wave> sines_of(const Object& o, int dof) {
 
 // constant ones are cosines of no frequency
 std::vector<Load> loads_of(const Object& o, int dof, double duration) {
-  constexpr double kHalfPi = 1.57079632679489662;
+  constexpr double kHalfPi = std::numbers::pi / 2;
   constexpr double kShortestSweep = 30;  // [s] for a bandwidth from 0.7 rad/s on
   std::vector<Load> all;
   o.each("loads", [&](const Json& j, const std::string& where) {
@@ -116,6 +117,16 @@ std::vector<Load> loads_of(const Object& o, int dof, double duration) {
   return all;
 }
 
+// what a word stands for
+template <class Choices>
+auto choice(const Object& o, const char* key, const std::string& word, const Choices& all) {
+  try {
+    return find_known(all, key, word, [](const auto& c) { return std::string(c.first); }).second;
+  } catch (const std::invalid_argument& e) {
+    fail("{}: {}", o.where(), e.what());
+  }
+}
+
 std::vector<Touch> touches_of(const Object& o, double duration) {
   constexpr std::pair<const char*, TouchKind> kKinds[] = {
       {"blow", TouchKind::kBlow}, {"push", TouchKind::kSlowPush}, {"clamp", TouchKind::kClamp}};
@@ -124,9 +135,7 @@ std::vector<Touch> touches_of(const Object& o, double duration) {
     const Object touch(j, where, {"kind", "t", "rise", "hold", "fall", "force"});
     const std::string kind = touch.text("kind", "blow");
     Touch t;
-    t.kind = find_known(kKinds, where + ": \"kind\"", kind, [](const auto& k) {
-               return std::string(k.first);
-             }).second;
+    t.kind = choice(touch, "kind", kind, kKinds);
     t.begin = touch.number("t", 0, duration);
     t.rise = touch.number("rise", 1e-3, 1e3);
     if (t.begin + t.rise > duration)
@@ -147,9 +156,7 @@ Response response_of(const Object& o) {
                                                        {"lag", Response::kLag},
                                                        {"detection", Response::kDetection},
                                                        {"bandwidth", Response::kBandwidth}};
-  return find_known(kAll, o.where() + ": \"asks\"", o.text("asks", "error"),
-                    [](const auto& r) { return std::string(r.first); })
-      .second;
+  return choice(o, "asks", o.text("asks", "error"), kAll);
 }
 
 // there must be something to answer
@@ -167,6 +174,13 @@ void check_question(const Object& o, Response asked, const std::vector<Load>& lo
   if (of_load && loads.empty() && touches.empty())
     fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", o.where(),
          o.text("asks", ""));
+  const auto changes = [&](const Load& l) {
+    return l.from > 0 || l.to < o.number("duration", 0, Object::kMost) || l.sweep ||
+           (asked == Response::kLag && l.wave.w > 0);
+  };
+  if (of_load && touches.empty() && !std::any_of(loads.begin(), loads.end(), changes))
+    fail("{}: \"asks\" is '{}', and no load {}", o.where(), o.text("asks", ""),
+         asked == Response::kLag ? "changes" : "begins or ends within the scenario");
   if (asked == Response::kDetection && touches.empty())
     fail("{}: \"asks\" is 'detection', and there are no \"touches\"", o.where());
 }
@@ -181,7 +195,7 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     fail("{}: \"name\" is '{}', and must be a word without / + @", where, s.name);
   s.description = of.text("description", "of a file");
   s.duration = of.number("duration", 0.1, 3600);
-  s.score_from = of.number_or("score_from", 0, 0, s.duration);
+  s.score_from = of.number_or("score_from", 0, 0, s.duration - 0.01);
   s.response = response_of(of);
   s.reaches_limits = of.flag("reaches_limits");
   s.start_on_reference = true;

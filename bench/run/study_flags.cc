@@ -80,6 +80,12 @@ std::vector<Entry> chosen_entries(const StudyFlags& f) {
 
 std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
   SeedOptions o{.suite = suite, .entries = chosen_entries(f), .seeds = f.seeds};
+  const bool there = std::any_of(o.entries.begin(), o.entries.end(), [&](const Entry& e) {
+    return e.estimator() == f.against || e.estimator() + "+" + e.detector() == f.against;
+  });
+  if (!there && f.against != StudyFlags().against)
+    throw std::invalid_argument(
+        fmt::format("--against {}: no entry that runs is called so", f.against));
   if (o.suite.sensors.ideal()) o.suite.sensors = golden_sensors();
   Progress progress("scoring");
   o.progress = progress.callback();
@@ -105,7 +111,7 @@ void add_seeds(const std::string& part, std::vector<std::uint64_t>& to) {
   if (until < from || until - from >= kMost || to.size() + (until - from) >= kMost)
     throw std::invalid_argument(
         fmt::format("--seeds: '{}' is not a range of at most {} seeds", part, kMost));
-  for (std::uint64_t seed = from; seed <= until; ++seed) to.push_back(seed);
+  for (std::uint64_t n = 0; n <= until - from; ++n) to.push_back(from + n);
 }
 
 }  // namespace

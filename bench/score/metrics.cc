@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace tauext {
@@ -47,15 +45,18 @@ double mismatch(const Signal& truth, const Signal& estimate, Eigen::Index first,
 }  // namespace
 
 double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  return std::sqrt(error(t, truth, estimate, from).array().square().mean());
+  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
+  return e.size() == 0 ? kNoValue : std::sqrt(e.array().square().mean());
 }
 
 double bias(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  return error(t, truth, estimate, from).mean();
+  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
+  return e.size() == 0 ? kNoValue : e.mean();
 }
 
 double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  return error(t, truth, estimate, from).cwiseAbs().maxCoeff();
+  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
+  return e.size() == 0 ? kNoValue : e.cwiseAbs().maxCoeff();
 }
 
 double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
@@ -86,7 +87,7 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
   Eigen::Index end = k + 1;  // of level b
   while (end < n && std::abs(truth[end] - truth[end - 1]) < std::abs(step) / 2) ++end;
 
-  StepResponse r;
+  StepResponse r{};
   const double at_10 = crossing(t, estimate.head(end), k, a + 0.1 * step, step > 0);
   const double at_90 = crossing(t, estimate.head(end), k, a + 0.9 * step, step > 0);
   r.rise = at_90 - at_10;
@@ -96,12 +97,10 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
   const double band = 0.02 * std::abs(step);
   Eigen::Index last_outside = end - 1;
   while (last_outside >= k && std::abs(estimate[last_outside] - b) <= band) --last_outside;
+  const double edge = last_outside < k || estimate[last_outside] < b ? b - band : b + band;
   if (last_outside == end - 1) {
     r.settling = kNoValue;
-  } else if (last_outside < k) {
-    r.settling = 0;
-  } else {
-    const double edge = estimate[last_outside] > b ? b + band : b - band;
+  } else if (last_outside >= k) {  // else from the beginning on
     r.settling = crossing(t, estimate, last_outside, edge, estimate[last_outside] < b) - t[k];
   }
   return r;
@@ -117,43 +116,27 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
   const auto longest = static_cast<Eigen::Index>(kLongest / Ts);
   if (first >= truth.size() || longest > first) return kNoValue;
 
-  const auto best = [&](Eigen::Index from_shift, Eigen::Index to_shift, Eigen::Index step) {
-    Eigen::Index at = from_shift;
-    double least = std::numeric_limits<double>::infinity();
-    for (Eigen::Index s = from_shift; s <= to_shift; s += step) {
-      const double m = mismatch(truth, estimate, first, s, step);
-      if (m < least) least = m, at = s;
-    }
-    return at;
+  const auto left_at = [&](Eigen::Index shift, Eigen::Index stride) {
+    return mismatch(truth, estimate, first, shift, stride);
   };
-  const Eigen::Index coarse = best(0, longest, kCoarse);
-  const Eigen::Index fine =
-      best(std::max<Eigen::Index>(0, coarse - kCoarse), std::min(longest, coarse + kCoarse), 1);
+  std::vector<double> coarse;
+  for (Eigen::Index s = 0; s <= longest; s += kCoarse) coarse.push_back(left_at(s, kCoarse));
+  // what repeats fits again a period later: of all minima the first that is nearly as good as any
+  std::vector<std::pair<double, Eigen::Index>> minima;
+  const auto n = static_cast<Eigen::Index>(coarse.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if ((i > 0 && coarse[i] > coarse[i - 1]) || (i + 1 < n && coarse[i] > coarse[i + 1])) continue;
+    minima.emplace_back(std::numeric_limits<double>::infinity(), 0);
+    for (Eigen::Index s = std::max<Eigen::Index>(0, (i - 1) * kCoarse);
+         s <= std::min(longest, (i + 1) * kCoarse); ++s)
+      minima.back() = std::min(minima.back(), {left_at(s, 1), s});
+  }
+  const double good = 1.2 * std::min_element(minima.begin(), minima.end())->first;
+  const Eigen::Index fine = std::find_if(minima.begin(), minima.end(), [&](const auto& m) {
+                              return m.first <= good;
+                            })->second;
   return fine == longest ? kNoValue : static_cast<double>(fine) * Ts;
 }
-
-namespace {
-
-// the spectrum at w [rad/s], which turns by `turn` from sample to sample
-std::complex<double> spectrum(const Signal& x, double w, double h) {
-  const std::complex<double> turn = std::polar(1., -w * h);
-  std::complex<double> sum = 0, phase = 1;
-  for (int k = 0; k < x.size(); ++k) {
-    sum += x[k] * phase;
-    phase *= turn;
-    if (k % 1024 == 0) phase = std::polar(1., -w * h * (k + 1));  // round-off does not pile up
-  }
-  return sum * h;
-}
-
-bool evenly_spaced(const Times& t, double h) {
-  for (std::size_t k = 1; k < t.size(); ++k) {
-    if (std::abs(t[k] - t[k - 1] - h) > 0.01 * h) return false;
-  }
-  return true;
-}
-
-}  // namespace
 
 double force_rmse(const ArmForces& arm, const Trace& trace, const Eigen::MatrixXd& estimate,
                   double from) {
@@ -168,40 +151,6 @@ double force_rmse(const ArmForces& arm, const Trace& trace, const Eigen::MatrixX
     ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : kNoValue;
-}
-
-double bandwidth(const Times& t, const Signal& truth, const Signal& estimate) {
-  const double h = t.size() < 2 ? 0 : (t.back() - t.front()) / static_cast<double>(t.size() - 1);
-  if (!(h > 0) || !evenly_spaced(t, h)) return kNoValue;
-  constexpr double kLeast = 0.7, kMost = 280;  // [rad/s]
-  constexpr double kStep = 1.1;                // from one frequency to the next
-  constexpr int kLines = 5;                    // of a band
-  // a sweep has far more than this everywhere; a step at 280 rad/s, some hundred times as much
-  const double duration = t.back() - t.front();
-  const double least_power = 1e-9 * truth.squaredNorm() * h * duration;
-  double w_before = kLeast, gain_before = 1;
-  for (double w = kLeast; w <= kMost; w *= kStep) {
-    std::complex<double> cross = 0;
-    double power = 0;
-    for (int i = 0; i < kLines; ++i) {
-      const double line = w * std::pow(kStep, (i - (kLines - 1) / 2.) / kLines);
-      const std::complex<double> x = spectrum(truth, line, h);
-      cross += spectrum(estimate, line, h) * std::conj(x);
-      power += std::norm(x);
-    }
-    if (!(power > least_power)) return kNoValue;
-    const double gain = std::abs(cross) / power;
-    if (gain < std::numbers::sqrt2 / 2 && w == kLeast) return kNoValue;
-    if (gain < std::numbers::sqrt2 / 2) {
-      // on a straight line in the logarithms
-      const double share =
-          std::log(gain_before * std::numbers::sqrt2) / std::log(gain_before / gain);
-      return w_before * std::pow(w / w_before, share);
-    }
-    w_before = w;
-    gain_before = gain;
-  }
-  return kNoValue;
 }
 
 }  // namespace metrics

@@ -6,9 +6,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "bench/roster/stages.h"
+#include "bench/score/bandwidth.h"
 #include "bench/score/score.h"
 #include "mjcf/arm_forces.h"
 #include "mjcf/scenarios/scenario.h"
@@ -16,10 +16,6 @@
 
 namespace tauext {
 namespace metrics {
-
-/// A row of a matrix: a value for each sample.
-using Signal = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
-using Times = std::vector<double>;  ///< [s], increasing
 
 /// [N m] root of the mean squared error over samples with t >= from.
 double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from);
@@ -54,7 +50,7 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 
 /// [s] the delay L, at sample resolution and up to 2 s, for which truth(t - L) is closest to
 /// estimate(t) in the mean square over t >= from + 2 s. NaN for a constant truth or estimate, for a
-/// shorter run, and if no delay below 2 s fits best.
+/// shorter run, and if no delay below 2 s fits best. Of a truth that repeats, the least such delay.
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
 /// [N] root of the mean squared error of the force at the end effector that estimates mean, over
@@ -62,13 +58,6 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
 /// the trace has no force.
 double force_rmse(const ArmForces& arm, const Trace& trace, const Eigen::MatrixXd& estimate,
                   double from);
-
-/// [rad/s] -3 dB: the frequency at which the estimate's answer to a swept sine first falls below
-/// 1/sqrt(2) of the truth, from 0.7 to 280 rad/s. The answer is the cross spectrum over the truth's
-/// own spectrum, each a mean over a band of 10 %. NaN if it does not fall or already has at 0.7
-/// rad/s, if the truth does not cover these frequencies, or if samples are not evenly spaced
-/// (within 1 %).
-double bandwidth(const Times& t, const Signal& truth, const Signal& estimate);
 
 }  // namespace metrics
 

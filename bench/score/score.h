@@ -44,6 +44,8 @@ class Score {
 
   void set(Metric m, double value) { values_[index(m)] = value; }  ///< NaN for "never"
 
+  void unset(Metric m) { values_[index(m)].reset(); }  ///< as if it did not exist for the run
+
   /// Sets the joints' values and that of the worst of them, if there is any.
   void set_joints(Metric m, Joints values);
 

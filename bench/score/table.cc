@@ -167,7 +167,7 @@ std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>
     });
   };
   if (lacks(true)) out += "never       It never came to that.\n";
-  if (lacks(false)) out += "-           The scenario does not ask for it.\n";
+  if (lacks(false)) out += "-           This run has no such value.\n";
   if (some([](const Row& r) { return r.score.counts.left_out() > 0; }))
     out +=
         "left out    Samples without an estimate, by reason and by the joint that was to blame; "

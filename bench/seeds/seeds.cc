@@ -66,8 +66,8 @@ std::vector<double> values_of(const std::vector<Score>& scores, Metric m, int& n
 }
 
 bool is_shown(const MetricRow& m, const std::vector<SeededRow>& rows) {
-  if (!m.is(MetricRow::kTable) || m.metric == Metric::kCpu || m.metric == Metric::kAllocs)
-    return false;
+  if (m.metric == Metric::kCpu || m.metric == Metric::kAllocs) return false;
+  if (!m.is(MetricRow::kTable) && m.metric != Metric::kRecall) return false;
   return std::any_of(rows.begin(), rows.end(), [&](const SeededRow& r) {
     const SeedFigure f = figure_of(r, m.metric);
     return f.values + f.never > 0;
@@ -79,7 +79,8 @@ std::string text_of(const SeedFigure& f, const MetricRow& m, bool signed_value) 
   if (f.values + f.never == 0) return "-";
   if (f.never > 0)
     return f.values == 0 ? "never" : fmt::format("never {}/{}", f.never, f.never + f.values);
-  if (m.metric == Metric::kFalseAlarms && !signed_value)  // Garwood's: more above than below
+  const bool lopsided = m.metric == Metric::kFalseAlarms || m.metric == Metric::kRecall;
+  if (lopsided && !signed_value)
     return fmt::format("{:.2f}[{:.2f},{:.2f}]", f.mean, f.interval.low, f.interval.high);
   const double half = (f.interval.high - f.interval.low) / 2;
   int digits = m.digits;
@@ -129,11 +130,12 @@ std::string for_programs(const std::vector<SeededRow>& rows, const std::string& 
                                         fmt::format("{}", f.never),
                                         fmt::format("{}", failed)};
       for (const double x : {f.mean, f.interval.low, f.interval.high})
-        cells.push_back(f.values > 0 ? number(x) : "");
+        cells.push_back(f.values > 0 && f.never == 0 ? number(x) : "");
       const SeedFigure d = rival == nullptr ? SeedFigure() : difference_of(r, *rival, m.metric);
-      cells.push_back(d.values > 0 ? rival->entry.name() : "");
+      const bool known = d.values > 0 && d.never == 0;
+      cells.push_back(known ? rival->entry.name() : "");
       for (const double x : {d.mean, d.interval.low, d.interval.high})
-        cells.push_back(d.values > 0 ? number(x) : "");
+        cells.push_back(known ? number(x) : "");
       table.add(std::move(cells));
     }
   }
@@ -282,12 +284,12 @@ std::string format_seeds(const std::vector<SeededRow>& rows, const std::string& 
   const std::string differences = for_people(rows, &against, format);
   if (!differences.empty()) out += "\n" + differences;
   if (format != TableFormat::kText) return out;
-  out += fmt::format(
-      "\nMeans over {} seeds +- half of their 95 % interval (Student's t; of recall Wilson's over "
-      "all\n"
-      "collisions, of false alarms Garwood's). Below, the mean of what an entry has more than {}\n"
-      "at the same seed; * where its interval is beside 0. never k/n: at k of n seeds.\n",
-      rows.empty() ? 0 : rows.front().scores.size(), against);
+  out += R"(
+Means over the seeds +- half of their 95 % interval (Student's t), or with its ends: of recall
+Wilson's over all collisions, of false alarms Garwood's. never k/n: at k of n seeds.
+)";
+  if (!differences.empty())
+    out += "Below them differences at the same seed; * where the interval of one is beside 0.\n";
   for (const MetricRow& m : kMetrics) {
     if (is_shown(m, rows)) out += fmt::format("{:<10}  {}\n", m.title, m.meaning);
   }

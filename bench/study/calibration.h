@@ -41,7 +41,7 @@ struct FreeRecording {
   Trace trace;       ///< what was recorded
 };
 
-/// Whether thresholds hold on what they have not seen.
+/// Whether thresholds hold on what they have not seen; a detector's metric has seen all.
 struct HeldOut {
   std::string estimator, detector;  ///< specifications
   int recordings = 0;               ///< that were held out, one by one

@@ -19,8 +19,9 @@ using metrics::quantile;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kDetectionLegend = R"(
-recall: share of the blows that were marked until {:g} s after their end. p50, p95: half, and 95 %
-of these marks come within this time from the blow's begin. stray: other marks in the same runs.
+recall: share of the blows that were marked until {:g} s after their end; with 95 % confidence it is
+`at least` that (Wilson). p50, p95: half, and 95 % of these marks come within this time from the
+blow's begin. stray: other marks in the same runs.
 alarms: marks in free motion and slow pushes, where nothing is hit; with 95 % confidence there are
 fewer of them per hour than `fewer than`. on: share of that time in which the detector is in
 alarm. called: marks there that are called a collision. brisk: share of the pushes of a third of
@@ -40,6 +41,7 @@ std::string per_hour(double alarms, const Cell& c) {
 std::vector<TableWriter::Column> detection_columns() {
   return {{"estimator+detector", "", true},
           {"recall", "%"},
+          {"at least", "%"},
           {"p50", "ms"},
           {"p95", "ms"},
           {"stray", "marks"},
@@ -56,6 +58,7 @@ std::vector<TableWriter::Column> detection_columns() {
 std::vector<std::string> cells_of(const Cell& c) {
   return {c.estimator + "+" + c.detector,
           percent(c.detected, c.blows),
+          percent(metrics::share_interval(c.detected, c.blows).low, c.blows == 0 ? 0 : 1),
           milliseconds(quantile(c.delays, 0.5)),
           milliseconds(quantile(c.delays, 0.95)),
           fmt::to_string(c.stray),
@@ -113,6 +116,11 @@ Json to_json(const Cell& c) {
   j["collisions"] = c.blows;
   j["detected"] = c.detected;
   j[key_of(Metric::kRecall)] = c.recall();
+  if (c.blows > 0) {
+    const metrics::Interval recall = metrics::share_interval(c.detected, c.blows);
+    j[key_of(Metric::kRecallLow)] = recall.low;
+    j[key_of(Metric::kRecallHigh)] = recall.high;
+  }
   j["delay_p50_s"] = number(quantile(c.delays, 0.5));
   j["delay_p95_s"] = number(quantile(c.delays, 0.95));
   j["stray_marks"] = c.stray;

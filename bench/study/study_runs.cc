@@ -38,10 +38,6 @@ Degradation dry_friction() {
   return d;
 }
 
-ModelError error_of(const PlantKey& p) {
-  return {.mass = p.mass, .friction = p.friction, .friction_share = p.friction_share};
-}
-
 StudyRuns runs_of_wallmobot3() {
   StudyRuns r{.robot = "wallmobot3", .carries = 150};
   r.conditions = {
@@ -60,9 +56,7 @@ StudyRuns runs_of_wallmobot3() {
   };
   // the paper's range, 0 to 150 kg, known and unknown
   r.training = {"known_0", "known_50", "known_150", "unknown_50", "unknown_150"};
-  r.model = [](const PlantKey& p) {
-    return with_errors(wallmobot3_with_panel(p.panel), error_of(p));
-  };
+  r.model = [](const PlantKey& p) { return with_errors(wallmobot3_with_panel(p.panel), p.error); };
   r.believer = wallmobot3_believing;
   r.touched = touched_wallmobot3;
   r.touches = touches_of_wallmobot3;
@@ -94,7 +88,7 @@ StudyRuns runs_of_any(const Robot& r) {
   if (!(scale.force > 0))
     throw std::invalid_argument(
         fmt::format("{}: no force on its end effector moves it: nothing to detect", r.name()));
-  runs.model = [&r](const PlantKey& p) { return r.load_for(quiet(), error_of(p)); };
+  runs.model = [&r](const PlantKey& p) { return r.load_for(quiet(), p.error); };
   runs.believer = [&r](double) { return std::shared_ptr<const Robot>(&r, [](const Robot*) {}); };
   runs.touched = [scale](TouchKind kind, std::uint64_t seed) {
     return touched_arm(scale, kind, seed);
@@ -154,8 +148,7 @@ std::vector<std::string> competitors(const Robot& r) {
 }  // namespace
 
 PlantKey plant_of(const Condition& c) {
-  const ModelError& e = c.degradation.model_error;
-  return {c.panel, e.mass, e.friction, e.friction_share};
+  return {c.panel, c.degradation.model_error};
 }
 
 const StudyRuns& touched_runs(const std::string& robot) {

@@ -32,7 +32,8 @@ struct Condition {
 
 /// Conditions that differ in the sensors alone share their simulated runs.
 struct PlantKey {
-  double panel, mass, friction, friction_share;       ///< [kg], [1] of the last link, [N m], [1]
+  double panel;                                       ///< [kg]
+  ModelError error;                                   ///< what the estimators do not know
   auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 };
 

@@ -222,7 +222,7 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
           "scenarios 1: sines 1: \"joint\" is 8, and must be 1 to 7");
   refuses("\"torque\": 5", "\"torqe\": 5", "unknown key \"torqe\"; known: joint, torque");
   refuses("\"blow\"", "\"kick\"",
-          "scenarios 1: touches 1: \"kind\" 'kick'; known: blow, push, clamp");
+          "scenarios 1: touches 1: unknown kind 'kick'; known: blow, push, clamp");
   refuses("\"asks\": \"detection\"", "\"asks\": \"all\"", "known: error, step, lag");
   refuses("\"asks\": \"detection\"", "\"asks\": \"bandwidth\"", "each with \"sweep\": true");
   refuses("\"to\": 6", "\"to\": 4", "loads 1: \"to\" is 4, and must be after \"from\", 4");
@@ -237,6 +237,10 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
   refuses("\"t\": 8", "\"t\": 80", "\"t\" is 80, and must be 0 to 10");
   refuses(own_scenario(), R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "step"}]})",
           "\"asks\" is 'step', and there are no \"loads\" to answer");
+  refuses(own_scenario(),
+          R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "lag",
+              "loads": [{"joint": 1, "torque": 3}]}]})",
+          "\"asks\" is 'lag', and no load changes");
   refuses("\"pick\"", "\"step\"", "'step'");
   refuses("\"pick\"", "\"a/b\"", "must be a word");
   refuses("\"velocity_noise\"", "\"noise\"", "velocity_noise");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <map>
 #include <nlopt.hpp>
@@ -62,9 +63,8 @@ class Search {
     tuned_.start = pair_at(first_);
     const std::vector<std::vector<Score>> at_start = o_.score(tuned_.start);
     tuned_.evaluations = 1;
-    if (std::none_of(at_start.begin(), at_start.end(),
-                     [&](const auto& seeds) { return mean_of(seeds, o_.minimize).has_value(); }))
-      throw std::invalid_argument(fmt::format("no run has the metric {}", key_of(o_.minimize)));
+    require(at_start, o_.minimize);
+    for (const auto& [metric, limit] : o_.limits) require(at_start, metric);
     best_ = first_;
     best_value_ = objective(at_start);
     tuned_.of_start = in_units(best_value_);
@@ -110,6 +110,12 @@ class Search {
     return std::exp(sum / std::max(count, 1.));
   }
 
+  static void require(const std::vector<std::vector<Score>>& runs, Metric m) {
+    if (std::none_of(runs.begin(), runs.end(),
+                     [&](const auto& seeds) { return mean_of(seeds, m).has_value(); }))
+      throw std::invalid_argument(fmt::format("no run has the metric {}", key_of(m)));
+  }
+
   static double excess(const std::vector<Score>& seeds, Metric metric, double limit) {
     const auto m = mean_of(seeds, metric);
     if (!m) return 0;
@@ -125,9 +131,10 @@ class Search {
 
   double evaluate(const Place& x) {
     const TunedPair pair = pair_at(x);
-    const auto [known, is_new] = known_.try_emplace(pair.estimator + "+" + pair.detector, 0);
-    if (is_new) {
-      known->second = objective(o_.score(pair));
+    const std::string name = pair.estimator + "+" + pair.detector;
+    auto known = known_.find(name);
+    if (known == known_.end()) {
+      known = known_.emplace(name, objective(o_.score(pair))).first;
       ++tuned_.evaluations;
       if (o_.progress) o_.progress(std::min(1., 1. * tuned_.evaluations / o_.evaluations));
     }
@@ -147,10 +154,17 @@ class Search {
     search.set_xtol_abs(3e-3);  // 0.3 % of a number
     search.set_maxeval(4 * o_.evaluations);
     using Function = std::function<double(const Place&)>;
+    std::exception_ptr thrown;  // which NLopt would make its own
     Function f = [&, until](const Place& x) {
-      const double value = evaluate(x);
-      if (tuned_.evaluations >= until) search.force_stop();
-      return value;
+      try {
+        const double value = evaluate(x);
+        if (tuned_.evaluations >= until) search.force_stop();
+        return value;
+      } catch (...) {
+        thrown = std::current_exception();
+        search.force_stop();
+        return kUnbearable;
+      }
     };
     search.set_min_objective([](const Place& x, Place&,
                                 void* function) { return (*static_cast<Function*>(function))(x); },
@@ -162,6 +176,7 @@ class Search {
     } catch (const nlopt::forced_stop&) {       // the budget is used up
     } catch (const nlopt::roundoff_limited&) {  // nothing more can be won
     }
+    if (thrown) std::rethrow_exception(thrown);
   }
 
   const TuneOptions& o_;
@@ -216,7 +231,7 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
     if ((e == nullptr) == (d == nullptr))
       throw std::invalid_argument(
           fmt::format("--tune {}: {}; {}: {}{}", text,
-                      e == nullptr ? "nobody has that key" : "both have that key", pair.estimator,
+                      e == nullptr ? "neither has that key" : "both have that key", pair.estimator,
                       describe_fields(of_estimator),
                       pair.detector.empty()
                           ? ""
@@ -239,6 +254,9 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
           "--tune {}: no number above 0 to begin with; {}={} says where it lies, or set it in the "
           "specification",
           text, k.key, "LOW:HIGH"));
+    if (k.high > 0 && (largest(k.start) < k.low || largest(k.start) > k.high))
+      throw std::invalid_argument(
+          fmt::format("--tune {}: the start, {:g}, is not between these", text, largest(k.start)));
     if (k.high == 0) k.low = largest(k.start) / 30, k.high = largest(k.start) * 30;
     keys.push_back(std::move(k));
   }

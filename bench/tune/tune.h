@@ -3,8 +3,8 @@
 /// The best parameters of an estimator and of the detector behind it, by their lists of parameters.
 ///
 /// The objective is the geometric mean of a metric over runs, so that runs of N m and of mN m count
-/// alike. What never comes or breaks a limit costs more than anything that can be won, the more the
-/// farther. NLopt searches in the logarithms: DIRECT-L
+/// alike. A pair that misses a value or breaks a limit ranks behind every pair that does not;
+/// among such pairs the smaller excess ranks first. NLopt searches in the logarithms: DIRECT-L
 /// (Gablonsky and Kelley 2001) over the whole range, then Subplex (Rowan 1990) from the best place.
 /// Both are deterministic.
 #pragma once
@@ -42,7 +42,7 @@ struct TuneOptions {
   TunedPair pair;                   ///< what is tuned
   std::vector<TunedKey> keys;       ///< its numbers; not empty
   Metric minimize = Metric::kRmse;  ///< or maximize, where more is better
-  std::vector<Limit> limits;        ///< to be kept in every run
+  std::vector<Limit> limits;        ///< of the mean over seeds, in each run
   int evaluations = 60;             ///< at most
   /// The scores of a pair: for each run, one for each seed. The first call is of the start.
   std::function<std::vector<std::vector<Score>>(const TunedPair&)> score;
@@ -71,7 +71,8 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
 /// The pair without these keys.
 TunedPair without(const TunedPair& pair, const std::vector<TunedKey>& keys);
 
-/// @throws std::invalid_argument if no run has the metric at the start
+/// @throws std::invalid_argument if no run has the metric, or that of a limit, at the start;
+/// and what `score` throws
 Tuned tune(const TuneOptions& options);
 
 }  // namespace tauext

@@ -73,18 +73,18 @@ bool is_known(std::string_view element) {
 
 // a second one would be overlooked
 void refuse_doubles(const XMLElement& e, const std::string& owner) {
-  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
-    if (is_known(name_of(*c)) && c->NextSiblingElement(c->Name()) != nullptr)
-      fail(*c->NextSiblingElement(c->Name()), "{}: a second <{}>", owner, name_of(*c));
-  }
+  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
+    if (const XMLElement* const second = c->NextSiblingElement(c->Name());
+        second != nullptr && is_known(name_of(*c)))
+      fail(*second, "{}: a second <{}>", owner, name_of(*c));
 }
 
-// beside links and joints; what has links or parts of them in it is none of these, but misspelt
+// beside links and joints; what is nearly called so and has parts of them in it is misspelt
 void drop_other(const XMLElement& e, std::map<std::string, int>& dropped) {
-  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
-    if (name_of(e) != "transmission" && name_of(e) != "gazebo" && is_known(name_of(*c)))
-      fail(e, "<{}> has a <{}>: {}", name_of(e), name_of(*c),
-           remedy_for(name_of(e), " link joint "));
+  const bool near = std::min(edits(name_of(e), "link"), edits(name_of(e), "joint")) <= 2;
+  for (const Kept& k : kUrdf) {
+    if (near && e.FirstChildElement(std::string(k.element).c_str()) != nullptr)
+      fail(e, "<{}> has a <{}>: {}", name_of(e), k.element, remedy_for(name_of(e), " link joint "));
   }
   ++dropped[std::string(name_of(e))];
 }

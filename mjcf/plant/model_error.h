@@ -4,6 +4,8 @@
 /// controller knows them, the estimators keep the model of the files.
 #pragma once
 
+#include <compare>
+
 #include "mjcf/plant/model.h"
 
 namespace tauext {
@@ -17,7 +19,7 @@ struct ModelError {
   double viscous = 0;         ///< [N m s/rad] viscous friction, likewise
   double armature = 0;        ///< [kg m^2] inertia of a rotor on every joint, likewise
 
-  bool operator==(const ModelError&) const = default;
+  auto operator<=>(const ModelError&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 
   bool none() const { return *this == ModelError(); }  ///< the robot is as its file says
 };

@@ -35,13 +35,13 @@ struct Trace {
   /// [N m] what the robot's own controller estimated, as a driver's log has it; no columns if
   /// unknown. Never written to a CSV.
   Eigen::MatrixXd tau_ext_of_driver;
+  /// [N] on the arm at its end effector, axes of the world: a sensor's, or in a simulation the true
+  /// one, if nothing else makes tau_ext; else no columns. Never written to a CSV.
+  Eigen::Matrix3Xd force;
 
   // known to the simulation alone, never written to a file
-  Eigen::MatrixXd qdd;       ///< [rad/s^2] MuJoCo's acceleration at t_k
-  Eigen::MatrixXd friction;  ///< [N m] F of (3) at t_k
-  /// [N] on the arm at its end effector, axes of the world, if nothing else makes tau_ext; else no
-  /// columns
-  Eigen::Matrix3Xd force;
+  Eigen::MatrixXd qdd;                ///< [rad/s^2] MuJoCo's acceleration at t_k
+  Eigen::MatrixXd friction;           ///< [N m] F of (3) at t_k
   std::vector<double> contact_force;  ///< [N] sum of the normal forces on the arm at t_k
   std::vector<Screw> screws;          ///< of the joints; empty if the robot has none
   int stopped_at = -1;                ///< sample at which a supervisor stopped the motor; -1: never

@@ -211,14 +211,14 @@ TEST(ArmCalibration, RefusesRecordingsThatCannotBeOfTheArm) {
   Trace degrees = good, reversed = good;
   degrees.q *= 180 / M_PI, degrees.qd *= 180 / M_PI;
   reversed.tau *= -1;
-  for (const Trace* log : {&degrees, &reversed}) {
+  for (const auto& [log, why] :
+       {std::pair(&degrees, "is more than the torque that was measured"),
+        std::pair(&reversed, "is the sign of its torque or current right?")}) {
     try {
       calibrate_arm(arm, {*log});
-      FAIL() << "it fits";
+      ADD_FAILURE() << "it fits";
     } catch (const std::invalid_argument& e) {
-      EXPECT_NE(std::string(e.what()).find("is more than the torque that was measured"),
-                std::string::npos)
-          << e.what();
+      EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
     }
   }
 }

@@ -12,6 +12,8 @@
 
 #include "bench/outside/log_metrics.h"
 #include "bench/outside/outside_score.h"
+#include "bench/roster/robots.h"
+#include "mjcf/record.h"
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/read/npy_writer.h"
 
@@ -133,6 +135,23 @@ TEST_F(Outside, WhatDoesNotBelongToTheLogIsRefused) {
   EXPECT_NE(error(put("t,torque", [](int k) { return fmt::format("{},0\n", k); }))
                 .find("no columns tau_ext1"),
             std::string::npos);
+}
+
+// mo2 beside a sensor that knows the force itself
+TEST(OutsideSensor, IsComparedAsTorques) {
+  const Robot& r = robot("wallmobot3");
+  const Scenario& s = scenario_of(r, "push");
+  Trace trace = record(r.load_for(s), s);
+  ASSERT_GT(trace.force.cols(), 0);
+  const Eigen::MatrixXd truth = trace.tau_ext;
+  trace.tau_ext.resize(0, 0);
+  take_sensor(r, trace);
+  EXPECT_LT((trace.tau_ext_of_driver - truth).cwiseAbs().maxCoeff(), 1e-6);
+  const Output out = r.runner("mo2", "", trace)->run();
+  const Row row = score_outside({&trace, "log", &r, nullptr, 1}, {"mo2", "", out});
+  EXPECT_GT(row.score.get(Metric::kMakerCorrelation).value(), 0.99);
+  EXPECT_NEAR(row.score.get(Metric::kMakerGain).value(), 1, 0.01);
+  EXPECT_NEAR(row.score.get(Metric::kMakerLag).value(), 0.048, 0.02);
 }
 
 // one that is not finite fails, as ours would

@@ -67,6 +67,7 @@ TEST(SeedFigure, OfARecallIsWilsonsOverAllCollisions) {
   }
   const SeededRow r = row("mo1", scores);
   EXPECT_NEAR(figure_of(r, Metric::kRecall).interval.low, 12 / (12 + 1.96 * 1.96), 1e-4);
+  EXPECT_NE(format_seeds({r}, "mo2").find("1.00[0.76,1.00]"), std::string::npos);
   EXPECT_NEAR(figure_of(r, Metric::kFalseAlarms).interval.high, 3.6889 / 3, 1e-3) << "Garwood";
 }
 

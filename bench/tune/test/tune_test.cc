@@ -57,8 +57,19 @@ TEST(Tune, KeepsALimitAndSaysWhatIsAtABound) {
   o = bowl();
   o.keys[0].high = 30;
   EXPECT_EQ(tune(o).at_bound, std::vector<std::string>{"a"});
+  o.limits = {{Metric::kRecall, 1}};
+  EXPECT_NE(error_of([&] { tune(o); }).find("no run has the metric recall"), std::string::npos);
   o.limits = {{Metric::kNoise, 1e-6}};  // which no place keeps
   EXPECT_TRUE(std::isnan(tune(o).of_best));
+}
+
+TEST(Tune, AnErrorOfTheScoreIsItsOwn) {
+  TuneOptions o = bowl();
+  o.score = [n = 0](const TunedPair&) mutable -> std::vector<std::vector<Score>> {
+    if (++n == 5) throw std::invalid_argument("X is 7, and must be 1 to 6");
+    return {{score_of(1, 1)}};
+  };
+  EXPECT_NE(error_of([&] { tune(o); }).find("X is 7, and must be 1 to 6"), std::string::npos);
 }
 
 TEST(Tune, WhatNeverComesIsWorseThanAnyValue) {
@@ -98,7 +109,7 @@ TEST(Tune, KeysKeepTheProportionsOfJoints) {
               keys_of({"bandwidth"}, pair, fields, {});
             }).find("no number above 0 to begin with"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { keys_of({"v"}, pair, fields, {}); }).find("nobody has that key"),
+  EXPECT_NE(error_of([&] { keys_of({"v"}, pair, fields, {}); }).find("neither has that key"),
             std::string::npos);
   EXPECT_NE(error_of([&] { keys_of({"w=5:2"}, pair, fields, {}); }).find("0 < LOW < HIGH"),
             std::string::npos);

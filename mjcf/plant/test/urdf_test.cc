@@ -143,6 +143,15 @@ TEST_F(OfUrdf, SaysWhatIsWrong) {
       "body 'c' moves, and mass or inertia of it is not above 0");
 }
 
+TEST_F(OfUrdf, MayDescribeControllersAndSensorsBesideTheArm) {
+  const std::string path = put(
+      urdf("<ros2_control name='r'><joint name='shoulder'/></ros2_control><sensor name='c'><parent "
+           "link='tool'/><origin xyz='0 0 1'/></sensor><transmission name='x'><joint name='elbow'/>"
+           "</transmission>"),
+      "arm.urdf");
+  EXPECT_EQ(tree_of(load_mjcf(path)).dof(), 3);
+}
+
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
   for (const auto& [right, wrong, words] : std::vector<std::array<const char*, 3>>{
            {"damping=", "dampping=", "joint 'shoulder': <dynamics> knows no 'dampping'; known: da"},
@@ -157,7 +166,7 @@ TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
            {"xyz='1 0 1'", "xyz='0 0 0'", "joint 'elbow': its axis has no direction"},
            {"'elbow'", "'shoulder'", "there are two joints 'shoulder'"},
            {"<joint name='elbow'", "<jiont name='elbow'",
-            "<jiont> has a <parent>: did you mean 'joint'"},
+            "did you mean 'joint'? If not, take it out"},
            {"<link name='upper'", "<link nam='upper'", "a link without a name"},
            {"</visual>", "</visul>", "line 1: no XML (mismatched element)"}}) {
     std::string text = urdf();

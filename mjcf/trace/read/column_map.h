@@ -33,6 +33,7 @@ inline constexpr Quantity kQuantities[] = {
      "of the drives; `gain` [N m/A], or that of a robot file, makes it tau_instant"},
     {"tau_ext", "Nm Nmm N", true, "true external torque, sign of equation (3)"},
     {"driver", "Nm Nmm N", true, "the robot maker's own estimate of it, the same sign"},
+    {"force", "N", false, "of a sensor: on the end effector, x, y and z of the world"},
     {"contact", "1", false, "label: not 0 while a collision acts"},
 };
 

@@ -12,8 +12,9 @@
 namespace tauext {
 
 /// Writes what the sensors read, and `contact` where it is known; a truth is left out, as no
-/// recording has one. The clock begins where such clocks do. To standard output if the path is "-";
-/// the file appears whole or not at all.
+/// recording has one. The clock begins where such clocks do; but for a bag's it counts whole
+/// milliseconds, so that samples that jitter may get the same. To standard output if the path is
+/// "-"; the file appears whole or not at all.
 /// @param layout libfranka, ur_rtde (currents, and blanks between, as UR's record.py) or
 /// joint_state (a bag, without contact)
 /// @param gain [N m/A] of each drive, for currents

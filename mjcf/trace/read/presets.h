@@ -45,6 +45,8 @@ columns = '(?:state\.)?dq\[(\d)\]'
 columns = '(?:state\.)?tau_J\[(\d)\]'
 [driver]
 columns = '(?:state\.)?tau_ext_hat_filtered\[(\d)\]'
+[contact]
+columns = 'contact'
 )";
 
 /// The robot measures no torque: whoever uses it says the gain of each drive.
@@ -57,6 +59,8 @@ columns = 'actual_q_(\d)'
 columns = 'actual_qd_(\d)'
 [current]
 columns = 'actual_current_(\d)'
+[contact]
+columns = 'contact'
 )";
 
 /// External torque of KUKA has the opposite sign.

@@ -128,16 +128,18 @@ struct RecordingReader::Impl {
   }
 
   void fill(RecordedSample& s) {
-    const auto part = [&](int at) -> VectorXd {
+    const auto some = [&](int at, int count) -> VectorXd {
       if (at < 0) return {};
-      return VectorXd::Map(row.data() + at, layout.dof);
+      return VectorXd::Map(row.data() + at, count);
     };
+    const auto part = [&](int at) { return some(at, layout.dof); };
     s.t = row[0];
     s.q = part(layout.q);
     s.qd = layout.qd < 0 ? filter(s.t, s.q) : part(layout.qd);
     s.tau = part(layout.tau);
     s.tau_ext = part(layout.tau_ext);
     s.driver = part(layout.driver);
+    s.force = some(layout.force, 3);
     s.contact = layout.contact >= 0 && row[static_cast<std::size_t>(layout.contact)] != 0;
     counter.take(s.t, s.q, s.qd, s.tau);
   }
@@ -198,14 +200,14 @@ Trace read_recording(const std::string& path, const RecordingOptions& options, S
                      Regularity* regularity) {
   RecordingReader reader(path, options);
   Trace trace;
-  std::vector<double> q, qd, tau, tau_ext, driver;
+  std::vector<double> q, qd, tau, tau_ext, driver, force;
   const auto append = [](std::vector<double>& to, const VectorXd& v) {
     to.insert(to.end(), v.begin(), v.end());
   };
   for (RecordedSample s; reader.next(s);) {
     trace.t.push_back(s.t);
     append(q, s.q), append(qd, s.qd), append(tau, s.tau);
-    append(tau_ext, s.tau_ext), append(driver, s.driver);
+    append(tau_ext, s.tau_ext), append(driver, s.driver), append(force, s.force);
     if (reader.has_contact()) trace.contact.push_back(s.contact);
   }
   *skipped = reader.skipped();
@@ -221,6 +223,7 @@ Trace read_recording(const std::string& path, const RecordingOptions& options, S
   };
   trace.q = matrix(q), trace.qd = matrix(qd), trace.tau = matrix(tau);
   trace.tau_ext = matrix(tau_ext), trace.tau_ext_of_driver = matrix(driver);
+  if (!force.empty()) trace.force = Eigen::Matrix3Xd::Map(force.data(), 3, trace.size());
   trace.torque_at_instants = reader.torque_at_instants();
   trace.tau_is_current = reader.tau_is_current();
   return trace;

@@ -32,6 +32,7 @@ std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOpt
 struct RecordedSample : Sample {
   Eigen::VectorXd tau_ext;  ///< [N m] true, sign of (3)
   Eigen::VectorXd driver;   ///< [N m] the maker's own estimate of it, the same sign
+  Eigen::VectorXd force;    ///< [N] as Trace::force has it
   bool contact = false;     ///< the label
 };
 

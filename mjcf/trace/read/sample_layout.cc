@@ -40,6 +40,7 @@ class LayoutMaker {
     l_.tau = add_torque();
     l_.tau_ext = add("tau_ext");
     l_.driver = add("driver");
+    l_.force = add("force", 3);
     if (find("contact") != nullptr) l_.contact = append(*find("contact"));
     return std::move(l_);
   }
@@ -58,12 +59,15 @@ class LayoutMaker {
     return at;
   }
 
-  int add(const char* name) {
+  int add(const char* name) { return add(name, l_.dof); }
+  int add(const char* name, int count) {
     const MappedQuantity* const m = find(name);
     if (m == nullptr) return -1;
-    if (static_cast<int>(m->columns.size()) == l_.dof) return append(*m);
+    if (static_cast<int>(m->columns.size()) == count) return append(*m);
+    const std::string wanted = count == l_.dof ? fmt::format("{} columns are q", count)
+                                               : fmt::format("{} columns are wanted", count);
     throw std::runtime_error(
-        fmt::format("{}: {} columns are q, and {} are {}", path_, l_.dof, m->columns.size(), name));
+        fmt::format("{}: {}, and {} are {}", path_, wanted, m->columns.size(), name));
   }
 
   int add_torque() {

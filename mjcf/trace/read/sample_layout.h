@@ -15,7 +15,7 @@ namespace tauext {
 struct SampleLayout {
   int dof = 0;  ///< joints
   /// where each begins; -1: the recording does not have it
-  int q = -1, qd = -1, tau = -1, tau_ext = -1, driver = -1, contact = -1;
+  int q = -1, qd = -1, tau = -1, tau_ext = -1, driver = -1, force = -1, contact = -1;
   int size = 1;                              ///< numbers
   bool instants = false;                     ///< tau was read at t
   bool currents = false;                     ///< tau is in A: of drives whose gains are not known

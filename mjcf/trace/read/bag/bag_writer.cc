@@ -14,6 +14,8 @@
 namespace tauext {
 namespace {
 
+#ifdef TAUEXT_SQLITE
+
 // in CDR, low bytes first: each number at a multiple of its size, counted behind the first 4 bytes
 class CdrText {
  public:
@@ -53,8 +55,6 @@ std::string message_of(const Trace& t, int k, std::int64_t stamp,
   m.put_all(t.tau.col(k));
   return m.bytes();
 }
-
-#ifdef TAUEXT_SQLITE
 
 class NewBag {
  public:
@@ -125,7 +125,7 @@ std::string bag_of(const Trace& t, const std::vector<std::string>& joints, doubl
   db.run("COMMIT");
   return db.bytes();
 #else
-  static_cast<void>(message_of(t, 0, 0, joints)), static_cast<void>(begin);
+  static_cast<void>(t), static_cast<void>(joints), static_cast<void>(begin);
   throw std::runtime_error("bags of ROS 2 need SQLite at build (Debian: libsqlite3-dev)");
 #endif
 }
