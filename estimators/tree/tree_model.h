@@ -151,12 +151,13 @@ class TreeModel {
     auto flow = passes_.flow(s, rate);
     const auto c = passes_.composite(s.I);
     const VecM rest = bias(s, flow) + viscous_.cwiseProduct(rate) + offset_;
+    const auto IS = Passes::momenta(s, c);
     detail::PaddedDynamics<N, Scalar> f;
     if constexpr (M == N) {
-      f.B = passes_.inertia(s, c);
+      f.B = passes_.inertia(s, IS);
       to_q(f.B);
     } else {
-      Bodies B = passes_.inertia(s, c);
+      Bodies B = passes_.inertia(s, IS);
       f.B = to_q(B);
     }
     const Factor factor = factorised(f.B);
@@ -166,7 +167,7 @@ class TreeModel {
     f.by_tau_ext = factor.minus_inverse();
     passes_.accelerate(s, to_rate(qdd), flow);
     Bodies q_part, qd_part;
-    passes_.derivatives(s, flow, c, q_part, qd_part);
+    passes_.derivatives(s, flow, c, IS, q_part, qd_part);
     qd_part.diagonal().template head<M>() += viscous_;
     const Square &by_q = to_q(q_part), &by_qd = to_q(qd_part);
     f.by_q = times_transposed(f.by_tau_ext, by_q);
@@ -194,7 +195,7 @@ class TreeModel {
       const Vec<3, Scalar> w(s.S.w.x[i], s.S.w.y[i], s.S.w.z[i]);
       const Vec<3, Scalar> v(s.S.v.x[i], s.S.v.y[i], s.S.v.z[i]);
       J.col(i) << v + w.cross(at), w;
-      J.col(i) *= passes_.ahead(joint)[i];
+      J.col(i) *= passes_.sums().ahead(joint)[i];
     }
     if constexpr (M == N) {
       if (direct_) return J;
@@ -205,7 +206,6 @@ class TreeModel {
  private:
   using Passes = detail::TreePasses<M, Scalar>;
   using VecM = Vec<M, Scalar>;  // a number of each joint
-
   using Pose = typename Passes::Pose;
   using Bodies = typename Passes::Square;          // over the joints, in lanes
   using Square = Mat<detail::kPadded<N>, Scalar>;  // over the coordinates
@@ -213,18 +213,18 @@ class TreeModel {
 
   [[gnu::always_inline]] MatN inertia(const Pose& s,
                                       const typename Passes::Inertia& c) const noexcept {
-    Bodies B = passes_.inertia(s, c);
+    Bodies B = passes_.inertia(s, Passes::momenta(s, c));
     return own(to_q(B));
   }
 
   [[gnu::always_inline]] VecM bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
-    return Passes::along(s.S, passes_.subtree(f.F));
+    return Passes::along(s.S, passes_.sums().subtree(f.F));
   }
 
   VecM momentum_bias(const Pose& s, const typename Passes::Inertia& c,
                      const VecM& rate) const noexcept {
     const auto f = passes_.flow(s, rate);
-    return Passes::along(f.Sd, passes_.subtree(f.H)) + passes_.weights(s, c);
+    return Passes::along(f.Sd, passes_.sums().subtree(f.H)) + passes_.weights(s, c);
   }
 
   // of the joints' rates, and how it grows with them

@@ -9,8 +9,8 @@
 #include <cstddef>
 
 #include "estimators/math/sin_cos.h"
-#include "estimators/tree/each.h"
 #include "estimators/tree/tree_joint.h"
+#include "estimators/tree/tree_sums.h"
 
 namespace tauext::detail {
 
@@ -45,8 +45,8 @@ class TreePasses {
     g_.x = One::all(Scalar(gravity[0]));
     g_.y = One::all(Scalar(gravity[1]));
     g_.z = One::all(Scalar(gravity[2]));
-    for (int i = 0; i < N; ++i) behind_[i] = own_behind_[i] = ahead_[i] = One::zero();
     for (int i = 0; i < N; ++i) fill(joints, i);
+    m_behind_ = sums_.subtree(m_);
   }
 
   /// At rho.
@@ -55,16 +55,23 @@ class TreePasses {
     VecN s, c;
     tauext::sin_cos<N>(VecN(moved.cwiseProduct(turns_)), s, c);
     const One sine = One::from(s), cosine = One::from(c), slide = slide_ * One::from(moved);
-    const Each33<P, Scalar> turn{cosine * R_.x + sine * R_.y, cosine * R_.y - sine * R_.x, R_.z};
-    Pose out = placed(turn, p_ + slide * R_.z);
-    out.S = {hinge_ * out.R.z, hinge_ * cross(out.p, out.R.z) + slide_ * out.R.z};
-    const Three c_w = out.p + out.R * center_, mc = m_ * c_w;
-    const Each33<P, Scalar> T{out.R * Sigma_.x, out.R * Sigma_.y, out.R * Sigma_.z};
-    out.I = {m_,
-             mc,
-             {mc.x * c_w + out.R.x.x * T.x + out.R.y.x * T.y + out.R.z.x * T.z,
-              mc.y * c_w + out.R.x.y * T.x + out.R.y.y * T.y + out.R.z.y * T.z,
-              mc.z * c_w + out.R.x.z * T.x + out.R.y.z * T.y + out.R.z.z * T.z}};
+    Pose out;
+    out.R = {cosine * R_.x + sine * R_.y, cosine * R_.y - sine * R_.x, R_.z};
+    out.p = p_ + slide * R_.z;
+    sums_.place(out.R, out.p);
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      const auto R = out.R.piece(k), Sigma = Sigma_.piece(k);
+      const auto p = out.p.piece(k);
+      const auto hinge = hinge_.piece(k), m = m_.piece(k);
+      out.S.put(k, {hinge * R.z, hinge * cross(p, R.z) + slide_.piece(k) * R.z});
+      const auto at = p + R * center_.piece(k), mc = m * at;
+      const typename Each33<P, Scalar>::Piece T{R * Sigma.x, R * Sigma.y, R * Sigma.z};
+      const auto x = mc.x * at + R.x.x * T.x + R.y.x * T.y + R.z.x * T.z;
+      const auto yy = mc.y * at.y + R.x.y * T.x.y + R.y.y * T.y.y + R.z.y * T.z.y,
+                 yz = mc.y * at.z + R.x.y * T.x.z + R.y.y * T.y.z + R.z.y * T.z.z,
+                 zz = mc.z * at.z + R.x.z * T.x.z + R.y.z * T.y.z + R.z.z * T.z.z;
+      out.I.put(k, {m, mc, {x, {x.y, yy, yz}, {x.z, yz, zz}}});
+    });
     return out;
   }
 
@@ -72,31 +79,39 @@ class TreePasses {
   [[gnu::always_inline]] Flow flow(const Pose& s, const VecN& rate) const noexcept {
     const One qd = One::from(rate);
     Flow f;
-    f.V = from_base(qd * s.S);
-    f.Sd = cross(f.V, s.S);
-    f.A = from_base(qd * f.Sd);
+    f.V = sums_.from_base(qd * s.S);
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      const auto V = f.V.piece(k), Sd = cross(V, s.S.piece(k));
+      f.Sd.put(k, Sd);
+      f.A.put(k, qd.piece(k) * Sd);
+      f.H.put(k, s.I.piece(k) * V);
+    });
+    f.A = sums_.from_base(f.A);
     f.A.v = f.A.v - g_;
-    f.H = s.I * f.V;
-    f.F = s.I * f.A + cross(f.V, f.H);
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      f.F.put(k, s.I.piece(k) * f.A.piece(k) + cross(f.V.piece(k), f.H.piece(k)));
+    });
     return f;
   }
 
   /// The same with acceleration.
   [[gnu::always_inline]] void accelerate(const Pose& s, const VecN& acceleration,
                                          Flow& f) const noexcept {
-    f.A = f.A + from_base(One::from(acceleration) * s.S);
-    f.F = s.I * f.A + cross(f.V, f.H);
+    const Motion more = sums_.from_base(One::from(acceleration) * s.S);
+    f.A = f.A + more;
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      f.F.put(k, f.F.piece(k) + s.I.piece(k) * more.piece(k));
+    });
   }
+
+  const TreeSums<N, Scalar>& sums() const noexcept { return sums_; }  ///< along the tree
 
   /// The inertias of the subtrees.
   [[gnu::always_inline]] Inertia composite(const Inertia& I) const noexcept {
-    const Three x = subtree(I.Sigma.x);
-    const One yy = subtree(I.Sigma.y.y), yz = subtree(I.Sigma.y.z), zz = subtree(I.Sigma.z.z);
-    return {m_behind_, subtree(I.h), {x, {x.y, yy, yz}, {x.z, yz, zz}}};
-  }
-
-  [[gnu::always_inline]] Force subtree(const Force& f) const noexcept {
-    return {subtree(f.n), subtree(f.f)};
+    const Three x = sums_.subtree(I.Sigma.x);
+    const One yy = sums_.subtree(I.Sigma.y.y), yz = sums_.subtree(I.Sigma.y.z),
+              zz = sums_.subtree(I.Sigma.z.z);
+    return {m_behind_, sums_.subtree(I.h), {x, {x.y, yy, yz}, {x.z, yz, zz}}};
   }
 
   /// S . F of each joint.
@@ -107,17 +122,25 @@ class TreePasses {
     return out;
   }
 
-  /// B of (ii), with the rotors.
-  [[gnu::always_inline]] Square inertia(const Pose& s, const Inertia& c) const noexcept {
-    const Force IS = c * s.S;
+  /// I^c S of each joint.
+  [[gnu::always_inline]] static Force momenta(const Pose& s, const Inertia& c) noexcept {
+    Force IS;
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      IS.put(k, c.piece(k) * s.S.piece(k));
+    });
+    return IS;
+  }
+
+  /// B of (ii), with the rotors, from the momenta.
+  [[gnu::always_inline]] Square inertia(const Pose& s, const Force& IS) const noexcept {
     Square B, lower;
     B.template rightCols<P - N>().setZero();
     lower.template rightCols<P - N>().setZero();
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
       const One column = dot(s.S.of(i), IS);
-      (armature_[i] + behind_[i] * column).since(i).store(&B(0, i));
-      (own_behind_[i] * column).since(i).store(&lower(0, i));
+      (armature_[i] + sums_.behind(i) * column).since(i).store(&B(0, i));
+      (sums_.strictly_behind(i) * column).since(i).store(&lower(0, i));
     }
     B += transposed(lower);
     return B;
@@ -130,20 +153,37 @@ class TreePasses {
 
   /// The transposes of d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
   [[gnu::always_inline]] void derivatives(const Pose& s, const Flow& f, const Inertia& c,
-                                          Square& by_q, Square& by_qd) const noexcept {
-    const Motion Sdd = cross(f.A, s.S) + cross(f.V, f.Sd);
-    const Each33<P, Scalar> Y{subtree(s.I.h.x * f.V.v + cross(f.V.w, s.I.Sigma.x)),
-                              subtree(s.I.h.y * f.V.v + cross(f.V.w, s.I.Sigma.y)),
-                              subtree(s.I.h.z * f.V.v + cross(f.V.w, s.I.Sigma.z))};
-    const Three l = subtree(f.H.f);
-    const One two = One::all(Scalar(2)), trace = Y.x.x + Y.y.y + Y.z.z;
-    const auto twice_B = [&](const Motion& x) {  // (iii)
-      return Force{two * (trace * x.w - Y * x.w), two * cross(x.w, l)};
-    };
-    const Force IS = c * s.S, ISd = c * f.Sd;
-    const Three BtS = two * (trace * s.S.w - Y.transposed_times(s.S.w) + cross(l, s.S.v));
-    const Force q_above = twice_B(f.Sd) + c * Sdd + cross(s.S, subtree(f.F));
-    const Force qd_above = twice_B(s.S) + two * ISd;
+                                          const Force& IS, Square& by_q,
+                                          Square& by_qd) const noexcept {
+    Motion Sdd;
+    Each33<P, Scalar> Y;
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      const auto V = f.V.piece(k);
+      Sdd.put(k, cross(f.A.piece(k), s.S.piece(k)) + cross(V, f.Sd.piece(k)));
+      const auto I = s.I.piece(k);
+      Y.x.put(k, I.h.x * V.v + cross(V.w, I.Sigma.x));
+      Y.y.put(k, I.h.y * V.v + cross(V.w, I.Sigma.y));
+      Y.z.put(k, I.h.z * V.v + cross(V.w, I.Sigma.z));
+    });
+    Y = {sums_.subtree(Y.x), sums_.subtree(Y.y), sums_.subtree(Y.z)};
+    const Three l = sums_.subtree(f.H.f);
+    const Force F = sums_.subtree(f.F);
+    const One two = One::all(Scalar(2));
+    Three BtS;
+    Force q_above, qd_above;
+    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+      const auto Y_c = Y.piece(k);
+      const auto l_c = l.piece(k);
+      const auto I_c = c.piece(k);
+      const auto S = s.S.piece(k), Sd = f.Sd.piece(k);
+      const auto two_c = two.piece(k), trace = Y_c.x.x + Y_c.y.y + Y_c.z.z;
+      const auto twice_B = [&](const auto& x) __attribute__((always_inline)) {  // (iii)
+        return typename Force::Piece{two_c * (trace * x.w - Y_c * x.w), two_c * cross(x.w, l_c)};
+      };
+      BtS.put(k, two_c * (trace * S.w - Y_c.transposed_times(S.w) + cross(l_c, S.v)));
+      q_above.put(k, twice_B(Sd) + I_c * Sdd.piece(k) + cross(S, F.piece(k)));
+      qd_above.put(k, twice_B(S) + two_c * (I_c * Sd));
+    });
     Square q_columns, qd_columns;  // below the diagonal
     for (Square* m : {&by_q, &by_qd, &q_columns, &qd_columns})
       m->template rightCols<P - N>().setZero();
@@ -152,18 +192,13 @@ class TreePasses {
       const One q_below = dot(BtS, Sd.w) + dot(Sdd.of(i), IS);
       const One qd_below = dot(BtS, S.w) + two * dot(Sd, IS);
       const One q_right = dot(S, q_above), qd_right = dot(S, qd_above);
-      (behind_[i] * q_right).store(&by_q(0, i));
-      (behind_[i] * qd_right).store(&by_qd(0, i));
-      (own_behind_[i] * q_below).store(&q_columns(0, i));
-      (own_behind_[i] * qd_below).store(&qd_columns(0, i));
+      (sums_.behind(i) * q_right).store(&by_q(0, i));
+      (sums_.behind(i) * qd_right).store(&by_qd(0, i));
+      (sums_.strictly_behind(i) * q_below).store(&q_columns(0, i));
+      (sums_.strictly_behind(i) * qd_below).store(&qd_columns(0, i));
     });
     by_q += transposed(q_columns);
     by_qd += transposed(qd_columns);
-  }
-
-  /// 1 for the joints on the way to joint j, and itself.
-  const One& ahead(int j) const noexcept {
-    return ahead_[j];
   }
 
   /// A point [m] in the frame that joint j was given with, in the axes of the base.
@@ -180,57 +215,11 @@ class TreePasses {
  private:
   void fill(const std::array<TreeJoint, N>& joints, int i);
 
-  // from each body's frame in its parent's to all in the base's
-  [[gnu::always_inline]] Pose placed(const Each33<P, Scalar>& R, const Three& p) const noexcept {
-    using Four = Each<4, Scalar>;  // x, y and z of one body, and nothing
-    Four x[P + 1], y[P + 1], z[P + 1], at[P + 1];
-    x[0] = y[0] = z[0] = at[0] = Four::zero();
-    x[0].set(0, Scalar(1)), y[0].set(1, Scalar(1)), z[0].set(2, Scalar(1));
-#pragma GCC unroll 8
-    for (int i = 0; i < N; ++i) {
-      const int parent = parent_[i] + 1;
-      const auto turned = [&](const Three& v) {
-        return Four::all(v.x[i]) * x[parent] + Four::all(v.y[i]) * y[parent] +
-               Four::all(v.z[i]) * z[parent];
-      };
-      x[i + 1] = turned(R.x), y[i + 1] = turned(R.y), z[i + 1] = turned(R.z);
-      at[i + 1] = at[parent] + turned(p);
-    }
-#pragma GCC unroll 8
-    for (int i = N + 1; i <= P; ++i) x[i] = y[i] = z[i] = at[i] = Four::zero();
-    Pose out;
-    out.R.x.set_all(x + 1), out.R.y.set_all(y + 1), out.R.z.set_all(z + 1), out.p.set_all(at + 1);
-    return out;
-  }
-
-  // sums over the way from the base, and over the subtrees
-  [[gnu::always_inline]] One from_base(const One& x) const noexcept {
-    One sum = One::zero();
-#pragma GCC unroll 8
-    for (int i = 0; i < N; ++i) sum.add(behind_[i], x[i], i, P - 1);
-    return sum;
-  }
-  [[gnu::always_inline]] Motion from_base(const Motion& m) const noexcept {
-    return {{from_base(m.w.x), from_base(m.w.y), from_base(m.w.z)},
-            {from_base(m.v.x), from_base(m.v.y), from_base(m.v.z)}};
-  }
-  [[gnu::always_inline]] One subtree(const One& x) const noexcept {
-    One sum = One::zero();
-#pragma GCC unroll 8
-    for (int i = 0; i < N; ++i) sum.add(ahead_[i], x[i], 0, i);
-    return sum;
-  }
-  [[gnu::always_inline]] Three subtree(const Three& v) const noexcept {
-    return {subtree(v.x), subtree(v.y), subtree(v.z)};
-  }
-
-  int parent_[N];
-  Mat<3> to_own_[N];          // from the frame of the TreeJoint to ours, z along the axis
-  One behind_[N], ahead_[N];  // [i][j]: 1 if j is in i's subtree, or i in j's
-  One own_behind_[N];         // behind_ without i itself
-  VecN zero_, turns_;         // [rad] rho of the pose below; 1 of hinges
-  One armature_[N];           // [kg m^2] of i, and 0 of the others
-  One hinge_ = One::zero(), slide_ = hinge_, m_ = hinge_, m_behind_ = hinge_;
+  TreeSums<N, Scalar> sums_;
+  Mat<3> to_own_[N];   // from the frame of the TreeJoint to ours, z along the axis
+  VecN zero_, turns_;  // [rad] rho of the pose below; 1 of hinges
+  One armature_[N];    // [kg m^2] of i, and 0 of the others
+  One hinge_ = One::zero(), slide_ = hinge_, m_ = hinge_, m_behind_;
   Each33<P, Scalar> R_, Sigma_;  // in the parent's axes; about the center of mass, in ours
   Three p_, center_, g_;         // [m] in the parent's axes, in ours; [m/s^2] gravity
 };
@@ -270,13 +259,7 @@ void TreePasses<N, Scalar>::fill(const std::array<TreeJoint, N>& joints, int i) 
   armature_[i] = One::zero();
   armature_[i].set(i, Scalar(j.armature));
   m_.set(i, Scalar(j.mass));
-  parent_[i] = j.parent;
-  for (int k = i; k >= 0; k = parent_[k]) {
-    behind_[k].set(i, Scalar(1));
-    own_behind_[k].set(i, Scalar(k == i ? 0 : 1));
-    ahead_[i].set(k, Scalar(1));
-    m_behind_.set(k, m_behind_[k] + m_[i]);
-  }
+  sums_.add(i, j.parent);
 }
 
 }  // namespace tauext::detail
