@@ -94,6 +94,7 @@ int identify_one(const Flags& f) {
       f.terms.empty() ? std::vector<std::string>{"inertia", "gravity_cos", "gravity_sin", "coulomb"}
                       : f.terms);
   const RecordedLog recorded = read_any_log(f.logs[0], {f.channel, f.columns});
+  recorded.require_consistent(f.logs[0]);
   const auto id = naming(f.logs, [&] { return identify(recorded.trace, model, f.windows); });
   if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
   fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
@@ -106,6 +107,7 @@ std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
   std::vector<Trace> all;
   for (const std::string& path : paths) {
     RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    log.require_consistent(path);
     usable = usable && log.usable();
     if (log.trace.dof() != arm.dof())
       throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,

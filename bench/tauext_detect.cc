@@ -69,6 +69,7 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   std::vector<study::FreeRecording> recordings;
   for (const std::string& path : f.logs) {
     RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    log.require_consistent(path);
     usable = usable && log.usable();
     r.make_torques(log.trace);
     recordings.push_back({path, std::move(log.trace)});

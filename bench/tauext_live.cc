@@ -22,11 +22,7 @@ using namespace tauext;
 
 // where samples come from
 void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
-  app.add_option("--robot", o.robot, "robot (see --list), or a file of MJCF or URDF")
-      ->type_name("NAME|FILE");
-  app.add_option("--lock", o.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX")
-      ->check(not_empty);
+  add_robot_flags(app, o.robot, o.lock);
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
   app.add_option("--from", o.from, "log to play instead, as tauext-replay reads it (--columns)")
       ->type_name("LOG");

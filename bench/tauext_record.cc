@@ -36,11 +36,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
-      ->type_name("NAME|FILE");
-  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX")
-      ->check(not_empty);
+  add_robot_flags(app, f.robot, f.lock);
   app.add_option("--scenario", f.scenario,
                  "scenario (see --list; --scenarios FILE.json adds yours)");
   app.add_option("--scenarios", f.scenarios)->group("");  // bench/run/README.md
@@ -92,6 +88,8 @@ Trace thinned(const Trace& trace, int every) {
 void write(const Trace& trace, const Flags& f, const Robot& r) {
   if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), f.out);
   if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
+  if (f.out.ends_with(".npy"))
+    throw std::invalid_argument(f.out + ": a run is several arrays, and so an .npz");
   if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
   LogBuffer log;
   append_samples(readings_of(trace), message_type(f.type), log);
@@ -160,7 +158,8 @@ int run(const CLI::App& app, const Flags& f) {
   if (!f.layout.empty() && f.out != "-" && f.out.ends_with(".db3") != bag)
     throw std::invalid_argument(fmt::format(
         "--layout {}: --out {}: a bag's name ends in .db3, and no other's", f.layout, f.out));
-  if (!f.layout.empty() && (is_lcm_log(f.out) || f.out.ends_with(".npz")))
+  if (!f.layout.empty() &&
+      (is_lcm_log(f.out) || f.out.ends_with(".npz") || f.out.ends_with(".npy")))
     throw std::invalid_argument(
         fmt::format("--layout {} writes text or a bag, and --out is {}", f.layout, f.out));
   const Robot& r = robot(with_lock(f.robot, f.lock));
@@ -172,6 +171,8 @@ int run(const CLI::App& app, const Flags& f) {
       measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
   const Trace thin = thinned(trace, f.every);
   write(thin, f, r);
+  if (bag && !thin.contact.empty())
+    say(f.out + ": joint_state has no place for labels of contacts: none is in it");
   const std::string stopped = trace.stopped_at >= 0
                                   ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
                               : f.stop.empty() ? ""

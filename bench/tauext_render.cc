@@ -25,11 +25,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
-      ->type_name("NAME|FILE");
-  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX")
-      ->check(not_empty);
+  add_robot_flags(app, f.robot, f.lock);
   app.add_option("--q", f.q, "pose, a number for each joint [rad, m]; else 0, of a file its home")
       ->delimiter(',')
       ->type_name("Q1,Q2..");

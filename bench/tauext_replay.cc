@@ -95,11 +95,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns,
                  "what the log's columns mean: a map, or libfranka, ur_rtde, ..")
       ->type_name("PRESET|FILE.toml");
-  app.add_option("--robot", f.robot, "robot (see --list), or a file of MJCF or URDF")
-      ->type_name("NAME|FILE");
-  app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
-      ->type_name("REGEX")
-      ->check(not_empty);
+  add_robot_flags(app, f.robot, f.lock);
   app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -155,9 +151,7 @@ int replay(Flags& f) {
   RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns, true});
   r.make_torques(recorded.trace);
   const Trace& trace = recorded.trace;
-  if (trace.dof() != r.dof())
-    throw std::invalid_argument(fmt::format("{}: {} has {} joints, the samples have {}", f.log,
-                                            r.name(), r.dof(), trace.dof()));
+  r.require_joints(trace, f.log);
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));

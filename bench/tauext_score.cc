@@ -139,9 +139,7 @@ Recorded recorded(const Flags& f) {
     all.logs.push_back(read_any_log(path, {f.channel, f.columns, true}));
     RecordedLog& log = all.logs.back();
     if (!f.ours.empty()) r->make_torques(log.trace);
-    if (r != nullptr && r->dof() != log.trace.dof())
-      throw std::invalid_argument(fmt::format("{}: {} has {} joints, the samples have {}", path,
-                                              r->name(), r->dof(), log.trace.dof()));
+    if (r != nullptr) r->require_joints(log.trace, path);
     if (log.trace.size() < 3)
       throw std::invalid_argument(
           fmt::format("{}: {} samples say nothing", path, log.trace.size()));

@@ -20,6 +20,7 @@
 #include "bench/run/study_flags.h"
 #include "bench/score/degradation.h"
 #include "bench/seeds/golden.h"
+#include "bench/seeds/seed_tables.h"
 #include "bench/seeds/seeds.h"
 #include "bench/tune/tune.h"
 #include "mjcf/trace/known.h"
@@ -133,6 +134,7 @@ class Recordings {
   Recordings(const Flags& f, const Robot& r, const std::vector<std::string>& paths) : robot_(r) {
     for (const std::string& path : paths) {
       logs_.push_back(read_any_log(path, {f.channel, f.columns, true}));
+      r.require_joints(logs_.back().trace, path);
       r.make_torques(logs_.back().trace);
     }
     for (const RecordedLog& log : logs_)

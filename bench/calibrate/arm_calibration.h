@@ -88,8 +88,8 @@ std::string joint_name_in_file(const ArmTree& arm, int coordinate);
 /// friction and offset if any of these is
 /// @throws std::invalid_argument for an unknown term, an arm whose coordinates mix joints, another
 /// number of joints, currents and torques together, too few windows, a gain that cannot be seen, a
-/// motion that cannot tell the terms apart, or a fit that leaves more than the torque that was
-/// measured: naming the joint, the term and the remedy
+/// motion that cannot tell the terms apart, a torque or a dry friction of the wrong sign, or a fit
+/// that leaves more than the torque that was measured: naming the joint, the term and the remedy
 std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector<Trace>& logs,
                                            const CalibrateOptions& options = {});
 

@@ -23,7 +23,8 @@ VectorXd Fit::theta() const {
   return all;
 }
 
-Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& names) {
+Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& names,
+        const char* remedy) {
   constexpr double kLeast = 1e-100;  // in the place of a norm or a singular value of 0
   const Eigen::Index m = A.rows(), n = A.cols();
   const VectorXd norm = A.colwise().norm();
@@ -39,10 +40,9 @@ Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& na
   if (!(f.condition < 1e6)) {
     Eigen::Index least = 0;
     root.maxCoeff(&least);
-    throw std::invalid_argument(fmt::format(
-        "the motion cannot tell '{}' from the other terms (condition {:.1e}): record one "
-        "that excites it, or leave it out (--terms)",
-        names[static_cast<std::size_t>(least)], f.condition));
+    throw std::invalid_argument(
+        fmt::format("the motion cannot tell '{}' from the other terms (condition {:.1e}): {}",
+                    names[static_cast<std::size_t>(least)], f.condition, remedy));
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
   f.inverse = (A.transpose() * A).ldlt().solve(MatrixXd::Identity(n, n));

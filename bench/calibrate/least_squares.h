@@ -31,8 +31,10 @@ struct Fit {
 };
 
 /// @param names of A's columns
+/// @param remedy against a column that the others imitate, for the error
 /// @throws std::invalid_argument naming the column that the others imitate
-Fit fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const std::vector<std::string>& names);
+Fit fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const std::vector<std::string>& names,
+        const char* remedy = "record one that excites it, or leave it out (--terms)");
 
 /// Into how many stretches recordings are cut, of which a jackknife leaves out one after the other.
 inline constexpr int kStretches = 10;

@@ -65,10 +65,12 @@ VectorXd expected(const ArmTree& arm, const std::vector<Place>& places) {
   return all;
 }
 
-const std::vector<std::string>& payload_terms() {
-  static const std::vector<std::string> all = {"mass", "moment along x", "moment along y",
-                                               "moment along z"};
-  return all;
+Fit payload_fit(const MatrixXd& A, const VectorXd& y) {
+  static const std::vector<std::string> terms = {"mass", "moment along x", "moment along y",
+                                                 "moment along z"};
+  return fit(A, y, terms,
+             "record one that turns the payload about more axes; an arm that moves in one plane "
+             "cannot weigh it");
 }
 
 // what a unit mass at the origin takes, and unit first moments along the axes
@@ -86,7 +88,7 @@ MatrixXd by_mass_and_moments(const ArmTree& arm, int joint, const Vector3d& orig
 
 // each joint counts by how well it is explained
 VectorXd weights_of(const MatrixXd& A, const VectorXd& y, const std::vector<Place>& places) {
-  const VectorXd left = y - A * fit(A, y, payload_terms()).theta();
+  const VectorXd left = y - A * payload_fit(A, y).theta();
   VectorXd squares = VectorXd::Zero(kMostCoordinates), count = squares;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double r = left[static_cast<Index>(i)];
@@ -109,7 +111,7 @@ Vec<4> spread_of(const MatrixXd& A, const VectorXd& y) {
     std::vector<Index> chosen;
     for (Index i = 0; i < y.size(); ++i)
       if (i / kWindows % kStretches != s) chosen.push_back(i);
-    theta.col(s) = fit(A(chosen, Eigen::all), y(chosen), payload_terms()).theta();
+    theta.col(s) = payload_fit(A(chosen, Eigen::all), y(chosen)).theta();
   }
   return jackknife_errors(theta);
 }
@@ -128,7 +130,7 @@ Weight weight_of(const ArmTree& arm, int joint, const Vector3d& origin,
   for (int pass = 0; pass < 2; ++pass) {
     const VectorXd weights = weights_of(A, y, places), rest = y - of_inertia;
     const MatrixXd weighted = weights.asDiagonal() * A;
-    const Fit f = fit(weighted, weights.cwiseProduct(rest), payload_terms());
+    const Fit f = payload_fit(weighted, weights.cwiseProduct(rest));
     const Vec<4> theta = f.theta(), spread = spread_of(weighted, weights.cwiseProduct(rest));
     const auto error = [&](int i) {
       return std::max(f.parameters[static_cast<std::size_t>(i)].robust, spread[i]);

@@ -26,8 +26,8 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
 }
 
-// Says what can hardly be s, rad and rad/s.
-void doubt_units(const Trace& log, const std::string& path) {
+// Says what can hardly be s, rad and rad/s; whether q and qd cannot both be.
+bool doubt_units(const Trace& log, const std::string& path) {
   constexpr double kTwoTurns = 12.6;   // [rad]
   constexpr double kLongestGap = 0.1;  // [s]
   constexpr const char* kRemedy =
@@ -40,16 +40,21 @@ void doubt_units(const Trace& log, const std::string& path) {
       xx += x * x, xy += x * y, yy += y * y;
     }
     const double times = xy / xx;
-    if (xy > 0.9 * std::sqrt(xx * yy) && (times > 2 || times < 0.5))
-      return say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1,
-                             times, j + 1, kRemedy));
-    if (const double most = log.q.row(j).cwiseAbs().maxCoeff(); most > kTwoTurns)
-      return say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,
-                             kRemedy));
+    if (xy > 0.9 * std::sqrt(xx * yy) && (times > 2 || times < 0.5)) {
+      say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1, times,
+                      j + 1, kRemedy));
+      return true;
+    }
+    if (const double most = log.q.row(j).cwiseAbs().maxCoeff(); most > kTwoTurns) {
+      say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,
+                      kRemedy));
+      return false;
+    }
   }
   if (log.size() > 2 && log.t.back() - log.t.front() > kLongestGap * log.size())
     say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
                     (log.t.back() - log.t.front()) / (log.size() - 1), kRemedy));
+  return false;
 }
 
 RecordedLog read_lcm_log(const std::string& path, const LogOptions& o) {
@@ -72,11 +77,18 @@ RecordedLog read_rows(const std::string& path, const LogOptions& o) {
     throw std::runtime_error(
         path + ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
   if (!o.columns.empty() || regularity.gaps > 0) say(path + ": " + regularity.in_words());
-  if (trace.size() > 0) doubt_units(trace, path);
-  return {std::move(trace), skipped.total()};
+  const bool contradicts = trace.size() > 0 && doubt_units(trace, path);
+  return {std::move(trace), skipped.total(), contradicts};
 }
 
 }  // namespace
+
+void RecordedLog::require_consistent(const std::string& path) const {
+  if (contradicts)
+    throw std::invalid_argument(
+        path +
+        ": nothing is learnt from q and qd that contradict each other; --columns tells units");
+}
 
 RecordedLog read_any_log(const std::string& path, const LogOptions& o) {
   RecordedLog log = is_lcm_log(path) ? read_lcm_log(path, o) : read_rows(path, o);

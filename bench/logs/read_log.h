@@ -14,8 +14,12 @@ namespace tauext {
 struct RecordedLog {
   Trace trace;               ///< what could be used
   std::int64_t skipped = 0;  ///< rows, or messages of the channel
-  /// Whether not most of it was skipped: else the log is something else than one thinks.
-  bool usable() const { return skipped <= trace.size(); }
+  bool contradicts = false;  ///< q moves at least twice as fast as qd says, or half as fast at most
+  /// Else the log is something else than one thinks.
+  bool usable() const { return skipped <= trace.size() && !contradicts; }
+  /// For those who write what they learn from it into a file.
+  /// @throws std::invalid_argument if q and qd contradict each other
+  void require_consistent(const std::string& path) const;
 };
 
 /// How a log is to be read.

@@ -82,6 +82,14 @@ void require_mode(const CLI::App& app, bool fits, const std::string& mode,
   }
 }
 
+void add_robot_flags(CLI::App& app, std::string& robot, std::string& lock) {
+  app.add_option("--robot", robot, "robot (see --list), or a file of MJCF or URDF")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", lock, "joints of that file to fix, like grippers'")
+      ->type_name("REGEX")
+      ->check(not_empty);
+}
+
 std::string whole_number(const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -52,6 +52,9 @@ class Progress {
 void require_mode(const CLI::App& app, bool fits, const std::string& mode,
                   const std::vector<const char*>& flags);
 
+/// Adds --robot NAME|FILE and --lock REGEX.
+void add_robot_flags(CLI::App& app, std::string& robot, std::string& lock);
+
 /// A check for CLI11, which takes a number that does not fit for the largest that does.
 /// @returns "" for a whole number from 0 to 2^64 - 1, else why not
 std::string whole_number(const std::string& text);

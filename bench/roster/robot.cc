@@ -116,6 +116,12 @@ void Robot::make_torques(Trace& trace) const {
   tauext::make_torques(trace, gains());
 }
 
+void Robot::require_joints(const Trace& trace, const std::string& log) const {
+  if (trace.dof() == dof_) return;
+  throw std::invalid_argument(
+      fmt::format("{}: {} has {} joints, the samples have {}", log, name_, dof_, trace.dof()));
+}
+
 Eigen::VectorXd Robot::gains() const {
   return file_ ? tree_of(file_).gain : Eigen::VectorXd::Zero(dof_);
 }

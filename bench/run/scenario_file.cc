@@ -29,14 +29,14 @@ template <class... Args>
 }
 
 struct Wave {
-  int joint;
-  double size, w, phase;
+  int joint;              // from 0
+  double size, w, phase;  // [rad] or [N m], [rad/s], [rad]
 };
 
 struct Load {
   Wave wave;
-  double from, to;
-  bool sweep;
+  double from, to;  // [s]
+  bool sweep;       // of all frequencies, instead of w and phase
 
   double operator()(double t) const {
     if (t < from || t >= to) return 0;
@@ -104,6 +104,8 @@ std::vector<Load> loads_of(const Object& o, int dof, double duration) {
              load.number_or("from", 0, 0, duration),
              load.number_or("to", std::numeric_limits<double>::infinity(), 0, Object::kMost),
              load.flag("sweep")};
+    if (one.from >= duration)
+      fail("{}: \"from\" is {:g}, the end of the scenario", where, one.from);
     if (one.to <= one.from)
       fail("{}: \"to\" is {:g}, and must be after \"from\", {:g}", where, one.to, one.from);
     if (one.sweep && (load.has("w") || load.has("phase")))
@@ -174,6 +176,11 @@ void check_question(const Object& o, Response asked, const std::vector<Load>& lo
   if (of_load && loads.empty() && touches.empty())
     fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", o.where(),
          o.text("asks", ""));
+  const auto constant = [](const Load& l) { return l.wave.w == 0 && !l.sweep; };
+  if (asked == Response::kStep &&
+      (!touches.empty() || !std::all_of(loads.begin(), loads.end(), constant)))
+    fail("{}: \"asks\" is 'step', so there must be constant \"loads\", and nothing else",
+         o.where());
   const auto changes = [&](const Load& l) {
     return l.from > 0 || l.to < o.number("duration", 0, Object::kMost) || l.sweep ||
            (asked == Response::kLag && l.wave.w > 0);
@@ -181,6 +188,14 @@ void check_question(const Object& o, Response asked, const std::vector<Load>& lo
   if (of_load && touches.empty() && !std::any_of(loads.begin(), loads.end(), changes))
     fail("{}: \"asks\" is '{}', and no load {}", o.where(), o.text("asks", ""),
          asked == Response::kLag ? "changes" : "begins or ends within the scenario");
+  constexpr double kLongestLag = 2;  // [s] of metrics::lag
+  if (asked == Response::kLag &&
+      o.number("duration", 0, Object::kMost) <
+          o.number_or("score_from", 0, 0, Object::kMost) + kLongestLag + 0.1)
+    fail(
+        "{}: \"asks\" is 'lag', of up to {} s: \"duration\" must be longer than \"score_from\" and "
+        "that",
+        o.where(), kLongestLag);
   if (asked == Response::kDetection && touches.empty())
     fail("{}: \"asks\" is 'detection', and there are no \"touches\"", o.where());
 }

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <regex>
 #include <stdexcept>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "bench/roster/robots.h"
 #include "bench/score/degradation.h"
 #include "bench/seeds/golden.h"
+#include "bench/seeds/seed_tables.h"
 #include "bench/seeds/seeds.h"
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
@@ -63,18 +63,10 @@ std::string run_pareto(const StudyFlags& f) {
 }
 
 std::vector<Entry> chosen_entries(const StudyFlags& f) {
-  std::regex wanted;
-  try {
-    wanted = std::regex(f.filter);
-  } catch (const std::regex_error& e) {
-    throw std::invalid_argument(
-        fmt::format("'{}' is no regular expression: {}", f.filter, e.what()));
-  }
+  const auto wanted = entry_filter(f.filter);
   std::vector<Entry> all = entries(f.selection);
-  std::erase_if(all, [&](const Entry& e) { return !std::regex_search(e.name(), wanted); });
-  if (all.empty())
-    throw std::invalid_argument(
-        fmt::format("the filter '{}' matches nothing; see --list", f.filter));
+  std::erase_if(all, [&](const Entry& e) { return !wanted(e.name()); });
+  if (all.empty()) fail_no_match(f.filter);
   return all;
 }
 

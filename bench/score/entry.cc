@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -134,6 +135,22 @@ std::vector<Entry> entries(const Selection& selection) {
     }
   }
   return all;
+}
+
+std::function<bool(const std::string&)> entry_filter(const std::string& expression) {
+  try {
+    return [wanted = std::regex(expression)](const std::string& name) {
+      return std::regex_search(name, wanted);
+    };
+  } catch (const std::regex_error& e) {
+    throw std::invalid_argument(
+        fmt::format("'{}' is no regular expression: {}", expression, e.what()));
+  }
+}
+
+void fail_no_match(const std::string& expression) {
+  throw std::invalid_argument(
+      fmt::format("the filter '{}' matches nothing; see --list", expression));
 }
 
 }  // namespace tauext

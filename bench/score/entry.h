@@ -3,6 +3,7 @@
 /// The rows of the suite, resolved once.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,5 +75,12 @@ class Entry {
 /// @throws std::invalid_argument for a specification that no robot understands, and for one that is
 /// there twice
 std::vector<Entry> entries(const Selection& selection = {});
+
+/// Whether a name of an entry matches this regular expression somewhere; "" matches all.
+/// @throws std::invalid_argument if it is none
+std::function<bool(const std::string&)> entry_filter(const std::string& expression);
+
+/// @throws std::invalid_argument, as nothing matches
+[[noreturn]] void fail_no_match(const std::string& expression);
 
 }  // namespace tauext

@@ -108,7 +108,8 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from) {
   constexpr double kLongest = 2;        // [s]
-  constexpr Eigen::Index kCoarse = 16;  // samples
+  constexpr Eigen::Index kCoarse = 4;   // samples from one delay to the next: a sine is to be met
+  constexpr Eigen::Index kStride = 16;  // of the samples that tell where to look closer
   if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNoValue;
   if (estimate.maxCoeff() == estimate.minCoeff()) return kNoValue;
   const Eigen::Index first = first_from(t, t.front() + from + kLongest);
@@ -116,12 +117,10 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
   const auto longest = static_cast<Eigen::Index>(kLongest / Ts);
   if (first >= truth.size() || longest > first) return kNoValue;
 
-  const auto left_at = [&](Eigen::Index shift, Eigen::Index stride) {
-    return mismatch(truth, estimate, first, shift, stride);
-  };
+  const auto left_at = [&](Eigen::Index s) { return mismatch(truth, estimate, first, s, 1); };
   std::vector<double> coarse;
-  for (Eigen::Index s = 0; s <= longest; s += kCoarse) coarse.push_back(left_at(s, kCoarse));
-  // what repeats fits again a period later: of all minima the first that is nearly as good as any
+  for (Eigen::Index s = 0; s <= longest; s += kCoarse)
+    coarse.push_back(mismatch(truth, estimate, first, s, kStride));
   std::vector<std::pair<double, Eigen::Index>> minima;
   const auto n = static_cast<Eigen::Index>(coarse.size());
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -129,12 +128,22 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
     minima.emplace_back(std::numeric_limits<double>::infinity(), 0);
     for (Eigen::Index s = std::max<Eigen::Index>(0, (i - 1) * kCoarse);
          s <= std::min(longest, (i + 1) * kCoarse); ++s)
-      minima.back() = std::min(minima.back(), {left_at(s, 1), s});
+      minima.back() = std::min(minima.back(), {left_at(s), s});
   }
+  // what repeats fits again a period later: the first valley that is nearly as deep as any, and in
+  // it, where noise makes many minima, the deepest
   const double good = 1.2 * std::min_element(minima.begin(), minima.end())->first;
-  const Eigen::Index fine = std::find_if(minima.begin(), minima.end(), [&](const auto& m) {
-                              return m.first <= good;
-                            })->second;
+  const auto valley =
+      std::find_if(minima.begin(), minima.end(), [&](const auto& m) { return m.first <= good; });
+  auto deepest = *valley;
+  for (const int step : {-1, 1}) {
+    for (Eigen::Index s = valley->second; s >= 0 && s <= longest; s += step) {
+      const double left = left_at(s);
+      if (left > good) break;
+      deepest = std::min(deepest, {left, s});
+    }
+  }
+  const Eigen::Index fine = deepest.second;
   return fine == longest ? kNoValue : static_cast<double>(fine) * Ts;
 }
 

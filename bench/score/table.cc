@@ -2,6 +2,7 @@
 #include "bench/score/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,20 @@ const char* text_of(WorstJoint j) {
   return "";
 }
 
+// what a log tells without a truth, of all joints
+std::string joints_of_log(const Row& r) {
+  std::vector<std::string> said;
+  for (const Metric metric : {Metric::kFloor, Metric::kDrift, Metric::kMakerCorrelation}) {
+    const MetricRow& row = row_of(metric);
+    std::vector<std::string> values;
+    for (const std::optional<double>& v : r.score.joints(metric))
+      values.push_back(v ? fmt::format("{:.{}f}", *v, digits_of(r, row)) : "-");
+    if (values.size() > 1)
+      said.push_back(fmt::format("{} {} {}", row.title, fmt::join(values, " "), row.unit));
+  }
+  return said.empty() ? "" : fmt::format("  by joint: {}", fmt::join(said, "; "));
+}
+
 }  // namespace
 
 std::string format_table(const std::vector<Row>& rows, TableFormat format,
@@ -138,7 +153,9 @@ std::string format_table(const std::vector<Row>& rows, TableFormat format,
     if (tells) cells.push_back(r.score.error);
     table.add(std::move(cells));
     const std::string said = r.score.counts.sentence();
-    if (format == TableFormat::kText && !said.empty()) table.add_note("  " + said);
+    if (format != TableFormat::kText) continue;
+    if (!said.empty()) table.add_note("  " + said);
+    if (const std::string joints = joints_of_log(r); !joints.empty()) table.add_note(joints);
   }
   return table.format(format);
 }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -32,21 +31,15 @@ using Table = std::map<std::string, std::map<std::string, std::vector<double>>>;
 class Golden {
  public:
   explicit Golden(const GoldenOptions& o) : o_(o) {
-    std::regex wanted;
-    try {
-      wanted = std::regex(o.filter);
-    } catch (const std::regex_error& e) {
-      throw std::invalid_argument(
-          fmt::format("'{}' is no regular expression: {}", o.filter, e.what()));
-    }
+    const auto wanted = entry_filter(o.filter);
+    const auto add = [&](const Entry& e, const char* how) {
+      if (wanted(name_of(e, how))) entries_[how].push_back(e);
+    };
     for (const Entry& e : golden_entries(o.selection)) {
-      add(e, "", wanted);
-      if (also_degraded(e)) add(e, kDegraded, wanted);
+      add(e, "");
+      if (also_degraded(e)) add(e, kDegraded);
     }
-    if (entries_.empty()) {
-      throw std::invalid_argument(
-          fmt::format("the filter '{}' matches nothing; see --list", o.filter));
-    }
+    if (entries_.empty()) fail_no_match(o.filter);
     if (o.seeds.empty()) throw std::invalid_argument("golden metrics need a seed");
   }
 
@@ -70,9 +63,6 @@ class Golden {
   bool also_degraded(const Entry& e) const {
     const auto* const end = std::end(kAlsoDegraded);
     return !own_sensors() && std::find(std::begin(kAlsoDegraded), end, e.scenario().name) != end;
-  }
-  void add(const Entry& e, const std::string& how, const std::regex& wanted) {
-    if (std::regex_search(name_of(e, how), wanted)) entries_[how].push_back(e);
   }
   static std::string name_of(const Entry& e, const std::string& how) {
     return e.group() + how + e.name().substr(e.group().size());

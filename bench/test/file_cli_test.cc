@@ -241,6 +241,18 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
           R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "lag",
               "loads": [{"joint": 1, "torque": 3}]}]})",
           "\"asks\" is 'lag', and no load changes");
+  refuses(own_scenario(),
+          R"({"scenarios": [{"name": "pick", "duration": 2, "asks": "lag",
+              "loads": [{"joint": 1, "torque": 3, "from": 1}]}]})",
+          "\"asks\" is 'lag', of up to 2 s");
+  refuses(own_scenario(),
+          R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "step",
+              "loads": [{"joint": 1, "torque": 3, "from": 5}]}]})",
+          "\"from\" is 5, the end of the scenario");
+  refuses(own_scenario(),
+          R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "step",
+              "loads": [{"joint": 1, "torque": 3, "from": 1, "w": 4}]}]})",
+          "so there must be constant \"loads\", and nothing else");
   refuses("\"pick\"", "\"step\"", "'step'");
   refuses("\"pick\"", "\"a/b\"", "must be a word");
   refuses("\"velocity_noise\"", "\"noise\"", "velocity_noise");

@@ -19,6 +19,7 @@ namespace tauext {
 namespace {
 
 constexpr double kUnbearable = 1e30;  // from here on something never comes, or breaks a limit
+constexpr double kNothing = 1e-9;     // what 0 counts as, which has no logarithm
 
 double largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
@@ -100,7 +101,7 @@ class Search {
     double sum = 0, count = 0, broken = 0;
     for (const std::vector<Score>& seeds : runs) {
       if (const auto m = mean_of(seeds, o_.minimize)) {
-        const double value = std::log(std::max(m->value, 1e-9));
+        const double value = std::log(std::max(m->value, kNothing));
         if (m->never < 1) sum += is_more_better(o_.minimize) ? -value : value, ++count;
         broken += m->never;
       }
@@ -126,7 +127,8 @@ class Search {
   // of the metric; NaN for what never comes, or breaks a limit
   double in_units(double objective) const {
     if (objective >= kUnbearable) return kNoValue;
-    return is_more_better(o_.minimize) ? 1 / objective : objective;
+    const double value = is_more_better(o_.minimize) ? 1 / objective : objective;
+    return value > 1.001 * kNothing ? value : 0;
   }
 
   double evaluate(const Place& x) {
@@ -192,27 +194,15 @@ const FieldHelp* find(const std::vector<FieldHelp>& fields, const std::string& k
   return it == fields.end() ? nullptr : &*it;
 }
 
-// a number, or nothing
-std::optional<double> number_in(const std::string& text) {
+// of each joint, or of all; none if it is no number
+std::vector<double> numbers_in(const std::string& key, const std::string& text) {
+  constexpr double kMost = std::numeric_limits<double>::max();
   try {
-    std::size_t end = 0;
-    const double x = std::stod(text, &end);
-    if (end == text.size() && std::isfinite(x)) return x;
-  } catch (const std::exception&) {  // no number
+    const auto n = std::count(text.begin(), text.end(), '/') + 1;
+    return detail::numbers_of(key, text, static_cast<int>(n), -kMost, kMost);
+  } catch (const std::invalid_argument&) {
+    return {};
   }
-  return std::nullopt;
-}
-
-std::vector<double> numbers_in(std::string text) {
-  std::vector<double> all;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('/', at), text.size());
-    const auto x = number_in(text.substr(at, end - at));
-    if (!x) return {};
-    all.push_back(*x);
-    at = end + 1;
-  }
-  return all;
 }
 
 }  // namespace
@@ -239,14 +229,17 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
     k.of_detector = d != nullptr;
     const FieldHelp& field = d != nullptr ? *d : *e;
     const auto set = key_of(d != nullptr ? pair.detector : pair.estimator, k.key);
-    k.start = numbers_in(set.value_or(field.value));
+    k.start = numbers_in(k.key, set.value_or(field.value));
     if (equals != text.npos) {
-      const auto low = number_in(text.substr(equals + 1, colon - equals - 1)),
-                 high = colon == text.npos ? std::nullopt : number_in(text.substr(colon + 1));
-      if (!low || !high || !(0 < *low && *low < *high))
+      const std::vector<double> low =
+                                    numbers_in(k.key, text.substr(equals + 1, colon - equals - 1)),
+                                high = colon == text.npos
+                                           ? low
+                                           : numbers_in(k.key, text.substr(colon + 1));
+      if (low.size() != 1 || high.size() != 1 || !(0 < low[0] && low[0] < high[0]))
         throw std::invalid_argument(
             fmt::format("--tune {}: KEY=LOW:HIGH, with 0 < LOW < HIGH", text));
-      k.low = *low, k.high = *high;
+      k.low = low[0], k.high = high[0];
       if (k.start.empty()) k.start = {std::sqrt(k.low * k.high)};
     }
     if (k.start.empty() || !(largest(k.start) > 0))

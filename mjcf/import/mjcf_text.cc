@@ -21,7 +21,7 @@ namespace tauext {
 namespace {
 
 namespace fs = std::filesystem;
-using detail::each, detail::drop, detail::has_word, detail::inside, detail::name_of,
+using detail::each, detail::drop, detail::fail, detail::has_word, detail::inside, detail::name_of,
     detail::parent_name, detail::text;
 using tinyxml2::XMLDocument, tinyxml2::XMLElement, tinyxml2::XMLNode;
 
@@ -31,7 +31,9 @@ class Import {
 
   std::string root() { return load(doc_, path_).Name(); }
 
-  void refuse_nan() {
+  // of all attributes but names, in small letters
+  template <class Visit>
+  void each_word(Visit&& visit) {
     each(load(doc_, path_), [&](XMLElement& e) {
       for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
         const std::string_view attribute = a->Name();
@@ -40,7 +42,7 @@ class Import {
         for (std::string word; words >> word;) {
           std::transform(word.begin(), word.end(), word.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-          if (word == "nan") fail("line {}: {} of <{}> is {}", e, attribute, name_of(e), word);
+          visit(e, a->Name(), word);
         }
       }
       return true;
@@ -55,8 +57,7 @@ class Import {
       mjcf.DeepCopy(&doc_);
     }
     XMLElement& root = *doc_.RootElement();
-    if (name_of(root) != "mujoco")
-      fail("line {}: <{}> is no MJCF, and no URDF", root, name_of(root));
+    if (name_of(root) != "mujoco") fail(root, "<{}> is no MJCF, and no URDF", name_of(root));
     include(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     find_bodies_with_mass(root);
@@ -73,13 +74,6 @@ class Import {
   }
 
  private:
-  template <class... Args>
-  [[noreturn]] void fail(fmt::format_string<int, Args...> words, const XMLElement& e,
-                         Args&&... args) const {
-    throw std::runtime_error(
-        one_line(fmt::format(words, e.GetLineNum(), std::forward<Args>(args)...)));
-  }
-
   XMLElement& load(XMLDocument& doc, const fs::path& file) {
     // who asks names the file itself
     const std::string where = file == path_ ? "" : file.string() + ": ";
@@ -103,8 +97,7 @@ class Import {
       XMLElement* const next = e->NextSiblingElement();
       if (name_of(*e) == "include") {
         const std::string file = text(*e, "file");
-        if (depth > 20 || !included_.insert(file).second)
-          fail("line {}: '{}' is included twice", *e, file);
+        if (depth > 20 || !included_.insert(file).second) fail(*e, "'{}' is included twice", file);
         XMLDocument other;
         XMLElement& root = load(other, folder / file);
         include(root, folder, depth + 1);
@@ -124,10 +117,10 @@ class Import {
     each(root, [&](XMLElement& e) {
       for (const std::string_view name : detail::kUnknown) {
         if (name_of(e) == name && inside(e, "worldbody")) {
-          fail(
-              "line {}: MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
-              "(as newer MuJoCo does when it saves a model)",
-              e, name);
+          fail(e,
+               "MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
+               "(as newer MuJoCo does when it saves a model)",
+               name);
         }
       }
       return true;
@@ -169,7 +162,7 @@ class Import {
       const std::string_view attributes = attributes_of(e);
       if (attributes.empty()) {
         if (!has_word(detail::kLeftOutElements, name_of(e)))
-          fail("line {}: this import knows no <{}>; {}", e, name_of(e),
+          fail(e, "this import knows no <{}>; {}", name_of(e),
                detail::remedy_for(name_of(e), detail::elements_of(detail::kKept)));
         return drop_section(e);
       }
@@ -212,8 +205,8 @@ class Import {
       a = a->Next();
       if (has_word(kept, attribute)) continue;
       if (!is_left_out(e, attribute)) {
-        fail("line {}: <{}> has no attribute '{}' that this import knows; {}", e, name_of(e),
-             attribute, detail::remedy_for(attribute, kept));
+        fail(e, "<{}> has no attribute '{}' that this import knows; {}", name_of(e), attribute,
+             detail::remedy_for(attribute, kept));
       }
       if (attribute != "rgba" && attribute != "material" && attribute != "group")
         ++out_.dropped[fmt::format("{}.{}", name_of(e), attribute)];
@@ -282,7 +275,17 @@ bool is_urdf(const std::string& path) {
 }
 
 void refuse_nan(const std::string& path) {
-  Import(path, {}).refuse_nan();
+  Import(path, {}).each_word([](XMLElement& e, const char* attribute, const std::string& word) {
+    if (word == "nan") fail(e, "{} of <{}> is {}", attribute, name_of(e), word);
+  });
+}
+
+void refuse_commas(const std::string& path) {
+  Import(path, {}).each_word([](XMLElement& e, const char* attribute, const std::string& word) {
+    if (word.find(',') != word.npos && word.find_first_not_of("+-.,0123456789e") == word.npos)
+      fail(e, "{} of <{}> is {}: write decimals behind a point, and spaces between numbers",
+           attribute, name_of(e), word);
+  });
 }
 
 ImportedText import_mjcf(const std::string& path, const ImportOptions& options) {

@@ -38,6 +38,9 @@ bool is_urdf(const std::string& path);
 /// @throws std::runtime_error in one line, naming the element of the file that says so
 void refuse_nan(const std::string& path);
 
+/// The same of a number like 2,9, of which MuJoCo says that there is a problem.
+void refuse_commas(const std::string& path);
+
 /// Of the file, with all that it includes, the bodies, joints, masses and springs: what dynamics
 /// needs, and MuJoCo 2.2.2 knows. Its actuators are dropped; joints that follow
 /// no other get a motor of unit gain.

@@ -13,25 +13,17 @@
 #include <locale>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "mjcf/import/schema.h"
 #include "mjcf/import/xml.h"
-#include "mjcf/trace/printable.h"
 
 namespace tauext::detail {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
-
-template <class... Args>
-[[noreturn]] void fail(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
-  throw std::runtime_error(one_line(
-      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...))));
-}
 
 // numbers of an attribute, or of none
 std::vector<double> numbers(const XMLElement& e, const char* attribute, std::size_t n) {
@@ -224,6 +216,16 @@ class Urdf {
     set(out, "fullinertia", {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)});
   }
 
+  static void check_range(const XMLElement& joint, double lower, double upper) {
+    constexpr double kMostTurned = 20;  // [rad], three turns each way
+    if (!(lower < upper))
+      fail(joint, "joint '{}' has no way to go from {} to {}: exchange them, or make it fixed",
+           text(joint, "name"), lower, upper);
+    if (text(joint, "type") == "revolute" && std::max(-lower, upper) > kMostTurned)
+      fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous",
+           text(joint, "name"), lower, upper);
+  }
+
   void add_joint(const XMLElement& joint, XMLElement& body) {
     const std::string type = text(joint, "type"), name = text(joint, "name");
     if (type == "fixed") return;
@@ -240,13 +242,12 @@ class Urdf {
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = number(limit, "lower", 0), upper = number(limit, "upper", 0);
     const bool has_range = type != "continuous" && (lower != 0 || upper != 0);
-    if (has_range && !(lower < upper))
-      fail(joint,
-           "joint '{}' has no way to go from {} to {}: exchange lower and upper, or make it "
-           "fixed",
-           name, lower, upper);
-    if (has_range) set(out, "range", {lower, upper});
-    if (!has_range && type != "continuous") ++dropped_["limit without a range"];
+    if (has_range) {
+      check_range(joint, lower, upper);
+      set(out, "range", {lower, upper});
+    } else if (type != "continuous") {
+      ++dropped_["limit without a range"];
+    }
     const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
     for (const char* term : {"damping", "friction", "armature"}) {
       if (const double x = number(dynamics, term, 0); !(x >= 0))
@@ -272,10 +273,8 @@ class Urdf {
       if (leader != follower && text(*j, "name") == leader && text(*j, "type") != "fixed")
         return leader;
     }
-    throw std::runtime_error(one_line(
-        fmt::format("line {}: joint '{}': its <mimic> follows '{}', which is no other joint that "
-                    "moves",
-                    mimic.GetLineNum(), follower, leader)));
+    fail(mimic, "joint '{}': its <mimic> follows '{}', which is no other joint that moves",
+         follower, leader);
   }
 
   XMLElement& mujoco_;

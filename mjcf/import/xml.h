@@ -3,12 +3,17 @@
 /// Small things about XML elements.
 #pragma once
 
+#include <fmt/format.h>
 #include <tinyxml2.h>
 
 #include <cctype>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "mjcf/trace/printable.h"
 
 namespace tauext::detail {
 
@@ -22,6 +27,13 @@ inline std::string_view name_of(const XMLElement& e) {
 inline std::string text(const XMLElement& e, const char* attribute) {
   const char* const value = e.Attribute(attribute);
   return value == nullptr ? "" : value;
+}
+
+/// @throws std::runtime_error in one line, naming that of the element
+template <class... Args>
+[[noreturn]] void fail(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
+  throw std::runtime_error(one_line(
+      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...))));
 }
 
 /// What is wrong with what was read, like "mismatched element"; "no element" if nothing is.

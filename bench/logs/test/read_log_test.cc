@@ -8,13 +8,19 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tauext::test {
 namespace {
 
-// what is said of two seconds of a sine, with q, qd and t times factors
-std::string said_of(double q, double qd, double t) {
+// two seconds of a sine, with q, qd and t times factors, and what is said of them
+struct Read {
+  RecordedLog log;
+  std::string said;
+};
+Read read_sine(double q, double qd, double t) {
   const std::string path =
       (std::filesystem::temp_directory_path() / fmt::format("tauext_read_log_{}.csv", ::getpid()))
           .string();
@@ -27,9 +33,12 @@ std::string said_of(double q, double qd, double t) {
   }
   file.close();
   testing::internal::CaptureStderr();
-  read_any_log(path);
+  RecordedLog log = read_any_log(path);
   std::filesystem::remove(path);
-  return testing::internal::GetCapturedStderr();
+  return {std::move(log), testing::internal::GetCapturedStderr()};
+}
+std::string said_of(double q, double qd, double t) {
+  return read_sine(q, qd, t).said;
 }
 
 TEST(ReadAnyLog, DoubtsUnitsThatCanHardlyBe) {
@@ -39,8 +48,16 @@ TEST(ReadAnyLog, DoubtsUnitsThatCanHardlyBe) {
             std::string::npos);
   EXPECT_NE(said_of(1, kDegrees, 1).find("0.0175 times as fast"), std::string::npos);
   EXPECT_NE(said_of(1, 1, 1000).find("0.001 times as fast"), std::string::npos);
+  EXPECT_NE(said_of(1, 1e-3, 1000).find("the samples are 1 apart on average"), std::string::npos);
   EXPECT_NE(said_of(kDegrees, kDegrees, 1).find("q1 reaches 28.6, more than two turns"),
             std::string::npos);
+}
+
+TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
+  EXPECT_NO_THROW(read_sine(1, 1, 1).log.require_consistent("a.csv"));
+  const RecordedLog degrees = read_sine(180 / M_PI, 1, 1).log;
+  EXPECT_FALSE(degrees.usable());
+  EXPECT_THROW(degrees.require_consistent("a.csv"), std::invalid_argument);
 }
 
 }  // namespace

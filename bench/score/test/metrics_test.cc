@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "bench/score/detection_metrics.h"
 
@@ -110,7 +111,7 @@ TEST(StepResponse, OfAnEstimateThatNeverArrivesIsNaN) {
 
 TEST(Lag, OfASineIsTheFirstDelayThatFitsNotOnePeriodMore) {
   const Times t = times(10000);
-  for (const double w : {1., 3.5, 5., 20., 60.}) {
+  for (const double w : {1., 3.5, 5., 20., 60., 250., 300.}) {
     const RowVectorXd truth = signal(t, [=](double s) { return std::sin(w * s); }),
                       late = signal(t, [=](double s) { return std::sin(w * (s - 0.01)); });
     EXPECT_NEAR(lag(t, truth, late, 0), 0.01, 1e-9) << w;
@@ -124,6 +125,17 @@ TEST(Lag, OfADelayedSignalIsExactlyItsDelay) {
     const RowVectorXd late = signal(t, [&](double s) { return truth(s - delay * 1e-3); });
     EXPECT_NEAR(lag(t, signal(t, truth), late, 3), delay * 1e-3, 1e-12);
   }
+}
+
+TEST(Lag, OfANoisyEstimateIsThatOfWhatIsBelowTheNoise) {
+  const Times t = times(10000);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 1);
+  const RowVectorXd truth = signal(t, [](double s) { return 10 * std::sin(s); }),
+                    late =
+                        signal(t, [&](double s) { return 10 * std::sin(s - 0.1) + noise(random); });
+  EXPECT_NEAR(lag(t, truth, late, 0), 0.1, 3 * 1 / (10 * std::sqrt(8000 / 2.)))
+      << "three standard deviations of any estimate of a delay from so many samples (Cramer-Rao)";
 }
 
 TEST(Lag, OfAFirstOrderFilterOnARampIsOneOverItsBandwidth) {

@@ -85,6 +85,14 @@ TEST(Table, ColumnsAlignAndUnitsStandUnderTheirHeads) {
   EXPECT_EQ(l[2].find("1.500") + 5, l[3].find("22.250") + 6);
 }
 
+TEST(Table, SaysOfEachJointWhatALogTellsWithoutATruth) {
+  Row r{{"wallmobot3", "step", "mo2"}, {}};
+  r.score.set_joints(Metric::kFloor, {0.1, 0.25, 0.0625});
+  const auto l = lines({r});
+  EXPECT_NE(l[2].find(" 0.250"), std::string::npos) << "the worst: " << l[2];
+  EXPECT_EQ(l[3], "  by joint: floor 0.100 0.250 0.062 N m");
+}
+
 TEST(Legend, ExplainsEveryColumnAndNoOther) {
   const std::string text = table_legend({row("ekf", 1, 1), row("ndob", 2, 2)});
   for (const MetricRow& m : kMetrics) {

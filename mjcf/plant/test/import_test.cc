@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/test/arm_dynamics.h"
+#include "mjcf/plant/test/robot_folder.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
@@ -58,21 +57,12 @@ std::string arm(bool plain) {
               "<keyframe><key qpos='0 0 0 0'/></keyframe>");
 }
 
-class Import : public testing::Test {
+class Import : public RobotFolder {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string put(const std::string& xml, const std::string& name = "robot.xml") {
-    std::ofstream(folder_ / name) << xml;
-    return folder_ / name;
-  }
   // with these bodies
-  std::string body(const std::string& xml) {
+  std::string body(const std::string& xml) const {
     return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
   }
-
-  const fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("import_{}", ::getpid());
 };
 
 constexpr const char* kFingers = ".*_finger";
@@ -159,6 +149,8 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
   has(error(body("<body><joint name='a'/><sight name='s'/></body>")), "knows no <sight>");
   has(error(body("<body><joint name='a'/><geom size='.1' mass='nan'/></body>")),
       "mass of <geom> is nan");
+  has(error(body("<body><joint name='a'/><geom size='.1' mass='2,9'/></body>")),
+      "mass of <geom> is 2,9: write decimals behind a point");
   has(error(body("<body><joint name='a' stiffness='3'/><geom size='.1'/></body>")),
       "joint 1 'a' has a spring of 3 N m/rad");
   has(error(body("<body><freejoint name='loose'/><geom size='.1'/></body>")),

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other people's URDF (mjcf/import/), beside MuJoCo's own reader.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
-#include <unistd.h>
 
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,26 +11,14 @@
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/test/arm_dynamics.h"
+#include "mjcf/plant/test/robot_folder.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-class OfUrdf : public testing::Test {
- protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string put(const std::string& xml, const std::string& name) const {
-    std::ofstream(folder_ / name) << xml;
-    return folder_ / name;
-  }
-
-  const fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("urdf_{}", ::getpid());
-};
+class OfUrdf : public RobotFolder {};
 
 // of three joints with everything turned; `more` stands in its robot
 std::string urdf(const std::string& more = "") {
@@ -139,6 +123,8 @@ TEST_F(OfUrdf, SaysWhatIsWrong) {
   };
   has(error(limited("revolut", "lower='-1' upper='1'")), "joint 'y' is revolut");
   has(error(limited("revolute", "lower='2' upper='-2'")), "no way to go from 2 to -2");
+  has(error(limited("revolute", "lower='-170' upper='170'")),
+      "joint 'y' goes from -170 to 170 rad: give radians");
   has(error(limited("revolute", "lower='-1' upper='1'")),
       "body 'c' moves, and mass or inertia of it is not above 0");
 }

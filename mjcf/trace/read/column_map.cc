@@ -122,6 +122,15 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
   m = std::move(ordered);
 }
 
+std::vector<std::string> ColumnMap::missing_in(const MappedColumns& found) const {
+  std::vector<std::string> all;
+  for (const auto& [name, w] : wanted_) {
+    if (!w.of_preset && found.find(name) == found.end())
+      all.push_back(fmt::format("no column for [{}]: none matches '{}'", name, w.expression));
+  }
+  return all;
+}
+
 MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
                                 const std::string& path) const {
   MappedColumns all;

@@ -60,6 +60,9 @@ class ColumnMap {
   /// @throws std::runtime_error naming the path, the quantity and what was looked for
   MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path) const;
 
+  /// What else a map of somebody's own wants, and these are not: a sentence for each quantity.
+  std::vector<std::string> missing_in(const MappedColumns& found) const;
+
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written
   /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
   double velocity_filter() const { return velocity_filter_; }
@@ -74,6 +77,7 @@ class ColumnMap {
     std::vector<int> numbers;        // from 1
     std::vector<std::string> units;  // one, or one of each
     std::vector<double> gain, sign;  // likewise
+    bool of_preset = false;          // whose sources need not have it
   };
 
   std::vector<int> find(std::string_view quantity, const Wanted& w,

@@ -63,6 +63,7 @@ class MapReader {
     for (const auto& [quantity, expression] : p.names)
       map_.wanted_[std::string(quantity)].expression = expression;
     if (!p.toml.empty()) MapReader(map_, std::string(p.name)).read(p.toml);
+    for (auto& [quantity, wanted] : map_.wanted_) wanted.of_preset = true;
   }
 
  private:
@@ -193,6 +194,7 @@ class MapReader {
 
   void read_columns(const toml::node& value, ColumnMap::Wanted& w) {
     w.expression.clear(), w.names.clear(), w.numbers.clear();
+    w.of_preset = false;
     if (const auto text = value.value_exact<std::string>()) {
       try {
         const std::regex tried(*text);
@@ -230,6 +232,7 @@ class MapReader {
     for (const auto& [quantity, expression] : p.names)
       map_.wanted_[std::string(quantity)].expression = expression;
     if (!p.toml.empty()) read(p.toml);
+    for (auto& [quantity, wanted] : map_.wanted_) wanted.of_preset = true;
   }
 
  private:

@@ -99,6 +99,7 @@ struct RecordingReader::Impl {
   // what the map finds; in a bag, whose messages may leave fields empty, what the first one has
   MappedColumns known(const std::string& path) {
     MappedColumns all = map.mapped(rows->columns(), path);
+    for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
     if (!is_bag(path)) return all;
     has_first = rows->next(raw, skipped);
     std::erase_if(all, [&](const auto& q) {

@@ -110,9 +110,8 @@ std::string bag_of(const Trace& t, const std::vector<std::string>& joints, doubl
   db.run(
       "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,"
       "serialization_format TEXT NOT NULL,offered_qos_profiles TEXT NOT NULL);"
-      "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,timestamp INTEGER "
-      "NOT "
-      "NULL, data BLOB NOT NULL);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,"
+      "timestamp INTEGER NOT NULL,data BLOB NOT NULL);"
       "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
       "INSERT INTO topics(name,type,serialization_format,offered_qos_profiles) VALUES "
       "('/joint_states','sensor_msgs/msg/JointState','cdr','');"

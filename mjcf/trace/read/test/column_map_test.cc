@@ -179,6 +179,13 @@ TEST_F(Columns, ThatNobodyWantsMayHoldAnything) {
   EXPECT_EQ(skipped_.total(), 0);
 }
 
+TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
+  const std::string log = "t,q1,qd1,tau1\n0,1,2,3\n1,1,2,3\n";
+  read_by(log, "preset = 'tauext'\n[contact]\ncolumns = 'touched'\n");
+  EXPECT_EQ(skipped_.notes,
+            std::vector<std::string>{"no column for [contact]: none matches 'touched'"});
+}
+
 TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("[q"), "map.toml: line 1: ");
   expect_says(error_of_map("[|]"), "map.toml: ");
