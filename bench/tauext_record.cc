@@ -88,8 +88,6 @@ Trace thinned(const Trace& trace, int every) {
 void write(const Trace& trace, const Flags& f, const Robot& r) {
   if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), f.out);
   if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
-  if (f.out.ends_with(".npy"))
-    throw std::invalid_argument(f.out + ": a run is several arrays, and so an .npz");
   if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
   LogBuffer log;
   append_samples(readings_of(trace), message_type(f.type), log);
@@ -154,6 +152,8 @@ int run(const CLI::App& app, const Flags& f) {
   if (message_type(f.type) != MessageType::kTauext && !is_lcm_log(f.out)) {
     throw std::invalid_argument(fmt::format("--type {}: --out {} is no LCM log", f.type, f.out));
   }
+  if (f.out.ends_with(".npy"))
+    throw std::invalid_argument(f.out + ": a run is several arrays, and so an .npz");
   const bool bag = f.layout == "joint_state";
   if (!f.layout.empty() && f.out != "-" && f.out.ends_with(".db3") != bag)
     throw std::invalid_argument(fmt::format(
@@ -171,8 +171,8 @@ int run(const CLI::App& app, const Flags& f) {
       measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
   const Trace thin = thinned(trace, f.every);
   write(thin, f, r);
-  if (bag && !thin.contact.empty())
-    say(f.out + ": joint_state has no place for labels of contacts: none is in it");
+  if (bag && std::count(thin.contact.begin(), thin.contact.end(), 0) < thin.size())
+    say(f.out + ": joint_state has no place for labels of contacts, so they are left out");
   const std::string stopped = trace.stopped_at >= 0
                                   ? fmt::format("; stopped at {} s", trace.t[trace.stopped_at])
                               : f.stop.empty() ? ""

@@ -149,9 +149,9 @@ int replay(Flags& f) {
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
   RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns, true});
+  r.require_joints(recorded.trace, f.log);
   r.make_torques(recorded.trace);
   const Trace& trace = recorded.trace;
-  r.require_joints(trace, f.log);
   if (!(f.score_from <= trace.t.back())) {
     throw std::invalid_argument(
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));

@@ -138,8 +138,8 @@ Recorded recorded(const Flags& f) {
   for (const std::string& path : f.logs) {
     all.logs.push_back(read_any_log(path, {f.channel, f.columns, true}));
     RecordedLog& log = all.logs.back();
-    if (!f.ours.empty()) r->make_torques(log.trace);
     if (r != nullptr) r->require_joints(log.trace, path);
+    if (!f.ours.empty()) r->make_torques(log.trace);
     if (log.trace.size() < 3)
       throw std::invalid_argument(
           fmt::format("{}: {} samples say nothing", path, log.trace.size()));

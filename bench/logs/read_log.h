@@ -14,10 +14,10 @@ namespace tauext {
 struct RecordedLog {
   Trace trace;               ///< what could be used
   std::int64_t skipped = 0;  ///< rows, or messages of the channel
-  bool contradicts = false;  ///< q moves at least twice as fast as qd says, or half as fast at most
-  /// Else the log is something else than one thinks.
+  bool contradicts = false;  ///< q moves twice as fast as qd says, half as fast, or the other way
+  /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
   bool usable() const { return skipped <= trace.size() && !contradicts; }
-  /// For those who write what they learn from it into a file.
+  /// Asked by programs that write down what they learn from it.
   /// @throws std::invalid_argument if q and qd contradict each other
   void require_consistent(const std::string& path) const;
 };

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bench/score/degradation.h"
+#include "bench/score/metrics.h"
 #include "mjcf/import/json_object.h"
 #include "mjcf/scenarios/touch.h"
 #include "mjcf/trace/known.h"
@@ -188,14 +189,11 @@ void check_question(const Object& o, Response asked, const std::vector<Load>& lo
   if (of_load && touches.empty() && !std::any_of(loads.begin(), loads.end(), changes))
     fail("{}: \"asks\" is '{}', and no load {}", o.where(), o.text("asks", ""),
          asked == Response::kLag ? "changes" : "begins or ends within the scenario");
-  constexpr double kLongestLag = 2;  // [s] of metrics::lag
-  if (asked == Response::kLag &&
-      o.number("duration", 0, Object::kMost) <
-          o.number_or("score_from", 0, 0, Object::kMost) + kLongestLag + 0.1)
-    fail(
-        "{}: \"asks\" is 'lag', of up to {} s: \"duration\" must be longer than \"score_from\" and "
-        "that",
-        o.where(), kLongestLag);
+  const double least = o.number_or("score_from", 0, 0, Object::kMost) + metrics::kLongestLag + 0.1;
+  if (const double duration = o.number("duration", 0, Object::kMost);
+      asked == Response::kLag && duration < least - 1e-9)
+    fail("{}: \"asks\" is 'lag', so \"duration\" must be {:g} or more, not {:g}", o.where(), least,
+         duration);
   if (asked == Response::kDetection && touches.empty())
     fail("{}: \"asks\" is 'detection', and there are no \"touches\"", o.where());
 }

@@ -28,10 +28,11 @@ namespace tauext {
 /// All but name and duration may be left out. The arm starts at rest or on its sines at the first
 /// way point, moves from one to the next with minimum jerk, and stays at the last; without any, it
 /// stays at its home (Robot::home). Loads have the sign of (3); a sweep is a sine from 0.5 to 300
-/// rad/s, and a bandwidth is asked of sweeps alone. A joint whose truth stands still is not asked
-/// for its answer. Forces act on the arm at its end effector, in the world frame; blow and clamp
-/// count as collisions, push does not. What is degraded is what --degrade takes, and is used unless
-/// the program was asked for other faults.
+/// rad/s. A bandwidth is asked of sweeps alone, a step of constant loads alone, and a lag of
+/// scenarios that last 2.1 s or more beyond score_from. A joint whose truth stands still is not
+/// asked for its answer. Forces act on the arm at its end effector, in the world frame; blow and
+/// clamp count as collisions, push does not. What is degraded is what --degrade takes, and is used
+/// unless the program was asked for other faults.
 /// @throws std::runtime_error naming file, scenario, key and value, and what is known or possible
 std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot);
 

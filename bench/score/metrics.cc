@@ -107,14 +107,14 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
 }
 
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  constexpr double kLongest = 2;        // [s]
-  constexpr Eigen::Index kCoarse = 4;   // samples from one delay to the next: a sine is to be met
-  constexpr Eigen::Index kStride = 16;  // of the samples that tell where to look closer
+  // a first look tries each fourth delay, so that it sees the periods of quick sines, by each
+  // sixteenth sample
+  constexpr Eigen::Index kCoarse = 4, kStride = 16;
   if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNoValue;
   if (estimate.maxCoeff() == estimate.minCoeff()) return kNoValue;
-  const Eigen::Index first = first_from(t, t.front() + from + kLongest);
+  const Eigen::Index first = first_from(t, t.front() + from + kLongestLag);
   const double Ts = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
-  const auto longest = static_cast<Eigen::Index>(kLongest / Ts);
+  const auto longest = static_cast<Eigen::Index>(kLongestLag / Ts);
   if (first >= truth.size() || longest > first) return kNoValue;
 
   const auto left_at = [&](Eigen::Index s) { return mismatch(truth, estimate, first, s, 1); };
@@ -130,9 +130,11 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
          s <= std::min(longest, (i + 1) * kCoarse); ++s)
       minima.back() = std::min(minima.back(), {left_at(s), s});
   }
-  // what repeats fits again a period later: the first valley that is nearly as deep as any, and in
-  // it, where noise makes many minima, the deepest
+  // What is left, over the delay, has a valley at the delay of the estimate and, if the truth
+  // repeats, at each period more: the first valley that is nearly as deep as any is the right one.
+  // Within it noise makes many minima, and the deepest counts.
   const double good = 1.2 * std::min_element(minima.begin(), minima.end())->first;
+  if (kStride * *std::max_element(coarse.begin(), coarse.end()) <= good) return kNoValue;
   const auto valley =
       std::find_if(minima.begin(), minima.end(), [&](const auto& m) { return m.first <= good; });
   auto deepest = *valley;

@@ -48,9 +48,12 @@ struct StepResponse {
 /// The answer of that estimate to that truth.
 StepResponse step_response(const Times& t, const Signal& truth, const Signal& estimate);
 
-/// [s] the delay L, at sample resolution and up to 2 s, for which truth(t - L) is closest to
-/// estimate(t) in the mean square over t >= from + 2 s. NaN for a constant truth or estimate, for a
-/// shorter run, and if no delay below 2 s fits best. Of a truth that repeats, the least such delay.
+inline constexpr double kLongestLag = 2;  ///< [s] that lag() looks for
+
+/// [s] the delay L, at sample resolution and up to kLongestLag, for which truth(t - L) is closest
+/// to estimate(t) in the mean square over t >= from + kLongestLag. Of a truth that repeats, the
+/// least such delay. NaN for a constant truth or estimate, for a shorter run, if no shorter delay
+/// fits best, and if noise makes all delays fit alike (to a fifth of what is left).
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
 /// [N] root of the mean squared error of the force at the end effector that estimates mean, over

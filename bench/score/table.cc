@@ -117,7 +117,7 @@ const char* text_of(WorstJoint j) {
 // what a log tells without a truth, of all joints
 std::string joints_of_log(const Row& r) {
   std::vector<std::string> said;
-  for (const Metric metric : {Metric::kFloor, Metric::kDrift, Metric::kMakerCorrelation}) {
+  for (const Metric metric : {Metric::kFloor, Metric::kDrift}) {
     const MetricRow& row = row_of(metric);
     std::vector<std::string> values;
     for (const std::optional<double>& v : r.score.joints(metric))

@@ -244,7 +244,7 @@ TEST_F(FilePrograms, SayWhatIsWrongInAScenario) {
   refuses(own_scenario(),
           R"({"scenarios": [{"name": "pick", "duration": 2, "asks": "lag",
               "loads": [{"joint": 1, "torque": 3, "from": 1}]}]})",
-          "\"asks\" is 'lag', of up to 2 s");
+          "\"duration\" must be 2.1 or more, not 2");
   refuses(own_scenario(),
           R"({"scenarios": [{"name": "pick", "duration": 5, "asks": "step",
               "loads": [{"joint": 1, "torque": 3, "from": 5}]}]})",

@@ -31,10 +31,13 @@ class Import {
 
   std::string root() { return load(doc_, path_).Name(); }
 
-  // of all attributes but names, in small letters
+  // of all attributes but names and texts, in small letters
   template <class Visit>
   void each_word(Visit&& visit) {
-    each(load(doc_, path_), [&](XMLElement& e) {
+    XMLElement& root = load(doc_, path_);
+    include(root, fs::path(path_).parent_path(), 0);
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) == "custom") return false;
       for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
         const std::string_view attribute = a->Name();
         if (attribute.ends_with("name") || attribute.ends_with("class")) continue;
@@ -282,7 +285,9 @@ void refuse_nan(const std::string& path) {
 
 void refuse_commas(const std::string& path) {
   Import(path, {}).each_word([](XMLElement& e, const char* attribute, const std::string& word) {
-    if (word.find(',') != word.npos && word.find_first_not_of("+-.,0123456789e") == word.npos)
+    const std::size_t comma = word.find(',');
+    if (comma != word.npos && comma + 1 < word.size() &&
+        word.find_first_not_of("+-.,0123456789e") == word.npos)
       fail(e, "{} of <{}> is {}: write decimals behind a point, and spaces between numbers",
            attribute, name_of(e), word);
   });

@@ -38,7 +38,8 @@ bool is_urdf(const std::string& path);
 /// @throws std::runtime_error in one line, naming the element of the file that says so
 void refuse_nan(const std::string& path);
 
-/// The same of a number like 2,9, of which MuJoCo says that there is a problem.
+/// For a file that MuJoCo cannot read: it does not say that a comma in 2,9 is to blame.
+/// @throws std::runtime_error in one line, naming the first such element
 void refuse_commas(const std::string& path);
 
 /// Of the file, with all that it includes, the bodies, joints, masses and springs: what dynamics

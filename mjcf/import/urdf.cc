@@ -217,11 +217,11 @@ class Urdf {
   }
 
   static void check_range(const XMLElement& joint, double lower, double upper) {
-    constexpr double kMostTurned = 20;  // [rad], three turns each way
     if (!(lower < upper))
-      fail(joint, "joint '{}' has no way to go from {} to {}: exchange them, or make it fixed",
+      fail(joint,
+           "joint '{}' has no way to go from {} to {}: correct lower or upper, or make it fixed",
            text(joint, "name"), lower, upper);
-    if (text(joint, "type") == "revolute" && std::max(-lower, upper) > kMostTurned)
+    if (text(joint, "type") == "revolute" && std::max(-lower, upper) > 20)
       fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous",
            text(joint, "name"), lower, upper);
   }
@@ -241,7 +241,8 @@ class Urdf {
     set(out, "axis", {axis[0], axis[1], axis[2]});
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = number(limit, "lower", 0), upper = number(limit, "upper", 0);
-    const bool has_range = type != "continuous" && (lower != 0 || upper != 0);
+    const bool has_range = type != "continuous" && (lower != 0 || upper != 0) &&
+                           std::max(-lower, upper) < 1000;  // beyond that it stands for none
     if (has_range) {
       check_range(joint, lower, upper);
       set(out, "range", {lower, upper});

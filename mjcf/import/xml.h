@@ -29,7 +29,7 @@ inline std::string text(const XMLElement& e, const char* attribute) {
   return value == nullptr ? "" : value;
 }
 
-/// @throws std::runtime_error in one line, naming that of the element
+/// @throws std::runtime_error with these words and the number of the element's line in the file
 template <class... Args>
 [[noreturn]] void fail(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
   throw std::runtime_error(one_line(

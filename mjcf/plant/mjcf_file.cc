@@ -166,7 +166,6 @@ std::string without_jargon(const std::string& message) {
 Model loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
   const bool urdf = is_urdf(path);
-  if (!urdf) refuse_commas(path);
   const Model m =
       urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
   if (m && options.changes_nothing() && has_motors(*m)) return m;
@@ -174,6 +173,8 @@ Model loaded(const std::string& path, const ImportOptions& options) {
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});
   } catch (const std::runtime_error& e) {
+    constexpr std::string_view kUnreadable = "problem reading attribute";
+    if (std::string_view(e.what()).find(kUnreadable) != std::string_view::npos) refuse_commas(path);
     // the same in the words that name the file's own line; those of the imported text help nobody
     if (!m && !urdf && without_line(first) == without_line(e.what()))
       throw std::runtime_error(first);

@@ -20,15 +20,15 @@ struct Read {
   RecordedLog log;
   std::string said;
 };
-Read read_sine(double q, double qd, double t) {
+Read read_sine(double q, double qd, double t, double gap = 0) {
   const std::string path =
       (std::filesystem::temp_directory_path() / fmt::format("tauext_read_log_{}.csv", ::getpid()))
           .string();
   std::ofstream file(path);
   file << "t,q1,qd1,tau1\n";
   for (int k = 0; k < 2000; ++k) {
-    const double s = 0.001 * k;
-    file << fmt::format("{},{},{},0\n", t * s, q * 0.5 * std::sin(3 * s),
+    const double s = 0.001 * k, late = k > 1000 ? gap : 0;
+    file << fmt::format("{},{},{},0\n", t * s + late, q * 0.5 * std::sin(3 * s),
                         qd * 1.5 * std::cos(3 * s));
   }
   file.close();
@@ -58,6 +58,10 @@ TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
   const RecordedLog degrees = read_sine(180 / M_PI, 1, 1).log;
   EXPECT_FALSE(degrees.usable());
   EXPECT_THROW(degrees.require_consistent("a.csv"), std::invalid_argument);
+  EXPECT_TRUE(read_sine(1, -1, 1).log.contradicts);
+  EXPECT_TRUE(read_sine(1, 0, 1).log.contradicts);
+  EXPECT_FALSE(read_sine(1e-4, 0, 1).log.contradicts) << "a joint at rest trembles";
+  EXPECT_FALSE(read_sine(1, 1, 1, 5000).log.contradicts) << "over a gap qd says nothing";
 }
 
 }  // namespace

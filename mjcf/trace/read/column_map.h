@@ -60,7 +60,7 @@ class ColumnMap {
   /// @throws std::runtime_error naming the path, the quantity and what was looked for
   MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path) const;
 
-  /// What else a map of somebody's own wants, and these are not: a sentence for each quantity.
+  /// A sentence for each quantity that the map itself, not its preset, names and none is.
   std::vector<std::string> missing_in(const MappedColumns& found) const;
 
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written

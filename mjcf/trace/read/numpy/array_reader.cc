@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/trace/printable.h"
+
 namespace tauext {
 namespace {
 
@@ -25,7 +27,7 @@ std::string objection(const NpyHeader& h) {
     return "holds Python objects, which are not read: save numbers (dtype=float)";
   }
   if (!h.unusable.empty()) {
-    return fmt::format("holds '{}', which is no plain number", h.unusable);
+    return fmt::format("holds '{}', which is no plain number", printable_name(h.unusable));
   }
   if (!has_numbers(h)) return "holds no numbers";
   const std::size_t most = h.structured ? 1 : 2, dimensions = h.shape.size();

@@ -125,6 +125,9 @@ TEST_F(Npy, ErrorsNameWhatIsWrong) {
   EXPECT_EQ(error_with(of("'<f8'", "(0,)"), "12345678"), "has 8 bytes more than its 0 rows");
   EXPECT_EQ(error_with(of("'<U6'", "(1,)")), "holds no numbers");
   EXPECT_EQ(error_with(of("'<c16'", "(1,)")), "holds '<c16', which is no plain number");
+  const std::string broken = error_with(of("'<f4\n'", "(1,)"));
+  EXPECT_EQ(broken.find('\n'), broken.npos) << broken;
+  EXPECT_NE(broken.find("which is no plain number"), broken.npos) << broken;
   EXPECT_EQ(error_with(of("[('t', '<M8[ns]')]", "(1,)")),
             "holds '<M8[ns]', which is no plain number");
   EXPECT_EQ(error_with(of("'<f8'", "(1, 2, 3)")),
