@@ -156,16 +156,19 @@ template <class F>
   f(k);
 }
 
-/// Calls f(k) for each piece k. Where there are several, the code of f stands apart and once: all
-/// pieces in one go would need more registers than there are, and more code than the processor's
-/// first cache holds.
-template <int P, class Scalar, class F>
+/// Calls f(k) for each piece k. If there are several, kApart makes the code of f a function of its
+/// own: a caller that does much else then needs less code, which must fit into the processor's
+/// first cache; one that does little is faster without.
+template <int P, class Scalar, bool kApart, class F>
 [[gnu::always_inline]] inline void for_pieces(const F& f) noexcept {
   constexpr int kCount = P / kPiece<P, Scalar>;
-  if constexpr (kCount == 1) {
-    f(0);
-  } else {
-    for (int k = 0; k < kCount; ++k) call_apart(f, k);
+#pragma GCC unroll 2
+  for (int k = 0; k < kCount; ++k) {
+    if constexpr (kApart && kCount > 1) {
+      call_apart(f, k);
+    } else {
+      f(k);
+    }
   }
 }
 

@@ -147,11 +147,11 @@ class TreeModel {
   [[gnu::noinline]] detail::PaddedDynamics<N, Scalar> padded_dynamics(
       const VecN& q, const VecN& qd, const VecN& u) const noexcept {
     const VecM rate = to_rate(qd);
-    const auto s = passes_.pose(to_rho(q));
-    auto flow = passes_.flow(s, rate);
+    const auto s = passes_.template pose<true>(to_rho(q));
+    auto flow = passes_.template flow<true>(s, rate);
     const auto c = passes_.composite(s.I);
     const VecM rest = bias(s, flow) + viscous_.cwiseProduct(rate) + offset_;
-    const auto IS = Passes::momenta(s, c);
+    const auto IS = Passes::template momenta<true>(s, c);
     detail::PaddedDynamics<N, Scalar> f;
     if constexpr (M == N) {
       f.B = passes_.inertia(s, IS);
@@ -165,9 +165,9 @@ class TreeModel {
     const VecN qdd = factor.solve(VecN(u - forces(rest)));
     f.qdd = detail::pad_vector<N, Scalar>(qdd);
     f.by_tau_ext = factor.minus_inverse();
-    passes_.accelerate(s, to_rate(qdd), flow);
+    passes_.template accelerate<true>(s, to_rate(qdd), flow);
     Bodies q_part, qd_part;
-    passes_.derivatives(s, flow, c, IS, q_part, qd_part);
+    passes_.template derivatives<true>(s, flow, c, IS, q_part, qd_part);
     qd_part.diagonal().template head<M>() += viscous_;
     const Square &by_q = to_q(q_part), &by_qd = to_q(qd_part);
     f.by_q = times_transposed(f.by_tau_ext, by_q);

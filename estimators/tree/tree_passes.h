@@ -14,7 +14,7 @@
 
 namespace tauext::detail {
 
-/// Of N joints; rho [rad] and its rate are those of the joints themselves.
+/// Of N joints; rho [rad] and its rate are those of the joints themselves. kApart: for_pieces.
 template <int N, class Scalar>
 class TreePasses {
  public:
@@ -50,6 +50,7 @@ class TreePasses {
   }
 
   /// At rho.
+  template <bool kApart = false>
   [[gnu::always_inline]] Pose pose(const VecN& rho) const noexcept {
     const VecN moved = rho - zero_;
     VecN s, c;
@@ -59,7 +60,7 @@ class TreePasses {
     out.R = {cosine * R_.x + sine * R_.y, cosine * R_.y - sine * R_.x, R_.z};
     out.p = p_ + slide * R_.z;
     sums_.place(out.R, out.p);
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       const auto R = out.R.piece(k), Sigma = Sigma_.piece(k);
       const auto p = out.p.piece(k);
       const auto hinge = hinge_.piece(k), m = m_.piece(k);
@@ -76,11 +77,12 @@ class TreePasses {
   }
 
   /// At that rate, without acceleration of the joints.
+  template <bool kApart = false>
   [[gnu::always_inline]] Flow flow(const Pose& s, const VecN& rate) const noexcept {
     const One qd = One::from(rate);
     Flow f;
     f.V = sums_.from_base(qd * s.S);
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       const auto V = f.V.piece(k), Sd = cross(V, s.S.piece(k));
       f.Sd.put(k, Sd);
       f.A.put(k, qd.piece(k) * Sd);
@@ -88,18 +90,19 @@ class TreePasses {
     });
     f.A = sums_.from_base(f.A);
     f.A.v = f.A.v - g_;
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       f.F.put(k, s.I.piece(k) * f.A.piece(k) + cross(f.V.piece(k), f.H.piece(k)));
     });
     return f;
   }
 
   /// The same with acceleration.
+  template <bool kApart>
   [[gnu::always_inline]] void accelerate(const Pose& s, const VecN& acceleration,
                                          Flow& f) const noexcept {
     const Motion more = sums_.from_base(One::from(acceleration) * s.S);
     f.A = f.A + more;
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       f.F.put(k, f.F.piece(k) + s.I.piece(k) * more.piece(k));
     });
   }
@@ -123,9 +126,10 @@ class TreePasses {
   }
 
   /// I^c S of each joint.
+  template <bool kApart = false>
   [[gnu::always_inline]] static Force momenta(const Pose& s, const Inertia& c) noexcept {
     Force IS;
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       IS.put(k, c.piece(k) * s.S.piece(k));
     });
     return IS;
@@ -152,12 +156,13 @@ class TreePasses {
   }
 
   /// The transposes of d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
+  template <bool kApart>
   [[gnu::always_inline]] void derivatives(const Pose& s, const Flow& f, const Inertia& c,
                                           const Force& IS, Square& by_q,
                                           Square& by_qd) const noexcept {
     Motion Sdd;
     Each33<P, Scalar> Y;
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       const auto V = f.V.piece(k);
       Sdd.put(k, cross(f.A.piece(k), s.S.piece(k)) + cross(V, f.Sd.piece(k)));
       const auto I = s.I.piece(k);
@@ -171,7 +176,7 @@ class TreePasses {
     const One two = One::all(Scalar(2));
     Three BtS;
     Force q_above, qd_above;
-    for_pieces<P, Scalar>([&](int k) __attribute__((always_inline)) {
+    for_pieces<P, Scalar, kApart>([&](int k) __attribute__((always_inline)) {
       const auto Y_c = Y.piece(k);
       const auto l_c = l.piece(k);
       const auto I_c = c.piece(k);
