@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -53,14 +52,15 @@ bool doubt_units(const Trace& log, const std::string& path, const std::string& r
       const double x = h * (log.qd(j, k) + log.qd(j, k - 1)) / 2, y = log.q(j, k) - log.q(j, k - 1);
       xx += x * x, xy += x * y, yy += y * y;
     }
-    const double times = xx > 0 ? xy / xx : std::numeric_limits<double>::infinity();
+    const bool rests = xx<1e-6 * yy, alike = std::abs(xy)> 0.9 * std::sqrt(xx * yy);
     const bool moved = log.q.row(j).maxCoeff() - log.q.row(j).minCoeff() > kMoved;
-    const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy) && xx > 0;
-    if (!contradicts && ((alike && (times > 2 || times < 0.5)) || (moved && xx < 1e-6 * yy))) {
-      say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1, times,
+    if (!contradicts && rests && moved)
+      say(fmt::format("{}: q{} moves, and qd{} says that it rests: {}", path, j + 1, j + 1,
+                      remedy));
+    if (!contradicts && !rests && alike && (xy > 2 * xx || xy < 0.5 * xx))
+      say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1, xy / xx,
                       j + 1, remedy));
-      contradicts = true;
-    }
+    contradicts = contradicts || (rests ? moved : alike && (xy > 2 * xx || xy < 0.5 * xx));
     const double most = log.q.row(j).cwiseAbs().maxCoeff();
     if (!far && most > kTwoTurns)
       say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,

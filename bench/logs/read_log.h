@@ -14,7 +14,9 @@ namespace tauext {
 struct RecordedLog {
   Trace trace;               ///< what could be used
   std::int64_t skipped = 0;  ///< rows, or messages of the channel
-  bool contradicts = false;  ///< q moves twice as fast as qd says, half as fast, or the other way
+  /// Whether a joint moves at least twice as fast as its qd says, at most half as fast, or the
+  /// other way.
+  bool contradicts = false;
   /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
   bool usable() const { return skipped <= trace.size() && !contradicts; }
   /// Asked by programs that write down what they learn from it.

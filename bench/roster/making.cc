@@ -19,11 +19,6 @@ void fail_taken(const char* what, const std::string& taken, const std::string& r
       what, taken, robot, name_of_specification(taken)));
 }
 
-void fail_joints(const std::string& robot, int joints, int samples_have) {
-  throw std::invalid_argument(
-      fmt::format("{} has {} joints, the samples have {}", robot, joints, samples_have));
-}
-
 void fail_truth(const std::string& estimator) {
   throw std::invalid_argument(
       fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", estimator));

@@ -16,7 +16,6 @@ namespace tauext::detail {
 
 // what does not depend on types, compiled once
 [[noreturn]] void fail_taken(const char* what, const std::string& taken, const std::string& robot);
-[[noreturn]] void fail_joints(const std::string& robot, int joints, int samples_have);
 [[noreturn]] void fail_truth(const std::string& estimator);
 void refuse_keys(const Specification& s);
 std::optional<double> take_bandwidth(Specification& s);

@@ -118,8 +118,8 @@ void Robot::make_torques(Trace& trace) const {
 
 void Robot::require_joints(const Trace& trace, const std::string& log) const {
   if (trace.dof() == dof_) return;
-  throw std::invalid_argument(
-      fmt::format("{}: {} has {} joints, the samples have {}", log, name_, dof_, trace.dof()));
+  throw std::invalid_argument(fmt::format("{}{}{} has {} joints, the samples have {}", log,
+                                          log.empty() ? "" : ": ", name_, dof_, trace.dof()));
 }
 
 Eigen::VectorXd Robot::gains() const {

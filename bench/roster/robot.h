@@ -74,8 +74,8 @@ class Robot {
   /// Makes torques of currents, by the gains of the robot's file.
   /// @throws std::invalid_argument as tauext::make_torques()
   void make_torques(Trace& trace) const;
-  /// @throws std::invalid_argument naming the log, unless it has the robot's joints
-  void require_joints(const Trace& trace, const std::string& log) const;
+  /// @throws std::invalid_argument naming the log, if it is one, unless it has the robot's joints
+  void require_joints(const Trace& trace, const std::string& log = "") const;
   /// [N m/A] of each drive; 0 where nobody says.
   Eigen::VectorXd gains() const;
   /// [rad] or [m] a bent pose: ArmScale::home of a file's robot; else 0.

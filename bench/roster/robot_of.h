@@ -136,14 +136,14 @@ class RobotOf final : public Robot {
 
   std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                  const Trace& trace, const DetectorSettings& s) const override {
-    check(trace);
+    require_joints(trace);
     return std::make_unique<RunnerOf<N>>(estimator_of(estimator, trace), detector_of(detector, s),
                                          trace);
   }
 
   std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
                                    const Trace& trace, const DetectorSettings& s) const override {
-    if (trace.size() > 0) check(trace);
+    if (trace.size() > 0) require_joints(trace);
     return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
   }
 
@@ -224,10 +224,6 @@ class RobotOf final : public Robot {
     }
   }
 
-  void check(const Trace& trace) const {
-    if (trace.dof() != N) fail_joints(name(), N, trace.dof());
-  }
-
   DetectorPtr detector_of(std::string_view text, const DetectorSettings& s) const {
     return text.empty() ? nullptr : made(find(detectors_, "detector", text), text, s);
   }
@@ -250,7 +246,7 @@ class RobotOf final : public Robot {
   template <class Look>
   void feed(std::string_view name, const Trace& trace, const Output& estimates,
             const DetectorSettings& s, Look&& look) const {
-    check(trace);
+    require_joints(trace);
     const DetectorPtr d = detector_of(name, s);
     for (int k = 0; k < trace.size(); ++k) {
       const Measurement<N> y = trace.measurement<N>(k);

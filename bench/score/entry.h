@@ -80,7 +80,7 @@ std::vector<Entry> entries(const Selection& selection = {});
 /// @throws std::invalid_argument if it is none
 std::function<bool(const std::string&)> entry_filter(const std::string& expression);
 
-/// @throws std::invalid_argument, as nothing matches
+/// @throws std::invalid_argument always: no entry matches this filter
 [[noreturn]] void fail_no_match(const std::string& expression);
 
 }  // namespace tauext

@@ -31,7 +31,7 @@ double crossing(const Times& t, const Signal& x, Eigen::Index start, double leve
   return kNoValue;
 }
 
-// mean squared estimate(t_k) - truth(t_k-shift), every stride-th sample
+// sum of the squares of estimate(t_k) - truth(t_k-shift), of every stride-th sample
 double mismatch(const Signal& truth, const Signal& estimate, Eigen::Index first, Eigen::Index shift,
                 Eigen::Index stride) {
   double sum = 0;
@@ -40,6 +40,13 @@ double mismatch(const Signal& truth, const Signal& estimate, Eigen::Index first,
     sum += e * e;
   }
   return sum;
+}
+
+// standard deviation of the same differences
+double spread(const Signal& truth, const Signal& estimate, Eigen::Index first, Eigen::Index shift) {
+  const Eigen::Index n = truth.size() - first;
+  const Eigen::RowVectorXd e = estimate.tail(n) - truth.segment(first - shift, n);
+  return std::sqrt((e.array() - e.mean()).square().mean());
 }
 
 }  // namespace
@@ -133,8 +140,12 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
   // What is left, over the delay, has a valley at the delay of the estimate and, if the truth
   // repeats, at each period more: the first valley that is nearly as deep as any is the right one.
   // Within it noise makes many minima, and the deepest counts.
-  const double good = 1.2 * std::min_element(minima.begin(), minima.end())->first;
-  if (kStride * *std::max_element(coarse.begin(), coarse.end()) <= good) return kNoValue;
+  const auto [least, place] = *std::min_element(minima.begin(), minima.end());
+  const auto [lowest, highest] = std::minmax_element(coarse.begin(), coarse.end());
+  const double depth = kStride * (*highest - *lowest);
+  // sigma of noise makes a depth d uncertain by 2 sigma sqrt(d): three times that
+  if (!(std::sqrt(depth) > 6 * spread(truth, estimate, first, place))) return kNoValue;
+  const double good = least + 0.1 * depth;
   const auto valley =
       std::find_if(minima.begin(), minima.end(), [&](const auto& m) { return m.first <= good; });
   auto deepest = *valley;

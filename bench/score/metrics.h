@@ -53,7 +53,7 @@ inline constexpr double kLongestLag = 2;  ///< [s] that lag() looks for
 /// [s] the delay L, at sample resolution and up to kLongestLag, for which truth(t - L) is closest
 /// to estimate(t) in the mean square over t >= from + kLongestLag. Of a truth that repeats, the
 /// least such delay. NaN for a constant truth or estimate, for a shorter run, if no shorter delay
-/// fits best, and if noise makes all delays fit alike (to a fifth of what is left).
+/// fits best, and if the truth is so small beside the noise that no delay stands out (by 3 sigma).
 double lag(const Times& t, const Signal& truth, const Signal& estimate, double from);
 
 /// [N] root of the mean squared error of the force at the end effector that estimates mean, over

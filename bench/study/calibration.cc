@@ -203,8 +203,7 @@ void require_free(const FreeRecording& r, const Robot& robot) {
   const auto fail = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: {}", r.name, why));
   };
-  if (t.dof() != robot.dof())
-    fail(fmt::format("{} joints, and {} has {}", t.dof(), robot.name(), robot.dof()));
+  robot.require_joints(t, r.name);
   const double length = t.size() == 0 ? 0 : t.t.back() - t.t.front();
   if (length < 2 * kScoreFrom)
     fail(fmt::format("{:.3g} s long; {:g} s are needed, of which the first {:g} do not count",

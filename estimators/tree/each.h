@@ -12,7 +12,8 @@
 
 namespace tauext::detail {
 
-/// So many bodies are computed at once where one step needs no other body: those of a register.
+/// Bodies of a piece: those of a register. Up to 4 bodies, and other scalars than double, are one
+/// piece; 5 to 8 are two, computed one after the other where no body needs the other piece.
 template <int P, class Scalar>
 inline constexpr int kPiece = P > 4 && std::is_same_v<Scalar, double> ? 4 : P;
 
@@ -35,8 +36,8 @@ struct Each {
   }
   Scalar operator[](int i) const noexcept { return x[i]; }  ///< that of body i
   void set(int i, const Scalar& a) noexcept { x[i] = a; }   ///< that of body i
-  const Each& piece(int) const noexcept { return *this; }   ///< those of piece k, here all
-  void put(int, const Each& e) noexcept { *this = e; }      ///< sets those
+  const Each& piece(int) const noexcept { return *this; }   ///< the bodies of a piece: here, all
+  void put(int, const Each& e) noexcept { *this = e; }      ///< sets the bodies of a piece
   /// The same, or, if that saves work, 0 of the bodies before `first`.
   Each since([[maybe_unused]] int first) const noexcept { return *this; }
   void store(Scalar* to) const noexcept {  ///< as numbers side by side
@@ -151,6 +152,7 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   }
 };
 
+/// f(k), never inlined.
 template <class F>
 [[gnu::noinline]] void call_apart(const F& f, int k) noexcept {
   f(k);

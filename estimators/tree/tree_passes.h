@@ -14,7 +14,8 @@
 
 namespace tauext::detail {
 
-/// Of N joints; rho [rad] and its rate are those of the joints themselves. kApart: for_pieces.
+/// Of N joints; rho [rad] and its rate are those of the joints themselves. kApart is that of
+/// for_pieces(): whether the caller does so much that pieces should be functions of their own.
 template <int N, class Scalar>
 class TreePasses {
  public:
@@ -107,7 +108,7 @@ class TreePasses {
     });
   }
 
-  const TreeSums<N, Scalar>& sums() const noexcept { return sums_; }  ///< along the tree
+  const TreeSums<N, Scalar>& sums() const noexcept { return sums_; }  ///< the tree's order
 
   /// The inertias of the subtrees.
   [[gnu::always_inline]] Inertia composite(const Inertia& I) const noexcept {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Which body of a tree hangs on which, and what adds up along it.
+/// Which body of a tree is carried by which, and sums and poses along it.
 #pragma once
 
 #include "estimators/tree/spatial.h"
 
 namespace tauext::detail {
 
-/// Of N bodies, in lanes.
+/// The order of N bodies, each carried by an earlier one or by the base.
 template <int N, class Scalar>
 class TreeSums {
  public:
@@ -21,7 +21,7 @@ class TreeSums {
     for (int i = 0; i < N; ++i) behind_[i] = strictly_behind_[i] = ahead_[i] = One::zero();
   }
 
-  /// Body i, the next one, hangs on this earlier one, or, if that is -1, on the base.
+  /// Adds body i, the next one. `parent` is the body that carries it; -1: the base.
   void add(int i, int parent) {
     parent_[i] = parent;
     for (int k = i; k >= 0; k = parent_[k]) {
@@ -31,11 +31,11 @@ class TreeSums {
     }
   }
 
-  const One& behind(int i) const noexcept { return behind_[i]; }  ///< 1 of i and its subtree
-  const One& strictly_behind(int i) const noexcept { return strictly_behind_[i]; }  ///< without i
-  const One& ahead(int i) const noexcept { return ahead_[i]; }  ///< 1 of i and those that carry it
+  const One& behind(int i) const noexcept { return behind_[i]; }  ///< 1 in i's subtree, else 0
+  const One& strictly_behind(int i) const noexcept { return strictly_behind_[i]; }  ///< 0 for i
+  const One& ahead(int i) const noexcept { return ahead_[i]; }  ///< 1 if it carries i, or is i
 
-  /// Sums over the way from the base.
+  /// For each body the sum over all that carry it, and itself.
   [[gnu::always_inline]] One from_base(const One& x) const noexcept {
     One sum = One::zero();
 #pragma GCC unroll 8
@@ -47,7 +47,7 @@ class TreeSums {
             {from_base(m.v.x), from_base(m.v.y), from_base(m.v.z)}};
   }
 
-  /// Sums over the subtrees.
+  /// For each body the sum over its subtree: all that it carries, and itself.
   [[gnu::always_inline]] One subtree(const One& x) const noexcept {
     One sum = One::zero();
 #pragma GCC unroll 8
@@ -61,7 +61,7 @@ class TreeSums {
     return {subtree(f.n), subtree(f.f)};
   }
 
-  /// Makes all bodies' axes and origins those in the base's frame, of those in each one's parent's.
+  /// Takes R and p, axes and origins, from the frame of each body's parent to that of the base.
   [[gnu::always_inline]] void place(Each33<P, Scalar>& R, Three& p) const noexcept {
     using Four = Each<4, Scalar>;  // x, y and z of one body, and nothing
     Four x[P + 1], y[P + 1], z[P + 1], at[P + 1];

@@ -60,6 +60,7 @@ TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
   EXPECT_THROW(degrees.require_consistent("a.csv"), std::invalid_argument);
   EXPECT_TRUE(read_sine(1, -1, 1).log.contradicts);
   EXPECT_TRUE(read_sine(1, 0, 1).log.contradicts);
+  EXPECT_NE(said_of(1, 0, 1).find("q1 moves, and qd1 says that it rests"), std::string::npos);
   EXPECT_FALSE(read_sine(1e-4, 0, 1).log.contradicts) << "a joint at rest trembles";
   EXPECT_FALSE(read_sine(1, 1, 1, 5000).log.contradicts) << "over a gap qd says nothing";
 }

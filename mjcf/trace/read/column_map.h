@@ -60,7 +60,8 @@ class ColumnMap {
   /// @throws std::runtime_error naming the path, the quantity and what was looked for
   MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path) const;
 
-  /// A sentence for each quantity that the map itself, not its preset, names and none is.
+  /// A sentence for each quantity that the map's own tables name, not its preset, and that is not
+  /// among those found.
   std::vector<std::string> missing_in(const MappedColumns& found) const;
 
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written
