@@ -155,9 +155,10 @@ int run(const CLI::App& app, const Flags& f) {
   if (f.out.ends_with(".npy"))
     throw std::invalid_argument(f.out + ": a run is several arrays, and so an .npz");
   const bool bag = f.layout == "joint_state";
-  if (!f.layout.empty() && f.out != "-" && f.out.ends_with(".db3") != bag)
+  if (f.out != "-" && f.out.ends_with(".db3") != bag)
     throw std::invalid_argument(fmt::format(
-        "--layout {}: --out {}: a bag's name ends in .db3, and no other's", f.layout, f.out));
+        "--out {}: --layout joint_state makes a bag, whose name ends in .db3, and no other's",
+        f.out));
   if (!f.layout.empty() &&
       (is_lcm_log(f.out) || f.out.ends_with(".npz") || f.out.ends_with(".npy")))
     throw std::invalid_argument(

@@ -140,8 +140,9 @@ int replay(Flags& f) {
     throw std::invalid_argument(
         "a log, --robot, --estimator and --out are required; see tauext-replay --help");
   }
-  if (is_lcm_log(f.out)) {
-    throw std::invalid_argument(fmt::format("--out {}: estimates are written as CSV", f.out));
+  if (is_lcm_log(f.out) || f.out.ends_with(".npy") || f.out.ends_with(".db3")) {
+    throw std::invalid_argument(
+        fmt::format("--out {}: estimates are written as CSV, or to an .npz", f.out));
   }
   refuse_twice("estimator", f.estimators);
   const Robot& r = robot(with_lock(f.robot, f.lock));

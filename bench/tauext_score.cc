@@ -97,7 +97,7 @@ void add_ours(const Flags& f, const std::vector<OutsideRun>& runs, std::vector<R
 void require_flags(const CLI::App& app, const Flags& f) {
   const bool simulated = !f.scenario.empty();
   if (simulated == !f.logs.empty())
-    throw std::invalid_argument("a --log, or --robot and --scenario, are required");
+    throw std::invalid_argument("either --log, or --robot and --scenario, is required");
   if (f.robot.empty() && (simulated || !f.ours.empty()))
     throw std::invalid_argument("--scenario and --estimator want a --robot");
   if (f.files.empty() && f.ours.empty())

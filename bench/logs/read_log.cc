@@ -70,6 +70,8 @@ bool doubt_units(const Trace& log, const std::string& path, const std::string& r
   if (log.size() > 2 && log.t.back() - log.t.front() > kLongestGap * log.size())
     say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
                     (log.t.back() - log.t.front()) / (log.size() - 1), remedy));
+  if (contradicts)
+    say(path + ": q and qd contradict each other, so that no estimate from them means anything");
   return contradicts;
 }
 

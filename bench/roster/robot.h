@@ -74,7 +74,8 @@ class Robot {
   /// Makes torques of currents, by the gains of the robot's file.
   /// @throws std::invalid_argument as tauext::make_torques()
   void make_torques(Trace& trace) const;
-  /// @throws std::invalid_argument naming the log, if it is one, unless it has the robot's joints
+  /// @throws std::invalid_argument unless it has the robot's joints; naming the log, if it is one,
+  /// also where its q is far outside the range of a joint
   void require_joints(const Trace& trace, const std::string& log = "") const;
   /// [N m/A] of each drive; 0 where nobody says.
   Eigen::VectorXd gains() const;

@@ -27,15 +27,15 @@ std::string name_of(const std::string& specification) {
   return std::string(name_of_specification(specification));
 }
 
-// all that can be calibrated, and specifications of them that were asked for
+// all that can be calibrated, or those of them that were asked for
 std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std::string>& asked) {
-  std::vector<std::string> all = r.calibratable();
+  const std::vector<std::string> all = r.calibratable();
   if (asked.empty()) return all;
+  std::vector<std::string> trained;
   for (const std::string& d : chosen_detectors(r, asked)) {
-    const bool can = std::count(all.begin(), all.end(), name_of(d)) > 0;
-    if (can && std::count(all.begin(), all.end(), d) == 0) all.push_back(d);
+    if (std::count(all.begin(), all.end(), name_of(d)) > 0) trained.push_back(d);
   }
-  return all;
+  return trained;
 }
 
 // what undoes the covariances of training, run by run in their order: a sum of rounded numbers

@@ -137,6 +137,14 @@ TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   EXPECT_EQ(two.code, 2);
   EXPECT_TRUE(two.says("wallmobot3 has 3 joints, the samples have 2")) << two.text;
   EXPECT_FALSE(exists("est.csv"));
+  const Outcome npy =
+      run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out est.npy");
+  EXPECT_EQ(npy.code, 2);
+  EXPECT_TRUE(npy.says("--out est.npy: estimates are written as CSV, or to an .npz")) << npy.text;
+  EXPECT_FALSE(exists("est.npy"));
+  const Outcome bag = run("tauext-record --robot wallmobot3 --scenario free --out log.db3");
+  EXPECT_TRUE(bag.says("--out log.db3: --layout joint_state makes a bag")) << bag.text;
+  EXPECT_FALSE(exists("log.db3"));
 }
 
 TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {

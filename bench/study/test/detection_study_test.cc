@@ -174,7 +174,8 @@ TEST(Calibration, OnRecordingsRefusesContactsAndWhatIsTooShort) {
             std::string::npos);
   EXPECT_NE(error(good, [](Trace& t) { t.t.resize(3000); }).find("a.csv: 3 s long; 8 s are needed"),
             std::string::npos);
-  EXPECT_NE(error(good, [](Trace& t) { t.q = t.q.topRows(2).eval(); }).find("a.csv: 2 joints"),
+  EXPECT_NE(error(good, [](Trace& t) { t.q = t.q.topRows(2).eval(); })
+                .find("a.csv: wallmobot3 has 3 joints, the samples have 2"),
             std::string::npos);
 }
 

@@ -99,6 +99,9 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
     found.push_back(n - 1);
   }
   for (const int c : found) {
+    if (std::count(found.begin(), found.end(), c) > 1)
+      throw std::runtime_error(
+          fmt::format("{}: [{}] names column {} twice", path, quantity, c + 1));
     const std::string& name = columns[static_cast<std::size_t>(c)];
     if (w.numbers.empty() && std::count(columns.begin(), columns.end(), name + "#2") > 0)
       throw std::runtime_error(
@@ -113,6 +116,9 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
   MappedQuantity ordered;
   ordered.has_gain = m.has_gain;
   for (const int j : order_) {
+    if (std::count(order_.begin(), order_.end(), j) > 1)
+      throw std::runtime_error(
+          fmt::format("{}: `order` names joint {} of the recording twice", path, j));
     if (j > static_cast<int>(m.columns.size()))
       throw std::runtime_error(fmt::format("{}: [{}] has {} columns, and `order` names joint {}",
                                            path, quantity, m.columns.size(), j));
@@ -156,6 +162,13 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
                        each(w.sign, i, 1.));
     }
     if (q.of_joints) put_in_order(q.name, m, path);
+    for (const auto& [name, other] : all) {
+      const auto shared = std::find_first_of(m.columns.begin(), m.columns.end(),
+                                             other.columns.begin(), other.columns.end());
+      if (shared != m.columns.end())
+        throw std::runtime_error(
+            fmt::format("{}: column {} is both [{}] and [{}]", path, *shared + 1, name, q.name));
+    }
     all.emplace(q.name, std::move(m));
   }
   return all;

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -27,8 +28,12 @@ bool is_blank(char c) {
 std::string_view trimmed(std::string_view s) {
   while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
   while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
-  if (s.size() >= 2 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
   return s;
+}
+
+std::string_view unquoted(std::string_view s) {
+  s = trimmed(s);
+  return s.size() >= 2 && s.front() == '"' && s.back() == '"' ? s.substr(1, s.size() - 2) : s;
 }
 
 // NaN and infinity, too; what is too large is infinite
@@ -114,7 +119,7 @@ bool CsvRows::take_field(std::string_view& rest, std::string_view& field) const 
   const bool blanks = format_.separator == ' ';
   if (blanks) rest = trimmed(rest);
   const std::size_t end = blanks ? rest.find_first_of(" \t") : rest.find(format_.separator);
-  field = trimmed(rest.substr(0, end));
+  field = unquoted(rest.substr(0, end));
   if (end == rest.npos) return false;
   rest.remove_prefix(end + 1);
   return true;
@@ -155,27 +160,30 @@ void CsvRows::read_only(const std::vector<int>& wanted) {
 }
 
 // the row's numbers, or why it cannot be used
-const char* CsvRows::parse(std::string_view line, std::vector<double>& row,
+std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
                            SkippedRows& skipped) const {
-  bool all_numbers = true, all_finite = true;
+  bool all_finite = true;
+  std::string wrong;
   std::size_t fields = 0;
   for (bool more = true; more; ++fields) {
     std::string_view field;
     more = take_field(line, field);
     if (fields >= columns_.size() || !wanted_[fields]) continue;
     double& value = row[fields];
-    if (!number_of(field, value)) all_numbers = false;
+    if (!number_of(field, value) && wrong.empty())
+      wrong = fmt::format("column '{}' is '{}', not a number", printable_name(columns_[fields]),
+                          printable_name(std::string(field)));
     if (!std::isfinite(value)) all_finite = false;
   }
   if (fields != columns_.size()) {
     ++skipped.wrong_field_count;
-    return "wrong number of fields";
+    return fmt::format("fields: {}, columns: {}", fields, columns_.size());
   }
-  if (!all_numbers) {
+  if (!wrong.empty()) {
     ++skipped.not_a_number;
-    return "a field is not a number";
+    return wrong;
   }
-  if (all_finite || !format_.finite) return nullptr;
+  if (all_finite || !format_.finite) return {};
   ++skipped.not_finite;
   return "a field is not finite";
 }
@@ -184,12 +192,12 @@ bool CsvRows::next(std::vector<double>& row, SkippedRows& skipped) {
   row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::string_view line; next_line(line);) {
     if (line.empty() || line.front() == '#') continue;
-    const char* reason = parse(line, row, skipped);
-    if (reason == nullptr && cut_off_) {  // the last number may be
+    std::string reason = parse(line, row, skipped);
+    if (reason.empty() && cut_off_) {  // the last number may be
       ++skipped.wrong_field_count;
       reason = "the last line is incomplete";
     }
-    if (reason == nullptr) return true;
+    if (reason.empty()) return true;
     skipped.say(number_, reason);
   }
   return false;

@@ -37,7 +37,7 @@ class CsvRows final : public RowSource {
   bool next_line(std::string_view& line);
   bool refill();
   void read_header();
-  const char* parse(std::string_view line, std::vector<double>& row, SkippedRows& skipped) const;
+  std::string parse(std::string_view line, std::vector<double>& row, SkippedRows& skipped) const;
   bool take_field(std::string_view& rest, std::string_view& field) const;
 
   std::string path_;

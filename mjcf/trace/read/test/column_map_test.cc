@@ -179,6 +179,13 @@ TEST_F(Columns, ThatNobodyWantsMayHoldAnything) {
   EXPECT_EQ(skipped_.total(), 0);
 }
 
+// as R and pandas write them
+TEST_F(Columns, MayHaveTheirNamesInQuotes) {
+  const Trace t = read("\"t\",\"q1\",\"qd1\",\"tau1\"\n0,1,2,3\n1,3,2,4\n", "tauext");
+  ASSERT_EQ(t.size(), 2);
+  EXPECT_EQ(t.tau(0, 1), 4);
+}
+
 TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
   const std::string log = "t,q1,qd1,tau1\n0,1,2,3\n1,1,2,3\n";
   read_by(log, "preset = 'tauext'\n[contact]\ncolumns = 'touched'\n");
@@ -204,6 +211,10 @@ TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[3]"), "no column 3 for [q]");
   expect_says(error_of_map("order=[1,2]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),
               "[q] has 1 columns, and `order` names joint 2");
+  expect_says(error_of_map("order=[1,1]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),
+              "`order` names joint 1 of the recording twice");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=['b','b']"), "[q] names column 2 twice");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1]"), "column 1 is both [t] and [q]");
   expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1,2]\ngain=[1,2,3]"),
               "[q] has 2 columns, and the map 3 gains");
   expect_says(error_of([&] { read("a,b\n", "nowhere.toml"); }), "nowhere.toml: No such file");

@@ -183,7 +183,7 @@ TEST_F(TraceFile, ColumnsAreFoundByNameInAnyOrder) {
 
 TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(error_of_reading(std::string(kHead) + "0,1,2\n"),
-            path() + ": no usable row (1 skipped; line 2: wrong number of fields)");
+            path() + ": no usable row (1 skipped; line 2: fields: 3, columns: 7)");
   EXPECT_EQ(error_of_reading(kHead), path() + ": no usable row (0 skipped)");
   EXPECT_EQ(error_of_reading(""), path() + ": is empty");
   EXPECT_EQ(error_of_reading("t,q1,qd1\n0,1,2\n"),
