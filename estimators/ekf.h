@@ -37,7 +37,7 @@
 
 #include "estimators/concepts.h"
 #include "estimators/ekf_parameters.h"
-#include "estimators/math/lanes.h"
+#include "estimators/math/block.h"
 #include "estimators/math/learn_block.h"
 #include "estimators/samples/gate.h"
 #include "estimators/sampling.h"
@@ -64,7 +64,7 @@ class Ekf {
 
   void reset() noexcept {
     sampling_.reset();
-    x_[2].setZero();
+    x_[2] = Column::zero();
   }
 
   Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
@@ -75,7 +75,7 @@ class Ekf {
       return estimate(status);
     }
     if (sampling_.wrapped()) [[unlikely]]
-      x_[0] += detail::pad_vector<kDof>(sampling_.turns());
+      x_[0] = x_[0] + padded(sampling_.turns());
     Vec<kDof> tau = p_.alignment == Alignment::kHeld ? sampling_.torque(y) : y.tau;
     if constexpr (kDry) {
       const Vec<kDof> dry = model_.dry_friction(y.qd);
@@ -90,9 +90,9 @@ class Ekf {
     nu_q_ += sampling_.h() * nu_qd_;
     status = sampling_.confirm(unlikely(y, 1 / steps));
     if (status == Status::kOk) correct(y, 1 / steps);
-    const Column squares = x_[0].cwiseAbs2() + x_[1].cwiseAbs2() + x_[2].cwiseAbs2();
-    if (!(squares.sum() <= kEstimateLimit * kEstimateLimit)) {
-      x_[2].setZero();
+    const Column squares = x_[0] * x_[0] + x_[1] * x_[1] + x_[2] * x_[2];
+    if (!(squares.template to<kDof>().sum() <= kEstimateLimit * kEstimateLimit)) {
+      x_[2] = Column::zero();
       start(y);
       return estimate(Status::kDiverged);
     }
@@ -106,7 +106,7 @@ class Ekf {
         {&qq_, nullptr, nullptr}, {&vq_, &vv_, nullptr}, {&dq_, &dv_, &dd_}};
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c <= r; ++c) {
-        const Mat<kDof> b = blocks[r][c]->template topLeftCorner<kDof, kDof>();
+        const Mat<kDof> b = blocks[r][c]->matrix();
         P.template block<kDof, kDof>(r * kDof, c * kDof) = b;
         P.template block<kDof, kDof>(c * kDof, r * kDof) = b.transpose();
       }
@@ -115,100 +115,106 @@ class Ekf {
   }
 
   /// x = [q; qd; tau_ext] after the last sample.
-  Vec3 state() const noexcept {
-    return (Vec3() << x_[0].template head<kDof>(), x_[1].template head<kDof>(),
-            x_[2].template head<kDof>())
-        .finished();
-  }
+  Vec3 state() const noexcept { return (Vec3() << of(x_[0]), of(x_[1]), of(x_[2])).finished(); }
 
  private:
-  static constexpr int kRows = detail::kPadded<kDof>;
-  static constexpr bool kBlocked = kRows > 4;  // more than a register
-  static constexpr bool kDry = requires(const M& m, Vec<kDof> x) { m.padded_dynamics(x, x, x); };
+  static constexpr bool kBlocked = kDof > 4;  // more than a register
+  static constexpr bool kDry = requires(const M& m, Vec<kDof> x) { m.dry_friction(x); };
   using Block = detail::Block<kDof>;
+  using Column = detail::Column<kDof>;
   using Into = detail::Into;
-  using Column = Vec<kRows>;
 
-  Estimate<kDof> estimate(Status s) const noexcept {
-    return {x_[2].template head<kDof>(), s, sampling_.joints()};
-  }
+  static Column padded(const Vec<kDof>& v) noexcept { return Column::template from<kDof>(v); }
+  static Vec<kDof> of(const Column& c) noexcept { return c.template to<kDof>(); }
+
+  Estimate<kDof> estimate(Status s) const noexcept { return {of(x_[2]), s, sampling_.joints()}; }
 
   void start(const Measurement<kDof>& y) noexcept {
     const bool zero = p_.start == Start::kZero;
-    x_[0] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.q);
-    x_[1] = detail::pad_vector<kDof>(zero ? Vec<kDof>(Vec<kDof>::Zero()) : y.qd);
-    if (zero) x_[2].setZero();
+    x_[0] = zero ? Column::zero() : padded(y.q);
+    x_[1] = zero ? Column::zero() : padded(y.qd);
+    if (zero) x_[2] = Column::zero();
     if constexpr (kDry) dry_ = model_.dry_friction(y.qd);
     qq_ = diagonal(p_.P0, 0);
     vv_ = diagonal(p_.P0, 1);
     dd_ = diagonal(p_.P0, 2);
-    vq_.setZero();
-    dq_.setZero();
-    dv_.setZero();
+    vq_ = dq_ = dv_ = Block::zero();
     nu_q_.setZero();
     nu_qd_.setZero();
-    if (p_.Q_load > 0)
-      add_load(10, detail::pad_matrix<kDof>(model_.inertia(x_[0].template head<kDof>())));
+    if (p_.Q_load > 0) add_load(10, Block::from(model_.inertia(of(x_[0]))));
   }
 
   // Q_load B B^T, so many times
   [[gnu::noinline]] void add_load(double times, const Block& B) noexcept {
-    const Block s = std::sqrt(times * p_.Q_load) * B;
-    detail::products<Into::kAdd, kDof, 1>({&s}, {&s}, dd_);
+    Block s = B;
+    for (Column& c : s.column) c = std::sqrt(times * p_.Q_load) * c;
+    detail::products<Into::kAdd, 1>({&s}, {&s}, dd_);
   }
 
   // where x leads; B is set if a load needs it
-  [[gnu::always_inline]] auto linearise(const Vec<kDof>& tau) const noexcept {
-    const Vec<kDof> q = x_[0].template head<kDof>(), qd = x_[1].template head<kDof>(),
-                    u = tau - x_[2].template head<kDof>();
-    if constexpr (kDry) {
-      return model_.padded_dynamics(q, qd, u);
+  [[gnu::always_inline]] auto linearise(const Vec<kDof>& tau, Block& B) const noexcept {
+    const Vec<kDof> q = of(x_[0]), qd = of(x_[1]), u = tau - of(x_[2]);
+    if constexpr (requires { model_.motion(q, qd, u, &B); }) {
+      return model_.motion(q, qd, u, p_.Q_load > 0 ? &B : nullptr);
     } else {
-      auto p = detail::pad_dynamics<kDof>(model_.forward_dynamics(q, qd, u));
-      if (p_.Q_load > 0) [[unlikely]]
-        p.B = detail::pad_matrix<kDof>(model_.inertia(q));
-      return p;
+      const auto f = model_.forward_dynamics(q, qd, u);
+      const Mat<kDof> inertia = model_.inertia(q);
+      B = Block::from(inertia);
+      return detail::LinearMotion<kDof>{padded(f.qdd), Block::from(-inertia * f.dqdd_dq),
+                                        Block::from(-inertia * f.dqdd_dqd),
+                                        Block::from(f.dqdd_dtau_ext), f.ok};
     }
   }
 
   // predict and correct stay functions of their own: inlined into one, GCC 12 makes them slower
   [[gnu::noinline]] bool predict(double h, const Vec<kDof>& tau, double Q_scale) noexcept {
-    const auto f = linearise(tau);
+    Block B;
+    const auto f = linearise(tau, B);
     if (!f.ok) return false;
     const Column qd = x_[1];
-    x_[0] += h * qd;  // (10)
-    x_[1] += h * f.qdd;
+    x_[0] = x_[0] + h * qd;  // (10)
+    x_[1] = x_[1] + h * f.qdd;
     if (p_.integration == Integration::kSecondOrder) {  // (iii)
-      Column jerk = Column::Zero();
+      Column rate = Column::zero(), jerk = rate;        // of r, of qdd
 #pragma GCC unroll 8
-      for (int j = 0; j < kDof; ++j) jerk += f.by_q.col(j) * qd[j] + f.by_qd.col(j) * f.qdd[j];
-      x_[0] += 0.5 * h * h * f.qdd;
-      x_[1] += 0.5 * h * h * jerk;
+      for (int j = 0; j < kDof; ++j)
+        rate = rate + qd[j] * f.by_q.column[j] + f.qdd[j] * f.by_qd.column[j];
+#pragma GCC unroll 8
+      for (int j = 0; j < kDof; ++j) jerk = jerk + rate[j] * f.minus_inverse.column[j];
+      x_[0] = x_[0] + 0.5 * h * h * f.qdd;
+      x_[1] = x_[1] + 0.5 * h * h * jerk;
     }
 
     // U^T and G U of (i); G stands without its factor h, transposes are named by their letters
-    const Block* const G[] = {&f.by_q, &f.by_qd, &f.by_tau_ext};
     const Block qv = detail::transposed(vq_);
-    const Block Uq = sum<0>(G, {&qq_, &vq_, &dq_}), Uv = sum<0>(G, {&qv, &vv_, &dv_}),
-                Ud = sum<2>(G, {&dq_, &dv_, &dd_}), GU = sum<3>(G, {&Uq, &Uv, &Ud}),
-                V = h * Uv + 0.5 * h * h * GU;
-
-    qq_ += h * (qv + vq_) + h * h * vv_ + Q_scale * Q_[0];  // (i)
-    dq_ += h * dv_;
-    vq_ += h * (vv_ + Uq + h * Uv);
-    vv_ += (V + detail::transposed(V)) + Q_scale * Q_[1];
-    dv_ += h * detail::transposed(Ud);
-    dd_ += Q_scale * Q_[2];
-    if (p_.Q_load > 0) add_load(Q_scale, f.B);
+    const Block Uq = f.template times<0>({&qq_, &vq_}, dq_),
+                Uv = f.template times<0>({&qv, &vv_}, dv_),
+                Ud = f.template times<2>({&dq_, &dv_}, dd_), dv = detail::transposed(Ud),
+                GU = f.template times<2>({&Uq, &Uv}, dv);
+    Block V;
+    detail::for_each<kBlocked, kDof>([&](int j) __attribute__((always_inline)) {
+      V.column[j] = h * Uv.column[j] + 0.5 * h * h * GU.column[j];
+    });
+    const Block V_t = detail::transposed(V);
+    detail::for_each<kBlocked, kDof>([&](int j) __attribute__((always_inline)) {  // (i)
+      Column &qq = qq_.column[j], &dq = dq_.column[j], &vq = vq_.column[j], &vv = vv_.column[j];
+      qq = qq + h * (qv.column[j] + vq) + h * h * vv + Q_scale * Q_[0].column[j];
+      dq = dq + h * dv_.column[j];
+      vq = vq + h * (vv + Uq.column[j] + h * Uv.column[j]);
+      vv = vv + (V.column[j] + V_t.column[j]) + Q_scale * Q_[1].column[j];
+      dv_.column[j] = dv_.column[j] + h * dv.column[j];
+      dd_.column[j] = dd_.column[j] + Q_scale * Q_[2].column[j];
+    });
+    if (p_.Q_load > 0) add_load(Q_scale, B);
     return true;
   }
 
   // of q alone: a blow changes qd at once, and no blow q
   [[gnu::always_inline]] std::uint8_t unlikely(const Measurement<kDof>& y,
                                                double R_scale) const noexcept {
-    const Vec<kDof> variance =
-        qq_.diagonal().template head<kDof>() + R_scale * p_.R.template head<kDof>();
-    return beyond<kDof>(p_.gate, y.q - x_[0].template head<kDof>(), nu_q_, variance);
+    Vec<kDof> variance;
+    for (int j = 0; j < kDof; ++j) variance[j] = qq_(j, j) + R_scale * p_.R[j];
+    return beyond<kDof>(p_.gate, y.q - of(x_[0]), nu_q_, variance);
   }
 
   [[gnu::noinline]] void correct(const Measurement<kDof>& y, double R_scale) noexcept {
@@ -217,10 +223,10 @@ class Ekf {
       const Block qv = detail::transposed(vq_);
       learn(1, {&qv, &vv_, &dv_}, y.qd, R_scale * p_.R.template tail<kDof>());
     } else {
-      one_by_one(y, R_scale);
+      one_by_one(y.q, y.qd, R_scale);
     }
-    nu_q_ = y.q - x_[0].template head<kDof>();
-    nu_qd_ = y.qd - x_[1].template head<kDof>();
+    nu_q_ = y.q - of(x_[0]);
+    nu_qd_ = y.qd - of(x_[1]);
   }
 
   // (ii) for all of block m of x, whose columns in P these are
@@ -231,25 +237,29 @@ class Ekf {
     Block* const P[] = {&qq_, &vq_, &vv_, &dq_, &dv_, &dd_};
     for (int a = 0, block = 0; a < 3; ++a) {
       for (int b = 0; b <= a; ++b)
-        detail::products<Into::kSubtract, kDof, 1>({&w[a]}, {&w[b]}, *P[block++]);
+        detail::products<Into::kSubtract, 1>({&w[a]}, {&w[b]}, *P[block++]);
     }
   }
 
-  [[gnu::always_inline]] void one_by_one(const Measurement<kDof>& y, double R_scale) noexcept {
+  // by value: what y refers to could, for all that a compiler knows, be these blocks
+  [[gnu::always_inline]] void one_by_one(const Vec<kDof> q, const Vec<kDof> qd,
+                                         double R_scale) noexcept {
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
-      const Column c[] = {qq_.col(i), vq_.col(i), dq_.col(i)};
+      const Column c[] = {qq_.column[i], vq_.column[i], dq_.column[i]};
       const double s_inverse = 1 / (c[0][i] + R_scale * p_.R[i]);
-      update(c, s_inverse, y.q[i] - x_[0][i]);
-      subtract(c[1], c[0], s_inverse, vq_);
+      const Column scaled = s_inverse * c[1];
+      update(c, s_inverse, q[i] - x_[0][i]);
+      vq_.subtract(scaled, c[0]);
     }
     Block qv = detail::transposed(vq_);
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) {
-      const Column c[] = {qv.col(i), vv_.col(i), dv_.col(i)};
+      const Column c[] = {qv.column[i], vv_.column[i], dv_.column[i]};
       const double s_inverse = 1 / (c[1][i] + R_scale * p_.R[kDof + i]);
-      update(c, s_inverse, y.qd[i] - x_[1][i]);
-      subtract(c[0], c[1], s_inverse, qv);
+      const Column scaled = s_inverse * c[0];
+      update(c, s_inverse, qd[i] - x_[1][i]);
+      qv.subtract(scaled, c[1]);
     }
     vq_ = detail::transposed(qv);
   }
@@ -257,41 +267,25 @@ class Ekf {
   // (ii), all but the block between q and qd
   [[gnu::always_inline]] void update(const Column (&c)[3], double s_inverse,
                                      double innovation) noexcept {
-    for (int b = 0; b < 3; ++b) x_[b] += c[b] * (s_inverse * innovation);
-    subtract(c[0], c[0], s_inverse, qq_);
-    subtract(c[1], c[1], s_inverse, vv_);
-    subtract(c[2], c[0], s_inverse, dq_);
-    subtract(c[2], c[1], s_inverse, dv_);
-    subtract(c[2], c[2], s_inverse, dd_);
-  }
-
-  // block -= (a b^T) / s
-  [[gnu::always_inline]] static void subtract(const Column& a, const Column& b, double s_inverse,
-                                              Block& block) noexcept {
-#pragma GCC unroll 8
-    for (int j = 0; j < kDof; ++j) block.col(j) -= (a * b[j]) * s_inverse;
-  }
-
-  // sum of G_a b_a, where so many of the first b are given as their transposes
-  template <std::size_t kTransposed>
-  static Block sum(const Block* const (&G)[3], const Block* const (&b)[3]) noexcept {
-    Block product;
-    detail::products<Into::kSet, kDof, kTransposed>(G, b, product);
-    return product;
+    for (int b = 0; b < 3; ++b) x_[b] = x_[b] + (s_inverse * innovation) * c[b];
+    const Column scaled = s_inverse * c[2];
+    qq_.subtract_square(c[0], s_inverse);
+    vv_.subtract_square(c[1], s_inverse);
+    dq_.subtract(scaled, c[0]);
+    dv_.subtract(scaled, c[1]);
+    dd_.subtract_square(c[2], s_inverse);
   }
 
   // block b of a diagonal
   static Block diagonal(const Vec3& d, int b) noexcept {
-    Block padded = Block::Zero();
-    padded.diagonal().template head<kDof>() = d.template segment<kDof>(b * kDof);
-    return padded;
+    return Block::diagonal(d.template segment<kDof>(b * kDof));
   }
 
   M model_;
   Parameters p_;
   Sampling<kDof> sampling_;
   Block Q_[3];                                                      // diagonal blocks of Q
-  Column x_[3] = {Column::Zero(), Column::Zero(), Column::Zero()};  // q, qd, d
+  Column x_[3] = {Column::zero(), Column::zero(), Column::zero()};  // q, qd, d
   Block qq_, vq_, dq_, vv_, dv_, dd_;                               // of P
   Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
   Vec<kDof> dry_ = nu_q_;                               // [N m] dry friction at the last sample

@@ -20,7 +20,7 @@
 #include <tuple>
 
 #include "estimators/concepts.h"
-#include "estimators/math/lanes.h"
+#include "estimators/math/each.h"
 #include "estimators/math/ldlt.h"
 #include "estimators/sampling.h"
 
@@ -64,7 +64,7 @@ class Ndob {
       : model_(model),
         p_(check_parameters(p, kName)),
         sampling_(p.max_gap, limits_of(model), p.torque),
-        X_(detail::pad_vector<kDof>(p.X)) {}
+        X_(Column::template from<kDof>(p.X)) {}
 
   void reset() noexcept {
     sampling_.reset();
@@ -79,7 +79,7 @@ class Ndob {
     if (status == Status::kStarted) {
       start(y);
     } else if (advance(sampling_.h(), now, y)) {
-      tau_ext_ = z_.template head<kDof>() - p_.X.cwiseProduct(y.qd);  // (17)
+      tau_ext_ = z_.template to<kDof>() - p_.X.cwiseProduct(y.qd);  // (17)
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
         start(y);
@@ -95,7 +95,7 @@ class Ndob {
   }
 
  private:
-  using Column = Vec<detail::kPadded<kDof>>;
+  using Column = detail::Column<kDof>;
 
   [[gnu::always_inline]] bool advance(double h, const Dynamics<kDof>& now,
                                       const Measurement<kDof>& y) noexcept {
@@ -117,21 +117,20 @@ class Ndob {
   // false if B is not positive definite
   [[gnu::always_inline]] bool advance(double h, const Mat<kDof>& B, const Vec<kDof>& b) noexcept {
     const Ldlt<kDof> factor(B);
-    const Column a =
-        detail::pad_vector<kDof>(factor.solve(b));  // [rad/s^2] whole registers: see lanes.h
-    z_ += (h * X_).cwiseProduct(a);                 // (18)
+    const Column a = Column::template from<kDof>(factor.solve(b));  // [rad/s^2]
+    z_ = z_ + h * X_ * a;                                           // (18)
     return factor.ok();
   }
 
   void start(const Measurement<kDof>& y) noexcept {
     if (p_.start == Start::kZero) tau_ext_ = -p_.X.cwiseProduct(y.qd);
-    z_ = detail::pad_vector<kDof>(tau_ext_ + p_.X.cwiseProduct(y.qd));
+    z_ = Column::template from<kDof>(tau_ext_ + p_.X.cwiseProduct(y.qd));
   }
 
   M model_;
   Parameters p_;
   Sampling<kDof> sampling_;
-  Column X_, z_ = Column::Zero();  // [N m s/rad], [N m] padded
+  Column X_, z_ = Column::zero();  // [N m s/rad], [N m] padded
   // at the last used sample, bias with friction
   Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
   Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there

@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "estimators/math/lanes.h"
+#include "estimators/math/each.h"
 #include "estimators/samples/clock.h"
 #include "estimators/samples/limits.h"
 #include "estimators/samples/options.h"

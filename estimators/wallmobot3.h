@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "estimators/concepts.h"
+#include "estimators/math/block.h"
 #include "estimators/math/ldlt.h"
 #include "estimators/math/sin_cos.h"
 
@@ -137,17 +138,26 @@ class BasicWallMoBot3 {
   ///     B dqdd/dq = -d(B qdd + C qd + g)/dq at fixed qdd,   B dqdd/dqd = -d(C qd + F)/dqd.
   ForwardDynamics<3, Scalar> forward_dynamics(const Vec3& q, const Vec3& qd,
                                               const Vec3& u) const noexcept {
+    const auto m = motion(q, qd, u);
+    const Mat3 per_torque = m.minus_inverse.matrix();
+    return {m.qdd.template to<3>(), per_torque * m.by_q.matrix(), per_torque * m.by_qd.matrix(),
+            per_torque, m.ok};
+  }
+
+  /// The same in lanes, with inertia(q) where B is asked for.
+  [[gnu::always_inline]] detail::LinearMotion<3, Scalar> motion(
+      const Vec3& q, const Vec3& qd, const Vec3& u,
+      detail::Block<3, Scalar>* inertia = nullptr) const noexcept {
     const Coupling c = coupling(q);
     const Vec3 wd = to_links(qd);
-    const Ldlt<3, Scalar> B(to_joints(c));
-    ForwardDynamics<3, Scalar> f;
-    f.ok = B.ok();
-    f.qdd = B.solve(Vec3(u - friction(qd) - to_joints(Vec3(coriolis_force(c, wd) + gravity(c)))));
-    f.dqdd_dtau_ext = B.solve(Mat3(-Mat3::Identity()));
-
+    const Mat3 B = to_joints(c);
+    if (inertia) *inertia = detail::Block<3, Scalar>::from(B);
+    const Ldlt<3, Scalar> factor(B);
+    const Vec3 qdd =
+        factor.solve(Vec3(u - friction(qd) - to_joints(Vec3(coriolis_force(c, wd) + gravity(c)))));
     // (ii) by the angles: d/dphi_a = -d/dphi_b, row a: M' wdd_b + M wd_b^2, row b: M' wdd_a - M
     // wd_a^2
-    const Vec3 wdd = to_links(f.qdd);
+    const Vec3 wdd = to_links(qdd);
     const Scalar r24 = c.d24 * wdd[1] + c.f24 * wd[1] * wd[1];
     const Scalar r42 = c.d24 * wdd[0] - c.f24 * wd[0] * wd[0];
     const Scalar r25 = c.d25 * wdd[2] + c.f25 * wd[2] * wd[2];
@@ -155,14 +165,9 @@ class BasicWallMoBot3 {
     const Scalar r45 = c.d45 * wdd[2] + c.f45 * wd[2] * wd[2];
     const Scalar r54 = c.d45 * wdd[1] - c.f45 * wd[1] * wd[1];
     const Vec3 dg = Scalar(kGravity) * (gx_.cwiseProduct(c.sin) + gy_.cwiseProduct(c.cos));
-    Mat3 by_q, by_qd;
-    by_q << r24 + r25 + dg[0], -r24, -r25,  //
-        r42, r45 - r42 + dg[1], -r45,       //
-        r52, r54, dg[2] - r52 - r54;
-    by_qd << 0, -2 * c.d24 * wd[1], -2 * c.d25 * wd[2],  //
-        2 * c.d24 * wd[0], 0, -2 * c.d45 * wd[2],        //
-        2 * c.d25 * wd[0], 2 * c.d45 * wd[1], 0;
-    f.dqdd_dq = f.dqdd_dtau_ext * to_joints(by_q);
+    const Scalar v24 = 2 * c.d24 * wd[1], v42 = 2 * c.d24 * wd[0];
+    const Scalar v25 = 2 * c.d25 * wd[2], v52 = 2 * c.d25 * wd[0];
+    const Scalar v45 = 2 * c.d45 * wd[2], v54 = 2 * c.d45 * wd[1];
     Vec3 slope = p_.viscous.template cast<Scalar>();
     if constexpr (kDry) {
       const Vec3 s = slip(qd);
@@ -170,8 +175,13 @@ class BasicWallMoBot3 {
                    .template cast<Scalar>()
                    .cwiseProduct(Vec3::Ones() - s.cwiseProduct(s));
     }
-    f.dqdd_dqd = f.dqdd_dtau_ext * (to_joints(by_qd) + Mat3(slope.asDiagonal()));
-    return f;
+    auto by_qd = block_of_joints(0, -v24, -v25, v42, 0, -v45, v52, v54, 0);
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) by_qd.column[j].set(j, by_qd(j, j) + slope[j]);
+    return {detail::Column<3, Scalar>::template from<3>(qdd),
+            block_of_joints(r24 + r25 + dg[0], -r24, -r25, r42, r45 - r42 + dg[1], -r45, r52, r54,
+                            dg[2] - r52 - r54),
+            by_qd, factor.minus_inverse(), factor.ok()};
   }
 
   /// Geometric Jacobian [m; m; rad] of the panel's attachment point: (vx, vz, pitch rate) by qd.
@@ -231,12 +241,27 @@ class BasicWallMoBot3 {
   }
 
   // (iii), for a velocity, a force, a matrix and M itself
-  static Vec3 to_links(const Vec3& qd) noexcept { return {qd[0], qd[1], qd[1] + qd[2]}; }
-  static Vec3 to_joints(const Vec3& n) noexcept { return {n[0], n[1] + n[2], n[2]}; }
+  static Vec3 to_links(const Vec3& qd) noexcept {
+    return {qd[0], qd[1], qd[1] + qd[2]};
+  }
+  static Vec3 to_joints(const Vec3& n) noexcept {
+    return {n[0], n[1] + n[2], n[2]};
+  }
   [[gnu::always_inline]] static Mat3 to_joints(Mat3 m) noexcept {
     m.col(1) += m.col(2);
     m.row(1) += m.row(2);
     return m;
+  }
+  // of a matrix over the links, by rows; register by register: see lanes.h
+  [[gnu::always_inline]] static detail::Block<3, Scalar> block_of_joints(
+      const Scalar& aa, const Scalar& ab, const Scalar& ac, const Scalar& ba, const Scalar& bb,
+      const Scalar& bc, const Scalar& ca, const Scalar& cb, const Scalar& cc) noexcept {
+    using Column = detail::Column<3, Scalar>;
+    detail::Block<3, Scalar> b;
+    b.column[0] = Column::of(aa, ba + ca, ca);
+    b.column[1] = Column::of(ab + ac, bb + bc + cb + cc, cb + cc);
+    b.column[2] = Column::of(ac, bc + cc, cc);
+    return b;
   }
   [[gnu::always_inline]] Mat3 to_joints(const Coupling& c) const noexcept {
     Mat3 B;

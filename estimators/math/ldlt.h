@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-#include "estimators/math/lanes.h"
+#include "estimators/math/block.h"
 #include "estimators/types.h"
 
 namespace tauext {
@@ -18,19 +18,18 @@ class Ldlt {
   static constexpr bool kLanes = N > 4 && std::is_same_v<Scalar, double>;  ///< in whole registers
 
   /// Factorises B, symmetric and positive definite.
-  [[gnu::always_inline]] explicit Ldlt(const Mat<N, Scalar>& B) noexcept
-      requires(!kLanes || N < 8) {
+  [[gnu::always_inline]] explicit Ldlt(const Mat<N, Scalar>& B) noexcept {
     Mat<N, Scalar> LD;  // its strictly lower triangle
     for (int j = 0; j < N; ++j) {
       Scalar d = B(j, j);
-      for (int k = 0; k < j; ++k) d -= L_(j, k) * LD(j, k);
+      for (int k = 0; k < j; ++k) d -= L_[k][j] * LD(j, k);
       ok_ = ok_ && d > 0;  // false for NaN
       d_inverse_[j] = Scalar(1) / d;
       for (int i = j + 1; i < N; ++i) {
         Scalar a = B(i, j);
-        for (int k = 0; k < j; ++k) a -= LD(i, k) * L_(j, k);
+        for (int k = 0; k < j; ++k) a -= LD(i, k) * L_[k][j];
         LD(i, j) = a;
-        L_(i, j) = a * d_inverse_[j];
+        L_[j][i] = a * d_inverse_[j];
       }
     }
   }
@@ -40,21 +39,19 @@ class Ldlt {
     using detail::Lanes;
     Lanes c[N][2];
 #pragma GCC unroll 8
-    for (int j = 0; j < N; ++j) detail::load(&B(0, j), c[j][0]), detail::load(&B(4, j), c[j][1]);
+    for (int j = 0; j < N; ++j) c[j][0] = B.column[j].x[0], c[j][1] = B.column[j].x[1];
 #pragma GCC unroll 8
     for (int j = 0; j < N; ++j) {
       const double d = c[j][j / 4][j % 4], inverse = 1 / d;
       ok_ = ok_ && d > 0;
       d_inverse_[j] = inverse;
-      const Lanes scale{inverse, inverse, inverse, inverse};
 #pragma GCC unroll 2
-      for (int r = j / 4; r < 2; ++r) detail::store(&L_(4 * r, j), c[j][r] * scale);
+      for (int r = j / 4; r < 2; ++r) (c[j][r] * inverse).store(L_[j] + 4 * r);
 #pragma GCC unroll 8
       for (int k = j + 1; k < N; ++k) {
-        const double x = c[j][k / 4][k % 4];
-        const Lanes share = Lanes{x, x, x, x} * scale;
+        const Lanes share = Lanes(c[j][k / 4][k % 4]) * inverse;
 #pragma GCC unroll 2
-        for (int r = k / 4; r < 2; ++r) c[k][r] -= c[j][r] * share;
+        for (int r = k / 4; r < 2; ++r) c[k][r] = c[k][r] - c[j][r] * share;
       }
     }
   }
@@ -77,10 +74,10 @@ class Ldlt {
     return b;
   }
 
-  /// B^-1 with rows and columns of zeros appended, times -1.
-  [[gnu::always_inline]] Mat<detail::kPadded<N>, Scalar> minus_inverse() const noexcept {
-    Mat<detail::kPadded<N>, Scalar> out;
+  /// -B^-1.
+  [[gnu::always_inline]] detail::Block<N, Scalar> minus_inverse() const noexcept {
     if constexpr (kLanes) {
+      detail::Block<N, Scalar> out;
       // four columns at a time; as it is symmetric, a row of them is a piece of a column
 #pragma GCC unroll 2
       for (int first = 0; first < 8; first += 4) {
@@ -88,18 +85,16 @@ class Ldlt {
 #pragma GCC unroll 8
         for (int i = 0; i < N; ++i) {
           const auto at = [=](int j) { return i == first + j ? -1.0 : 0.0; };
-          x[i] = detail::Lanes{at(0), at(1), at(2), at(3)};
+          x[i] = detail::Lanes(at(0), at(1), at(2), at(3));
         }
         substitute(x, first);
 #pragma GCC unroll 8
-        for (int i = 0; i < N; ++i) detail::store(&out(first, i), x[i]);
+        for (int i = 0; i < N; ++i) out.column[i].x[first / 4] = x[i];
       }
-      out.template rightCols<8 - N>().setZero();
+      return out;
     } else {
-      const Mat<N, Scalar> one = Mat<N, Scalar>::Identity();
-      out = detail::pad_matrix<N, Scalar>(-solve(one));
+      return detail::Block<N, Scalar>::from(-solve(Mat<N, Scalar>(Mat<N, Scalar>::Identity())));
     }
-    return out;
   }
 
  private:
@@ -109,18 +104,18 @@ class Ldlt {
 #pragma GCC unroll 8
     for (int i = first; i < N; ++i) {
 #pragma GCC unroll 8
-      for (int k = first; k < i; ++k) x[i] -= L_(i, k) * x[k];
+      for (int k = first; k < i; ++k) x[i] = x[i] - L_[k][i] * x[k];
     }
 #pragma GCC unroll 8
     for (int i = N - 1; i >= 0; --i) {
-      x[i] *= d_inverse_[i];
+      x[i] = d_inverse_[i] * x[i];
 #pragma GCC unroll 8
-      for (int k = i + 1; k < N; ++k) x[i] -= L_(k, i) * x[k];
+      for (int k = i + 1; k < N; ++k) x[i] = x[i] - L_[i][k] * x[k];
     }
   }
 
-  Mat<detail::kPadded<N>, Scalar> L_;  // its strictly lower triangle
-  Vec<N, Scalar> d_inverse_;
+  Scalar L_[N][detail::kPadded<N>];  // by columns, its strictly lower triangle
+  Scalar d_inverse_[N];
   bool ok_ = true;
 };
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "estimators/math/lanes.h"
+#include "estimators/math/block.h"
 
 namespace tauext::detail {
 
@@ -18,25 +18,25 @@ namespace tauext::detail {
 template <int N, std::size_t Blocks>
 [[gnu::always_inline]] inline void learn_block(int m, const Block<N>* const (&columns)[Blocks],
                                                const Vec<N>& y, const Vec<N>& R,
-                                               Vec<kPadded<N>> (&x)[Blocks],
+                                               Column<N> (&x)[Blocks],
                                                Block<N> (&w)[Blocks]) noexcept {
   Block<N> c[Blocks];  // the columns, less what the readings before theirs take
   double r[N];         // what a column is divided by, [1/unit^2]
+  Column<N> column[Blocks];
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) {
-    Vec<kPadded<N>> column[Blocks];
-    for (std::size_t b = 0; b < Blocks; ++b) column[b] = columns[b]->col(i);
+    for (std::size_t b = 0; b < Blocks; ++b) column[b] = columns[b]->column[i];
 #pragma GCC unroll 8
     for (int k = 0; k < i; ++k) {
       const double share = c[m](i, k) * r[k];
-      for (std::size_t b = 0; b < Blocks; ++b) column[b] -= c[b].col(k) * share;
+      for (std::size_t b = 0; b < Blocks; ++b) column[b] = column[b] - share * c[b].column[k];
     }
     r[i] = 1 / (column[m][i] + R[i]);
     const double learnt = r[i] * (y[i] - x[m][i]), root = std::sqrt(r[i]);
     for (std::size_t b = 0; b < Blocks; ++b) {
-      c[b].col(i) = column[b];
-      w[b].col(i) = column[b] * root;
-      x[b] += column[b] * learnt;
+      c[b].column[i] = column[b];
+      w[b].column[i] = root * column[b];
+      x[b] = x[b] + learnt * column[b];
     }
   }
 }

@@ -8,7 +8,7 @@
 /// S. L. Moshier's Cephes (sin.c). Absolute error below 2.1e-16 for |x| < 1e6 rad.
 #pragma once
 
-#include "estimators/math/lanes.h"
+#include "estimators/math/each.h"
 
 namespace tauext {
 
@@ -49,11 +49,15 @@ namespace detail {
 /// sin and cos of x [rad], |x| < 1e6.
 template <int N>
 [[gnu::always_inline]] inline void sin_cos(const Vec<N>& x, Vec<N>& sin, Vec<N>& cos) noexcept {
+  const auto angles = detail::Each<detail::kPadded<N>, double>::from(x);
+#pragma GCC unroll 2
   for (int first = 0; first < N; first += 4) {
-    detail::Lanes angle, s, c;
-    detail::gather<N>(x, first, angle);
-    detail::sin_cos(angle, s, c);
-    for (int i = 0; i < 4 && first + i < N; ++i) sin[first + i] = s[i], cos[first + i] = c[i];
+    detail::Lanes s, c;
+    detail::sin_cos(angles.x[first / 4], s, c);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      if (first + i < N) sin[first + i] = s[i], cos[first + i] = c[i];
+    }
   }
 }
 

@@ -9,25 +9,22 @@
 /// which is exact at 0. Relative error below 7e-16.
 #pragma once
 
-#include "estimators/math/lanes.h"
+#include "estimators/math/each.h"
 
 namespace tauext {
 
 namespace detail {
 
 [[gnu::always_inline]] inline void tanh(const Lanes& x, Lanes& tanh_x) noexcept {
-  typedef unsigned long long Bits __attribute__((vector_size(sizeof(Lanes))));
   constexpr double kLog2E = 0x1.71547652b82fep+0;
   constexpr double kLn2Part1 = 0x1.62e42feep-1, kLn2Part2 = 0x1.a39ef35793c76p-33;
   constexpr double kRound = 0x1.8p+52;  // as in sin_cos.h; its last bits are those of k, too
-  const Lanes most = Lanes{} + 40;      // beyond, tanh is 1 to the last bit
-  Lanes twice = 2 * x;
-  twice = twice > most ? most : twice;
-  twice = twice < -most ? -most : twice;
+  constexpr double kMost = 40;          // beyond, tanh is 1 to the last bit
+  const Lanes twice = max(min(2 * x, kMost), -kMost);
   const Lanes rounded = twice * kLog2E + kRound;
   const Lanes k = rounded - kRound;
   const Lanes r = (twice - k * kLn2Part1) - k * kLn2Part2;
-  const Lanes power = (Lanes)(((Bits)rounded + 1023) << 52);  // 2^k
+  const Lanes power = power_of_two(rounded);
   const Lanes z = r * r;
   Lanes half = 1.26177193074810590878e-4 * z + 3.02994407707441961300e-2;
   half = r * (half * z + 9.99999999999999999910e-1);
@@ -42,12 +39,16 @@ namespace detail {
 /// tanh of x [1].
 template <int N>
 [[gnu::always_inline]] inline Vec<N> tanh(const Vec<N>& x) noexcept {
+  const auto all = detail::Each<detail::kPadded<N>, double>::from(x);
   Vec<N> out;
+#pragma GCC unroll 2
   for (int first = 0; first < N; first += 4) {
-    detail::Lanes four, t;
-    detail::gather<N>(x, first, four);
-    detail::tanh(four, t);
-    for (int i = 0; i < 4 && first + i < N; ++i) out[first + i] = t[i];
+    detail::Lanes t;
+    detail::tanh(all.x[first / 4], t);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      if (first + i < N) out[first + i] = t[i];
+    }
   }
   return out;
 }

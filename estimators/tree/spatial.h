@@ -9,7 +9,7 @@
 
 #include <type_traits>
 
-#include "estimators/tree/each.h"
+#include "estimators/math/each.h"
 
 namespace tauext::detail {
 

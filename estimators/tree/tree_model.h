@@ -47,9 +47,10 @@ class TreeModel {
 
  public:
   static constexpr int kDof = N;
-  static constexpr int kJoints = M;  ///< that the coordinates move
-  using VecN = Vec<N, Scalar>;       ///< a number of each coordinate
-  using MatN = Mat<N, Scalar>;       ///< over the coordinates
+  static constexpr int kJoints = M;         ///< that the coordinates move
+  using VecN = Vec<N, Scalar>;              ///< a number of each coordinate
+  using MatN = Mat<N, Scalar>;              ///< over the coordinates
+  using Square = detail::Block<N, Scalar>;  ///< the same in lanes
 
   /// What it is made of.
   struct Parameters {
@@ -136,43 +137,39 @@ class TreeModel {
                                               const VecN& u) const noexcept {
     VecM slope;
     const VecN dry = forces(dry_friction(to_rate(qd), slope));
-    const auto f = padded_dynamics(q, qd, u - dry);
-    const MatN per_torque = own(f.by_tau_ext);
-    return {f.qdd.template head<N>(), own(f.by_q),
-            own(f.by_qd) + per_torque * (drho_.transpose() * slope.asDiagonal() * drho_),
-            per_torque, f.ok};
+    const auto m = motion(q, qd, u - dry);
+    const MatN per_torque = m.minus_inverse.matrix();
+    return {m.qdd.template to<N>(), per_torque * m.by_q.matrix(),
+            per_torque * (m.by_qd.matrix() + drho_.transpose() * slope.asDiagonal() * drho_),
+            per_torque, m.ok};
   }
 
-  /// The same as it comes and with inertia(q), but without dry friction.
-  [[gnu::noinline]] detail::PaddedDynamics<N, Scalar> padded_dynamics(
-      const VecN& q, const VecN& qd, const VecN& u) const noexcept {
+  /// The same in lanes, but without dry friction; and inertia(q), where B is asked for.
+  [[gnu::noinline]] detail::LinearMotion<N, Scalar> motion(
+      const VecN& q, const VecN& qd, const VecN& u, Square* inertia = nullptr) const noexcept {
     const VecM rate = to_rate(qd);
     const auto s = passes_.template pose<true>(to_rho(q));
     auto flow = passes_.template flow<true>(s, rate);
     const auto c = passes_.composite(s.I);
     const VecM rest = bias(s, flow) + viscous_.cwiseProduct(rate) + offset_;
     const auto IS = Passes::template momenta<true>(s, c);
-    detail::PaddedDynamics<N, Scalar> f;
-    if constexpr (M == N) {
-      f.B = passes_.inertia(s, IS);
-      to_q(f.B);
-    } else {
-      Bodies B = passes_.inertia(s, IS);
-      f.B = to_q(B);
-    }
-    const Factor factor = factorised(f.B);
-    f.ok = factor.ok();
+    Bodies own_B = passes_.inertia(s, IS);
+    const Square& B = to_q(own_B);
+    if (inertia) *inertia = B;
+    const Factor factor = factorised(B);
+    detail::LinearMotion<N, Scalar> m;
+    m.ok = factor.ok();
     const VecN qdd = factor.solve(VecN(u - forces(rest)));
-    f.qdd = detail::pad_vector<N, Scalar>(qdd);
-    f.by_tau_ext = factor.minus_inverse();
+    m.qdd = detail::Column<N, Scalar>::template from<N>(qdd);
+    m.minus_inverse = factor.minus_inverse();
     passes_.template accelerate<true>(s, to_rate(qdd), flow);
-    Bodies q_part, qd_part;
-    passes_.template derivatives<true>(s, flow, c, IS, q_part, qd_part);
-    qd_part.diagonal().template head<M>() += viscous_;
-    const Square &by_q = to_q(q_part), &by_qd = to_q(qd_part);
-    f.by_q = times_transposed(f.by_tau_ext, by_q);
-    f.by_qd = times_transposed(f.by_tau_ext, by_qd);
-    return f;
+    Bodies by_rho, by_rate;
+    passes_.template derivatives<true>(s, flow, c, IS, by_rho, by_rate);
+#pragma GCC unroll 8
+    for (int i = 0; i < M; ++i) by_rate.column[i].set(i, by_rate(i, i) + viscous_[i]);
+    m.by_q = to_q(by_rho);
+    m.by_qd = to_q(by_rate);
+    return m;
   }
 
   /// Where a point [m] in the frame of a joint's body is, in the axes of the base, whose origin is
@@ -207,14 +204,13 @@ class TreeModel {
   using Passes = detail::TreePasses<M, Scalar>;
   using VecM = Vec<M, Scalar>;  // a number of each joint
   using Pose = typename Passes::Pose;
-  using Bodies = typename Passes::Square;          // over the joints, in lanes
-  using Square = Mat<detail::kPadded<N>, Scalar>;  // over the coordinates
+  using Bodies = detail::Block<M, Scalar>;  // over the joints
   using Factor = Ldlt<N, Scalar>;
 
   [[gnu::always_inline]] MatN inertia(const Pose& s,
                                       const typename Passes::Inertia& c) const noexcept {
     Bodies B = passes_.inertia(s, Passes::momenta(s, c));
-    return own(to_q(B));
+    return to_q(B).matrix();
   }
 
   [[gnu::always_inline]] VecM bias(const Pose& s, const typename Passes::Flow& f) const noexcept {
@@ -259,33 +255,18 @@ class TreeModel {
   // what is over the joints, over the coordinates; in place where these are as many
   [[gnu::always_inline]] decltype(auto) to_q(Bodies& of_rho) const noexcept {
     if constexpr (M == N) {
-      if (!direct_) of_rho.template topLeftCorner<N, N>() = drho_.transpose() * own(of_rho) * drho_;
+      if (!direct_) of_rho = Square::from(drho_.transpose() * of_rho.matrix() * drho_);
       return (of_rho);
     } else {
-      Square of_q = Square::Zero();
-      of_q.template topLeftCorner<N, N>() =
-          drho_.transpose() * of_rho.template topLeftCorner<M, M>() * drho_;
-      return of_q;
+      return Square::from(drho_.transpose() * of_rho.matrix() * drho_);
     }
   }
-
-  static MatN own(const Square& m) noexcept { return m.template topLeftCorner<N, N>(); }
 
   [[gnu::always_inline]] static Factor factorised(const Square& B) noexcept {
     if constexpr (Factor::kLanes) {
       return Factor(B);
     } else {
-      return Factor(own(B));
-    }
-  }
-
-  static Square times_transposed(const Square& a, const Square& b) noexcept {
-    if constexpr (Factor::kLanes) {
-      Square product;
-      detail::products<detail::Into::kSet, N, 1>({&a}, {&b}, product);
-      return product;
-    } else {
-      return a * b.transpose();
+      return Factor(B.matrix());
     }
   }
 

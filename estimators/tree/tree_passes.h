@@ -22,7 +22,7 @@ class TreePasses {
   static constexpr int P = kPadded<N>;  ///< lanes
   using VecN = Vec<N, Scalar>;          ///< a number of each joint
   using MatN = Mat<N, Scalar>;          ///< over the joints
-  using Square = Mat<P, Scalar>;        ///< the same in lanes
+  using Square = Block<N, Scalar>;      ///< the same in lanes
   using One = Each<P, Scalar>;          ///< the same in lanes
   using Three = Each3<P, Scalar>;       ///< vectors
   using Motion = EachMotion<P, Scalar>;
@@ -139,15 +139,13 @@ class TreePasses {
   /// B of (ii), with the rotors, from the momenta.
   [[gnu::always_inline]] Square inertia(const Pose& s, const Force& IS) const noexcept {
     Square B, lower;
-    B.template rightCols<P - N>().setZero();
-    lower.template rightCols<P - N>().setZero();
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
       const One column = dot(s.S.of(i), IS);
-      (armature_[i] + sums_.behind(i) * column).since(i).store(&B(0, i));
-      (sums_.strictly_behind(i) * column).since(i).store(&lower(0, i));
+      B.column[i] = (armature_[i] + sums_.behind(i) * column).since(i);
+      lower.column[i] = (sums_.strictly_behind(i) * column).since(i);
     }
-    B += transposed(lower);
+    B.add(transposed(lower));
     return B;
   }
 
@@ -156,7 +154,7 @@ class TreePasses {
     return along(s.S, {cross(c.h, g_), c.m * g_});
   }
 
-  /// The transposes of d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
+  /// d tau/d rho and d tau/d rate of (iv), for the flow with its acceleration.
   template <bool kApart>
   [[gnu::always_inline]] void derivatives(const Pose& s, const Flow& f, const Inertia& c,
                                           const Force& IS, Square& by_q,
@@ -190,21 +188,19 @@ class TreePasses {
       q_above.put(k, twice_B(Sd) + I_c * Sdd.piece(k) + cross(S, F.piece(k)));
       qd_above.put(k, twice_B(S) + two_c * (I_c * Sd));
     });
-    Square q_columns, qd_columns;  // below the diagonal
-    for (Square* m : {&by_q, &by_qd, &q_columns, &qd_columns})
-      m->template rightCols<P - N>().setZero();
+    Square q_rows, qd_rows;  // on and right of the diagonal
     for_each<(P > 4), N>([&](int i) __attribute__((always_inline)) {
       const Motion S = s.S.of(i), Sd = f.Sd.of(i);
       const One q_below = dot(BtS, Sd.w) + dot(Sdd.of(i), IS);
       const One qd_below = dot(BtS, S.w) + two * dot(Sd, IS);
       const One q_right = dot(S, q_above), qd_right = dot(S, qd_above);
-      (sums_.behind(i) * q_right).store(&by_q(0, i));
-      (sums_.behind(i) * qd_right).store(&by_qd(0, i));
-      (sums_.strictly_behind(i) * q_below).store(&q_columns(0, i));
-      (sums_.strictly_behind(i) * qd_below).store(&qd_columns(0, i));
+      q_rows.column[i] = sums_.behind(i) * q_right;
+      qd_rows.column[i] = sums_.behind(i) * qd_right;
+      by_q.column[i] = sums_.strictly_behind(i) * q_below;
+      by_qd.column[i] = sums_.strictly_behind(i) * qd_below;
     });
-    by_q += transposed(q_columns);
-    by_qd += transposed(qd_columns);
+    by_q.add(transposed(q_rows));
+    by_qd.add(transposed(qd_rows));
   }
 
   /// A point [m] in the frame that joint j was given with, in the axes of the base.

@@ -89,13 +89,15 @@ class AnyTree {
           [&](const auto& arm) { return arm.forward_dynamics(wide(q), wide(qd), wide(u)); });
     return arm_.forward_dynamics(q, qd, u);
   }
-  /// The same as it comes and with inertia(q), but without dry friction.
-  detail::PaddedDynamics<N> padded_dynamics(const VecN& q, const VecN& qd,
-                                            const VecN& u) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<detail::PaddedDynamics<N>>(
-          [&](const auto& arm) { return arm.padded_dynamics(wide(q), wide(qd), wide(u)); });
-    return arm_.padded_dynamics(q, qd, u);
+  /// The same in lanes, but without dry friction; and inertia(q), where B is asked for.
+  detail::LinearMotion<N> motion(const VecN& q, const VecN& qd, const VecN& u,
+                                 detail::Block<N>* B = nullptr) const noexcept {
+    if (tied_) [[unlikely]] {
+      if (B) *B = detail::Block<N>::from(inertia(q));
+      return tied<detail::LinearMotion<N>>(
+          [&](const auto& arm) { return arm.motion(wide(q), wide(qd), wide(u)); });
+    }
+    return arm_.motion(q, qd, u, B);
   }
 
  private:
@@ -117,17 +119,12 @@ class AnyTree {
   static ForwardDynamics<N> narrow(const ForwardDynamics<kMostCoordinates>& f) noexcept {
     return {narrow(f.qdd), narrow(f.dqdd_dq), narrow(f.dqdd_dqd), narrow(f.dqdd_dtau_ext), f.ok};
   }
-  static detail::PaddedDynamics<N> narrow(
-      const detail::PaddedDynamics<kMostCoordinates>& f) noexcept {
-    const auto padded = [](const Mat<kMostCoordinates>& m) {
-      return detail::pad_matrix<N>(narrow(m));
+  static detail::LinearMotion<N> narrow(const detail::LinearMotion<kMostCoordinates>& f) noexcept {
+    const auto block = [](const detail::Block<kMostCoordinates>& b) {
+      return detail::Block<N>::from(narrow(b.matrix()));
     };
-    return {detail::pad_vector<N>(narrow(f.qdd)),
-            padded(f.by_q),
-            padded(f.by_qd),
-            padded(f.by_tau_ext),
-            padded(f.B),
-            f.ok};
+    return {detail::Column<N>::template from<N>(f.qdd.template to<N>()), block(f.by_q),
+            block(f.by_qd), block(f.minus_inverse), f.ok};
   }
 
   // out of the way of an arm without tied joints

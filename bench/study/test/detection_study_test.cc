@@ -111,10 +111,11 @@ TEST(Calibration, TrainsASpecificationForItself) {
   CalibrationOptions o;
   o.conditions = {"known_0"};
   o.estimators = {"mo1", "mo1:bandwidth=30"};
-  o.detectors = {"high_pass:w=100"};
+  o.detectors = {"high_pass", "high_pass:w=100"};
   o.runs = 1;
   const ThresholdSet set = calibrate(o).sets.front();
   const DetectorThresholds& named = set.by_estimator.at("mo1");
+  EXPECT_EQ(named.size(), 2u) << "no others";
   EXPECT_EQ(named.at("high_pass").threshold,
             set.by_estimator.at("mo1:bandwidth=30").at("high_pass").threshold)
       << "the roster's own bandwidth";

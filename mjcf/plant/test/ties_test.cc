@@ -124,10 +124,10 @@ TEST(Ties, FollowChainsWithTheirOffsetsAndReferences) {
   ASSERT_TRUE(f.ok);
   EXPECT_LT((B * f.qdd + bias + oracle.friction(qd) - u).norm(), 1e-11);
   EXPECT_LT((B * f.dqdd_dtau_ext + Mat<2>::Identity()).norm(), 1e-12);
-  EXPECT_LT(
-      (arm.padded_dynamics(q, qd, u - arm.dry_friction(qd)).by_q.topLeftCorner<2, 2>() - f.dqdd_dq)
-          .norm(),
-      1e-14);
+  detail::Block<2> lanes_of_B;
+  const auto lanes = arm.motion(q, qd, u - arm.dry_friction(qd), &lanes_of_B);
+  EXPECT_LT((lanes.by_q.matrix() + B * f.dqdd_dq).norm(), 1e-12);
+  EXPECT_LT((lanes_of_B.matrix() - B).norm(), 1e-12);
 }
 
 // two wheels that brake one joint brake it twice as fast, and one rotor's inertia mends both

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A number of each body of an arm, side by side: what is written for one body is computed for all
-/// of them at once, one body in a SIMD lane.
+/// A number of each joint or body of an arm, side by side: what is written for one is computed for
+/// all of them at once, one in a SIMD lane.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,13 @@
 #include <type_traits>
 
 #include "estimators/math/lanes.h"
+#include "estimators/types.h"
 
 namespace tauext::detail {
+
+/// N numbers with zeros appended, to whole Lanes; one needs none.
+template <int N>
+inline constexpr int kPadded = N == 1 ? 1 : (N + 3) / 4 * 4;
 
 /// Bodies of a piece: those of a register. Up to 4 bodies, and other scalars than double, are one
 /// piece; 5 to 8 are two, computed one after the other where no body needs the other piece.
@@ -28,11 +33,23 @@ struct Each {
     for (Scalar& x : e.x) x = a;
     return e;
   }
+  /// Of three.
+  static Each of(const Scalar& a, const Scalar& b, const Scalar& c) noexcept {
+    Each e = zero();
+    e.x[0] = a, e.x[1] = b, e.x[2] = c;
+    return e;
+  }
   template <int N>
   static Each from(const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
     Each e = zero();
     for (int i = 0; i < N; ++i) e.x[i] = v[i];
     return e;
+  }
+  template <int N>
+  Vec<N, Scalar> to() const noexcept {  ///< the first N
+    Vec<N, Scalar> v;
+    for (int i = 0; i < N; ++i) v[i] = x[i];
+    return v;
   }
   Scalar operator[](int i) const noexcept { return x[i]; }  ///< that of body i
   void set(int i, const Scalar& a) noexcept { x[i] = a; }   ///< that of body i
@@ -40,9 +57,6 @@ struct Each {
   void put(int, const Each& e) noexcept { *this = e; }      ///< sets the bodies of a piece
   /// The same, or, if that saves work, 0 of the bodies before `first`.
   Each since([[maybe_unused]] int first) const noexcept { return *this; }
-  void store(Scalar* to) const noexcept {  ///< as numbers side by side
-    for (const Scalar& a : x) *to++ = a;
-  }
   /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
   void add(const Each& a, const Scalar& times, int first, int last) noexcept {
     for (int i = first; i <= last; ++i) x[i] += times * a.x[i];
@@ -61,6 +75,13 @@ struct Each {
   }
 };
 
+/// Each, so many times.
+template <int P, class Scalar>
+[[gnu::always_inline]] inline Each<P, Scalar> operator*(const std::type_identity_t<Scalar>& times,
+                                                        const Each<P, Scalar>& a) noexcept {
+  return Each<P, Scalar>::all(times) * a;
+}
+
 /// Registers full of them; of one body, which needs no padding, the first lane of one.
 template <int P>
 requires(P % 4 == 0 || P == 1) struct Each<P, double> {
@@ -71,27 +92,32 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   // one by one: GCC 12 copies an aggregate by halves of registers, which loads then wait for
   [[gnu::always_inline]] Each(const Each& e) noexcept { *this = e; }
   [[gnu::always_inline]] Each& operator=(const Each& e) noexcept {
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) x[k] = e.x[k];
+    written_out<kCount>([&](int k) __attribute__((always_inline)) { x[k] = e.x[k]; });
     return *this;
   }
-  [[gnu::always_inline]] static Each zero() noexcept {
-    return all(0);
+  [[gnu::always_inline]] static Each zero() noexcept { return all(0); }
+  [[gnu::always_inline]] static Each of(double a, double b, double c) noexcept {
+    Each e = zero();
+    e.x[0] = Lanes(a, b, c, 0);
+    return e;
   }
   [[gnu::always_inline]] static Each all(double a) noexcept {
-    Each e;
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) e.x[k] = Lanes{a, a, a, a};
-    return e;
+    return made([&](int) __attribute__((always_inline)) { return Lanes(a); });
   }
   template <int N>
   [[gnu::always_inline]] static Each from(const Vec<N>& v) noexcept {
-    Each e;
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) {
-      gather_zeros<N>(v, 4 * k, e.x[k]);
-    }
-    return e;
+    const auto at = [&](int i) __attribute__((always_inline)) {
+      return i < N ? v[i] : 0;
+    };
+    return made([&](int k) __attribute__((always_inline)) {
+      return Lanes(at(4 * k), at(4 * k + 1), at(4 * k + 2), at(4 * k + 3));
+    });
+  }
+  template <int N>
+  [[gnu::always_inline]] Vec<N> to() const noexcept {
+    Vec<N> v;
+    std::memcpy(v.data(), x, sizeof v);
+    return v;
   }
   [[gnu::always_inline]] double operator[](int i) const noexcept {
     if (__builtin_constant_p(i)) return x[i / 4][i % 4];
@@ -100,9 +126,7 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
                 sizeof a);
     return a;
   }
-  [[gnu::always_inline]] void set(int i, double a) noexcept {
-    x[i / 4][i % 4] = a;
-  }
+  [[gnu::always_inline]] void set(int i, double a) noexcept { x[i / 4].set(i % 4, a); }
   [[gnu::always_inline]] Each<kPiece<P, double>, double> piece(int k) const noexcept {
     Each<kPiece<P, double>, double> e;
     e.x[0] = x[k];
@@ -112,45 +136,46 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
     x[k] = e.x[0];
   }
   [[gnu::always_inline]] Each since(int first) const noexcept {
-    Each e = zero();
-#pragma GCC unroll 4
-    for (int k = first / 4; k < kCount; ++k) e.x[k] = x[k];
-    return e;
-  }
-  [[gnu::always_inline]] void store(double* to) const noexcept {
-    if constexpr (P == 1) {
-      *to = x[0][0];
-      return;
-    }
-#pragma GCC unroll 4
-    for (int k = 0; k < P / 4; ++k) detail::store(to + 4 * k, x[k]);
+    return made([&](int k)
+                    __attribute__((always_inline)) { return k < first / 4 ? Lanes(0) : x[k]; });
   }
   [[gnu::always_inline]] void add(const Each& a, double times, int first, int last) noexcept {
-    const Lanes t{times, times, times, times};
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) {
-      if (4 * k <= last && first < 4 * k + 4) x[k] += a.x[k] * t;
-    }
+    written_out<kCount>([&](int k) __attribute__((always_inline)) {
+      if (4 * k <= last && first < 4 * k + 4) x[k] = x[k] + a.x[k] * times;
+    });
   }
   [[gnu::always_inline]] friend Each operator+(const Each& a, const Each& b) noexcept {
-    Each e;
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] + b.x[k];
-    return e;
+    return made([&](int k) __attribute__((always_inline)) { return a.x[k] + b.x[k]; });
   }
   [[gnu::always_inline]] friend Each operator-(const Each& a, const Each& b) noexcept {
-    Each e;
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] - b.x[k];
-    return e;
+    return made([&](int k) __attribute__((always_inline)) { return a.x[k] - b.x[k]; });
   }
   [[gnu::always_inline]] friend Each operator*(const Each& a, const Each& b) noexcept {
+    return made([&](int k) __attribute__((always_inline)) { return a.x[k] * b.x[k]; });
+  }
+
+ private:
+  template <class F>
+  [[gnu::always_inline]] static Each made(const F& f) noexcept {
     Each e;
-#pragma GCC unroll 4
-    for (int k = 0; k < kCount; ++k) e.x[k] = a.x[k] * b.x[k];
+    written_out<kCount>([&](int k) __attribute__((always_inline)) { e.x[k] = f(k); });
     return e;
   }
 };
+
+/// Calls f(0) to f(N - 1), written out one after the other or in a loop. Written out, it is faster
+/// until a step no longer fits into the processor's first cache of instructions, as the EKF of 7
+/// joints would not.
+template <bool kLoop, int N, class F>
+[[gnu::always_inline]] inline void for_each(F&& f) noexcept {
+  if constexpr (kLoop) {
+#pragma GCC unroll 1
+    for (int i = 0; i < N; ++i) f(i);
+  } else {
+#pragma GCC unroll 4
+    for (int i = 0; i < N; ++i) f(i);
+  }
+}
 
 /// f(k), never inlined.
 template <class F>
