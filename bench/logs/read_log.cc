@@ -52,15 +52,17 @@ bool doubt_units(const Trace& log, const std::string& path, const std::string& r
       const double x = h * (log.qd(j, k) + log.qd(j, k - 1)) / 2, y = log.q(j, k) - log.q(j, k - 1);
       xx += x * x, xy += x * y, yy += y * y;
     }
-    const bool rests = xx<1e-6 * yy, alike = std::abs(xy)> 0.9 * std::sqrt(xx * yy);
+    const bool rests = xx < 1e-6 * yy;
     const bool moved = log.q.row(j).maxCoeff() - log.q.row(j).minCoeff() > kMoved;
-    if (!contradicts && rests && moved)
-      say(fmt::format("{}: q{} moves, and qd{} says that it rests: {}", path, j + 1, j + 1,
-                      remedy));
-    if (!contradicts && !rests && alike && (xy > 2 * xx || xy < 0.5 * xx))
-      say(fmt::format("{}: q{} moves {:.3g} times as fast as qd{} says: {}", path, j + 1, xy / xx,
-                      j + 1, remedy));
-    contradicts = contradicts || (rests ? moved : alike && (xy > 2 * xx || xy < 0.5 * xx));
+    const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy);
+    const bool wrong = rests ? moved : alike && (xy > 2 * xx || xy < 0.5 * xx);
+    if (wrong && !contradicts) {
+      const std::string what =
+          rests ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
+                : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, xy / xx, j + 1);
+      say(fmt::format("{}: {}: {}", path, what, remedy));
+    }
+    contradicts = contradicts || wrong;
     const double most = log.q.row(j).cwiseAbs().maxCoeff();
     if (!far && most > kTwoTurns)
       say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,
