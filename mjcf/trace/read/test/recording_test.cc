@@ -6,8 +6,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/atomic_file.h"
@@ -180,6 +184,40 @@ TEST_F(TraceFile, ColumnsAreFoundByNameInAnyOrder) {
   EXPECT_EQ(t.q(0, 0), 1);
   EXPECT_EQ(t.tau(0, 0), 3);
 }
+
+#ifndef TAUEXT_SANITIZED  // which keeps what was freed
+// [kB] the most memory that this process has held since `reset`
+long most_memory(bool reset) {
+  if (reset) std::ofstream("/proc/self/clear_refs") << "5";
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word == "VmHWM:") return status >> word, std::stol(word);
+  }
+  return 0;
+}
+
+TEST_F(TraceFile, IsReadInMemoryThatDoesNotGrowWithIt) {
+  constexpr int kRows = 300'000;
+  {
+    std::ofstream file(path());
+    file << kHead;
+    for (int k = 0; k < kRows; ++k)
+      file << fmt::format("{},{},{},0.1234567890123456,-1.2345678901234567,{},{}\n", 1e-3 * k,
+                          std::sin(1e-3 * k), std::cos(1e-3 * k), 1 + 1e-5 * k, 2 - 1e-5 * k);
+  }
+  const double megabytes = 1e-6 * static_cast<double>(fs::file_size(path()));
+  const long before = most_memory(true);
+  const std::clock_t begin = std::clock();
+  RecordingReader reader(path(), {});
+  int rows = 0;
+  for (RecordedSample s; reader.next(s);) ++rows;
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  std::printf("%.0f MB of CSV at %.0f MB a second of CPU\n", megabytes, megabytes / seconds);
+  EXPECT_EQ(rows, kRows);
+  EXPECT_GT(megabytes, 25);
+  EXPECT_LT(most_memory(false) - before, 6000) << "kB";
+}
+#endif
 
 TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(error_of_reading(std::string(kHead) + "0,1,2\n"),
