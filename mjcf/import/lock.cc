@@ -56,9 +56,7 @@ using Carriers = std::map<std::string, const XMLElement*>;
 void find_carriers(const XMLElement& at, const XMLElement* carrier, Carriers& all) {
   for (const XMLElement* b = at.FirstChildElement("body"); b != nullptr;
        b = b->NextSiblingElement("body")) {
-    const bool moves =
-        b->FirstChildElement("joint") != nullptr || b->FirstChildElement("freejoint") != nullptr;
-    const XMLElement* const own = moves ? b : carrier;
+    const XMLElement* const own = has_joint(*b) ? b : carrier;
     all[text(*b, "name")] = own;
     find_carriers(*b, own, all);
   }

@@ -106,7 +106,7 @@ class Import {
         include(root, folder, depth + 1);
         XMLNode* behind = e;
         for (XMLNode* c = root.FirstChild(); c != nullptr; c = c->NextSibling())
-          behind = at.InsertAfterChild(behind, c->DeepClone(&doc_of(at)));
+          behind = at.InsertAfterChild(behind, c->DeepClone(at.GetDocument()));
         at.DeleteChild(e);
       } else {
         include(*e, folder, depth);
@@ -114,35 +114,33 @@ class Import {
       e = next;
     }
   }
-  static XMLDocument& doc_of(XMLElement& e) { return *e.GetDocument(); }
 
   void refuse_unknown(XMLElement& root) {
     each(root, [&](XMLElement& e) {
       for (const std::string_view name : detail::kUnknown) {
-        if (name_of(e) == name && inside(e, "worldbody")) {
-          fail(e,
-               "MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
-               "(as newer MuJoCo does when it saves a model)",
-               name);
-        }
+        if (name_of(e) != name || !inside(e, "worldbody")) continue;
+        fail(e,
+             "MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
+             "(as newer MuJoCo does when it saves a model)",
+             name);
       }
       return true;
     });
   }
 
-  // geoms of meshes are needed where no <inertial> says the mass
   void find_bodies_with_mass(XMLElement& root) {
-    std::string from_geom = "auto";
     each(root, [&](XMLElement& e) {
       if (name_of(e) == "compiler" && e.Attribute("inertiafromgeom") != nullptr)
-        from_geom = text(e, "inertiafromgeom");
+        from_geom_ = text(e, "inertiafromgeom") == "true";
       return true;
     });
-    from_geom_ = from_geom == "true";
   }
+  // meshes are needed where a joint moves them, and no <inertial> says the mass
   bool mass_is_of_geoms(const XMLElement& geom) const {
-    if (parent_name(geom) != "body") return false;
-    return from_geom_ || geom.Parent()->FirstChildElement("inertial") == nullptr;
+    const XMLNode* at = geom.Parent();
+    if (!from_geom_ && at->FirstChildElement("inertial") != nullptr) return false;
+    while (at != nullptr && !detail::has_joint(*at)) at = at->Parent();
+    return at != nullptr;
   }
 
   static std::string_view attributes_of(const XMLElement& e) {
@@ -224,8 +222,10 @@ class Import {
     each(root, [&](XMLElement& e) {
       if (name_of(e) != "compiler") return true;
       said = said || e.Attribute("autolimits") != nullptr;
-      if (e.Attribute("meshdir") != nullptr) folder = text(e, "meshdir");
-      e.DeleteAttribute("meshdir");
+      for (const char* const name : {"assetdir", "meshdir"}) {
+        if (e.Attribute(name) != nullptr) folder = text(e, name);
+        e.DeleteAttribute(name);
+      }
       return true;
     });
     XMLElement* const compiler = root.InsertNewChildElement("compiler");

@@ -52,7 +52,7 @@ struct Kept {
 inline constexpr Kept kKept[] = {
     {"compiler",
      " boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq "
-     "inertiafromgeom inertiagrouprange autolimits meshdir "},
+     "inertiafromgeom inertiagrouprange autolimits assetdir meshdir "},
     {"option",
      " timestep impratio gravity wind density viscosity solver iterations tolerance "
      "noslip_iterations mpr_iterations "},
@@ -101,7 +101,7 @@ inline constexpr std::string_view kFixedJoint = " joint coef ";
 /// no part in the dynamics that we take: left out. Any other one is an error.
 inline constexpr Kept kLeftOut[] = {
     {"compiler",
-     " assetdir texturedir strippath fitaabb discardvisual usethread fusestatic alignfree "
+     " texturedir strippath fitaabb discardvisual usethread fusestatic alignfree "
      "saveinertial exactmeshinertia convexhull convexmesh "},
     {"option",
      " integrator cone jacobian tolerance apirate magnetic o_margin o_solref o_solimp o_friction "

@@ -59,6 +59,12 @@ inline bool inside(const XMLElement& e, std::string_view section) {
   return false;
 }
 
+/// Whether a body has a joint of its own.
+inline bool has_joint(const tinyxml2::XMLNode& body) {
+  return body.FirstChildElement("joint") != nullptr ||
+         body.FirstChildElement("freejoint") != nullptr;
+}
+
 /// Calls visit(element) for every element within `at`; where it says false it may have deleted the
 /// element.
 template <class Visit>

@@ -161,6 +161,21 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
   has(error(put("<mujoco><asset><mesh name='m' file='gone.stl'/></asset><worldbody><body><joint "
                 "name='j'/><geom type='mesh' mesh='m'/></body></worldbody></mujoco>")),
       "gone.stl");
+  has(error(
+          put("<mujoco><compiler assetdir='parts'/><asset><mesh name='m' file='gone.stl'/></asset>"
+              "<worldbody><body><joint name='j'/><geom type='mesh' mesh='m'/></body></worldbody>"
+              "</mujoco>")),
+      "parts/gone.stl");
+}
+
+TEST_F(Import, NeedsNoMeshesOfWhatStandsStill) {
+  const std::string path = put(
+      "<mujoco><asset><mesh name='m' file='gone.stl'/></asset><worldbody><geom type='mesh' "
+      "mesh='m'/>"
+      "<body><geom type='mesh' mesh='m'/><body><joint name='j'/><geom size='.1' mass='2'/></body>"
+      "</body></worldbody></mujoco>");
+  EXPECT_EQ(import_mjcf(path).dropped.at("geom (mesh)"), 2);
+  EXPECT_EQ(tree_of(load_mjcf(path)).joints.size(), 1u);
 }
 
 }  // namespace
