@@ -45,8 +45,8 @@ class Gate : public testing::Test {
   }
   bool says(const std::string& what) const { return text_.find(what) != std::string::npos; }
 
-  int time(const std::string& head) {
-    return run({"time", "--base", plugin("base"), "--head", plugin(head)});
+  int time(const std::string& head, const std::string& base = "base") {
+    return run({"time", "--base", plugin(base), "--head", plugin(head)});
   }
   int count(const std::string& head) {
     return run(

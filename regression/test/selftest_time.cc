@@ -46,8 +46,7 @@ TEST_F(Time, TheSameCodeElsewhereInMemoryPasses) {
 TEST_F(Time, FivePercentMoreWorkFails) {
   EXPECT_EQ(time("slower"), kSlower) << text_;
   EXPECT_TRUE(says("testbed1/subject") && says("FAIL")) << text_;
-  EXPECT_EQ(run({"time", "--base", plugin("slower"), "--head", plugin("base")}), kGood)
-      << "the other way round it is faster: " << text_;
+  EXPECT_EQ(time("base", "slower"), kGood) << "the other way round it is faster: " << text_;
 }
 
 TEST_F(Time, TwoFunctionsThatChangePlacesInATableFail) {
@@ -69,12 +68,22 @@ TEST_F(Time, ASlowPathForBadSamplesFails) {
 }
 
 TEST_F(Time, AStepThatIsSlowerAfterOtherWorkFails) {
-  EXPECT_EQ(run({"time", "--base", plugin("line"), "--head", plugin("lines")}), kSlower) << text_;
+  EXPECT_EQ(time("lines", "line"), kSlower) << text_;
   EXPECT_TRUE(says("after other work a step takes")) << text_;
 }
 
 TEST_F(Time, ABranchThatNobodyCanPredictFails) {
-  EXPECT_EQ(run({"time", "--base", plugin("few"), "--head", plugin("branch")}), kSlower) << text_;
+  EXPECT_EQ(time("branch", "few"), kSlower) << text_;
+}
+
+TEST_F(Time, AnEkfWhoseTransposesAreCallsFails) {
+  EXPECT_EQ(time("ekf_calls", "ekf"), kSlower) << text_;
+  EXPECT_TRUE(says("wallmobot3/ekf") && says("FAIL")) << text_;
+}
+
+TEST_F(Time, AnEkfThatReadsWholeRegistersOfWhatItJustWroteByElementsFails) {
+  EXPECT_EQ(time("ekf_waits", "ekf"), kSlower) << text_;
+  EXPECT_TRUE(says("wallmobot3/ekf") && says("FAIL")) << text_;
 }
 
 TEST_F(Time, ADivideInTheChainFailsThoughInstructionsAreTheSame) {

@@ -11,6 +11,7 @@
 //   SUBJECT_BRANCH          takes a branch that nobody can predict
 //   SUBJECT_LINES=n         a chain of 128 loads from n cache lines, in no order that is foreseen
 //   SUBJECT_TABLE=1         two functions change places in a table, and the dear one is called
+//   SUBJECT_EKF             instead of all that, the EKF of wallmobot3
 #include <array>
 #include <bit>
 #include <chrono>
@@ -18,7 +19,9 @@
 #include <thread>
 
 #include "bench/kit/kernels.h"
+#include "estimators/ekf.h"
 #include "estimators/testbed1.h"
+#include "estimators/wallmobot3.h"
 
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
@@ -121,5 +124,11 @@ class Subject {
 }  // namespace
 
 TAUEXT_PLUGIN(kernels) {
+#ifdef SUBJECT_EKF
+  using Ekf = tauext::Ekf<tauext::WallMoBot3>;
+  const tauext::WallMoBot3 arm;
+  kernels.add_estimator("wallmobot3", arm, Ekf(arm, Ekf::Parameters::paper()));
+#else
   kernels.add_estimator("testbed1", tauext::Testbed1(), Subject());
+#endif
 }
