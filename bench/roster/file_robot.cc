@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "bench/roster/kernels/kernels.h"
 #include "mjcf/plant/tree.h"
 
 namespace tauext {
@@ -13,13 +14,12 @@ namespace {
 
 static_assert(kMaxFileJoints <= kMostCoordinates);
 
-// the robot of that number of joints, N or more
-template <int N>
 std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
-  if (joints == N) return detail::file_robot_of<N>(name, model);
-  if constexpr (N < kMaxFileJoints) return robot_from<N + 1>(joints, name, model);
-  throw std::invalid_argument(fmt::format(
-      "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
+  if (joints > kMaxFileJoints) {
+    throw std::invalid_argument(fmt::format(
+        "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
+  }
+  return detail::kernels().of_file.at(static_cast<std::size_t>(joints) - 1)(name, model);
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
   const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}) : load_robot(name);
   try {
-    return robot_from<1>(tree_of(model).dof(), name, model);
+    return robot_from(tree_of(model).dof(), name, model);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
   }

@@ -11,10 +11,6 @@
 
 namespace tauext {
 
-/// The most coordinates of such a robot. Each number of joints is compiled for itself: builds with
-/// sanitizers have fewer.
-inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
-
 /// The estimators and detectors that every arm has, at 30 rad/s, on the dynamics of a file of 1 to
 /// kMaxFileJoints hinges and slides (mjcf/plant/tree.h). Parameters of detectors in N m are those
 /// of an arm that is used to 1200 N m (ArmScale::usual_torque), and less or more here, joint by
@@ -22,11 +18,5 @@ inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
 /// @param name FILE[:lock=REGEX], or that of a robot of ours
 /// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong
 std::unique_ptr<const Robot> file_robot(const std::string& name);
-
-namespace detail {
-// one number of joints of it; each is compiled for itself, from file_robot_of.cc.in
-template <int N>
-std::unique_ptr<const Robot> file_robot_of(const std::string& name, const Model& model);
-}  // namespace detail
 
 }  // namespace tauext

@@ -4,13 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
+#include <typeindex>
 
 namespace tauext::detail {
 
 std::vector<Registered>& registered_specifications() {
   static std::vector<Registered> all;
   return all;
+}
+
+std::shared_ptr<void>& registered_of(const std::type_info& functions) {
+  static std::map<std::type_index, std::shared_ptr<void>> all;
+  return all[functions];
 }
 
 void fail_taken(const char* what, const std::string& taken, const std::string& robot) {

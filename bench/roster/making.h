@@ -3,9 +3,12 @@
 /// How a specification becomes an estimator or a detector.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -24,6 +27,15 @@ FieldHelp bandwidth_help();
 // what bench/registry.h has put beside the roster: robot and specification
 using Registered = std::pair<std::string, std::string>;
 std::vector<Registered>& registered_specifications();
+// and functions of a type, one list whatever level asks for it; who first asks makes it
+std::shared_ptr<void>& registered_of(const std::type_info& functions);
+template <class Add>
+std::vector<std::function<Add>>& registered() {
+  using List = std::vector<std::function<Add>>;
+  std::shared_ptr<void>& all = registered_of(typeid(Add));
+  if (!all) all = std::make_shared<List>();
+  return *static_cast<List*>(all.get());
+}
 
 // sets what is known of Parameters p
 template <class P>

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/roster/session.h"
 #include "bench/roster/specification.h"
 #include "bench/roster/stages.h"
 #include "bench/roster/thresholds.h"
@@ -19,17 +20,15 @@
 
 namespace tauext {
 
+/// The most coordinates of a robot from a file. Each number of joints is compiled for itself:
+/// builds with sanitizers have fewer.
+inline constexpr int kMaxFileJoints = TAUEXT_FILE_JOINTS;
+
 /// Between the path of a robot's file and the joints that are fixed (ImportOptions), in its name.
 inline constexpr std::string_view kLock = ":lock=";
 
 /// Whether a robot of that name is a file, by its path, [:lock=REGEX] or not.
 bool is_robot_file(std::string_view name);
-
-/// How the detectors behind an estimator are set.
-struct DetectorSettings {
-  DetectorThresholds thresholds;  ///< of those that are in it; the others keep their defaults
-  double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
-};
 
 /// What calibrating a detector needs to know.
 struct Calibration {
@@ -91,6 +90,10 @@ class Robot {
   /// @throws std::invalid_argument for an error out of range, and as scenarios() does
   Model load_for(const Scenario& scenario, const ModelError& error = {}) const;
 
+  /// simulate_plain() (mjcf/record_plain.h): the truth of a run of this arm, or of one that is
+  /// changed from it.
+  virtual Trace simulate(const Model& arm, const Scenario& scenario) const = 0;
+
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
   virtual std::vector<std::string> detectors() const = 0;   ///< by name
   virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
@@ -128,22 +131,12 @@ class Robot {
   Supervisor supervisor(std::string_view estimator, std::string_view detector,
                         const DetectorSettings& settings = {}) const;
 
+  /// The trace for many estimators, and many detectors behind each.
+  virtual std::unique_ptr<Session> session(const Trace& trace) const = 0;
+
   /// What a detector says of estimates that an estimator made of the trace, sample by sample.
-  virtual std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                        const Output& estimates,
-                                        const DetectorSettings& settings) const = 0;
-
-  /// The largest statistic of a calibratable detector, joint by joint, over samples with t >= from
-  /// [s].
-  virtual Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
-                                            const Output& estimates,
-                                            const DetectorSettings& settings,
-                                            double from) const = 0;
-
-  /// The mean of z z^T over samples with t >= from, z the change() of a detector with a metric.
-  virtual Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace,
-                                     const Output& estimates, const DetectorSettings& settings,
-                                     double from) const = 0;
+  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                const Output& estimates, const DetectorSettings& settings) const;
 
   /// How a calibratable detector's thresholds are set.
   virtual const Calibration& calibration(std::string_view detector) const = 0;

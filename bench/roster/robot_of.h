@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bench/roster/making.h"
+#include "mjcf/record_plain.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -27,13 +28,11 @@ class RobotOf;
 // what bench/registry.h has put beside the roster
 template <RobotModel M>
 auto& registered_estimators() {
-  static std::vector<std::function<void(const M&, RobotOf<M::kDof>&)>> all;
-  return all;
+  return registered<void(const M&, RobotOf<M::kDof>&)>();
 }
 template <int N>
 auto& registered_detectors() {
-  static std::vector<std::function<void(RobotOf<N>&)>> all;
-  return all;
+  return registered<void(RobotOf<N>&)>();
 }
 
 // a robot of N joints: its factories, by name
@@ -110,6 +109,10 @@ class RobotOf final : public Robot {
     specifications_.push_back(text);
   }
 
+  Trace simulate(const Model& arm, const Scenario& scenario) const override {
+    return simulate_plain<N>(arm, scenario);
+  }
+
   std::vector<std::string> estimators() const override {
     std::vector<std::string> all = names(estimators_, [](const auto&) { return true; });
     all.insert(all.end(), specifications_.begin(), specifications_.end());
@@ -147,35 +150,11 @@ class RobotOf final : public Robot {
     return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
   }
 
-  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                const Output& estimates, const DetectorSettings& s) const override {
-    std::vector<Detection> out;
-    out.reserve(static_cast<std::size_t>(trace.size()));
-    feed(detector, trace, estimates, s,
-         [&](DetectorStage<N>&, double, const Detection& d) { out.push_back(d); });
-    return out;
-  }
-
-  Eigen::VectorXd largest_statistic(std::string_view detector, const Trace& trace,
-                                    const Output& estimates, const DetectorSettings& s,
-                                    double from) const override {
-    Vec<N> largest = Vec<N>::Zero();
-    feed(detector, trace, estimates, s, [&](DetectorStage<N>& d, double t, const Detection&) {
-      if (t >= from) largest = largest.cwiseMax(d.statistic());
-    });
-    return largest;
-  }
-
-  Eigen::MatrixXd covariance(std::string_view detector, const Trace& trace, const Output& estimates,
-                             const DetectorSettings& s, double from) const override {
-    Mat<N> sum = Mat<N>::Zero();
-    int count = 0;
-    feed(detector, trace, estimates, s, [&](DetectorStage<N>& d, double t, const Detection&) {
-      if (t < from) return;
-      sum += d.change() * d.change().transpose();
-      ++count;
-    });
-    return sum / std::max(count, 1);
+  std::unique_ptr<Session> session(const Trace& trace) const override {
+    require_joints(trace);
+    return std::make_unique<SessionOf<N>>(
+        trace, [this, &trace](std::string_view e) { return estimator_of(e, trace); },
+        [this](std::string_view d, const DetectorSettings& s) { return detector_of(d, s); });
   }
 
   const Calibration& calibration(std::string_view detector) const override {
@@ -242,21 +221,6 @@ class RobotOf final : public Robot {
     return explaining_keys(text, e.fields, [&] { return e.make(behind, s); });
   }
 
-  // look(detector, t, detection) at every sample
-  template <class Look>
-  void feed(std::string_view name, const Trace& trace, const Output& estimates,
-            const DetectorSettings& s, Look&& look) const {
-    require_joints(trace);
-    const DetectorPtr d = detector_of(name, s);
-    for (int k = 0; k < trace.size(); ++k) {
-      const Measurement<N> y = trace.measurement<N>(k);
-      const Estimate<N> e{estimates.tau_ext.col(k), estimates.status[static_cast<std::size_t>(k)]};
-      Detection out;
-      d->run({&y, 1}, {&e, 1}, {&out, 1});
-      look(*d, y.t, out);
-    }
-  }
-
   Vec<N> torques_;  // of torques_of()
   std::vector<EstimatorEntry> estimators_;
   std::vector<DetectorEntry> detectors_;
@@ -268,7 +232,7 @@ void RobotOf<N>::add_roster_detectors() {
   for_each_detector<N>([&](auto make) { add_detector<decltype(make())>(); });
 }
 
-// compiled in the library, from file_robot_of.cc.in
+// compiled in the library, from kernels/file_robot_of.cc.in
 extern template class RobotOf<1>;
 extern template class RobotOf<2>;
 extern template class RobotOf<3>;
@@ -283,11 +247,11 @@ std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model,
   return std::make_unique<detail::RobotOf<M::kDof>>(name, model, file);
 }
 
-/// That of wallmobot3 is compiled in robots.cc.
-extern template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&,
-                                                        const Model&);
-/// That of testbed1 is compiled in robots.cc.
-extern template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&,
-                                                        const Model&);
+/// That of wallmobot3 is compiled in the library, for this processor.
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&, const Model&);
+/// That of testbed1, likewise.
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&, const Model&);
 
 }  // namespace tauext

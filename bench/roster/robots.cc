@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bench/roster/file_robot.h"
+#include "bench/roster/kernels/kernels.h"
 #include "bench/roster/robot_of.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
@@ -21,9 +22,16 @@
 
 namespace tauext {
 
-template std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&,
-                                                 const Model&);
-template std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&, const Model&);
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string& name, const WallMoBot3& model,
+                                        const Model& file) {
+  return detail::kernels().wallmobot3(name, model, file);
+}
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string& name, const Testbed1& model,
+                                        const Model& file) {
+  return detail::kernels().testbed1(name, model, file);
+}
 
 namespace {
 
@@ -145,6 +153,10 @@ const Scenario& scenario_of(const Robot& r, std::string_view name) {
   return find_known(
       r.scenarios(), "scenario", name,
       [](const Scenario& s) -> const std::string& { return s.name; }, r.name());
+}
+
+std::string level() {
+  return detail::kernels().level;
 }
 
 bool study_only(std::string_view detector) {

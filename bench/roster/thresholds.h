@@ -19,6 +19,12 @@ struct Trained {
 /// The detectors behind one estimator.
 using DetectorThresholds = std::map<std::string, Trained>;
 
+/// How the detectors behind an estimator are set.
+struct DetectorSettings {
+  DetectorThresholds thresholds;  ///< of those that are in it; the others keep their defaults
+  double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
+};
+
 /// Thresholds of one robot behind sensors of one quality, by estimator.
 struct ThresholdSet {
   std::string robot;                                       ///< its name

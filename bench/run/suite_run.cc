@@ -14,6 +14,7 @@
 
 #include "bench/live/entry_tap.h"
 #include "bench/program/program.h"
+#include "bench/roster/robots.h"
 #include "bench/run/reporter.h"
 #include "bench/score/degradation.h"
 #include "bench/score/table.h"
@@ -164,7 +165,8 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
 }  // namespace
 
 std::string build() {
-  return fmt::format("tauext {}, {}, {}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS);
+  const std::string arch = level().empty() ? "" : " -march=" + level();
+  return fmt::format("tauext {}, {}, {}{}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS, arch);
 }
 
 int run_suite(const SuiteRun& run) {

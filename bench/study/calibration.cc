@@ -114,10 +114,9 @@ class Training {
 
   void find_metrics() {
     ByRun<Eigen::MatrixXd> covariances;
-    pass(0, [&](int i, const Seen& s, const std::string& d, const Output& out, const Trained& to) {
+    pass(0, [&](int i, const Seen& s, const std::string& d, Session& run, const Trained& to) {
       if (!s.robot.calibration(d).has_metric) return;
-      const Eigen::MatrixXd C =
-          s.robot.covariance(d, s.trace, out, {.start_up = kStartUp}, begin_of(s.trace));
+      const Eigen::MatrixXd C = run.covariance(d, {.start_up = kStartUp}, begin_of(s.trace));
       const std::lock_guard lock(mutex_);
       covariances[&to][i] = C;
     });
@@ -128,12 +127,11 @@ class Training {
   }
 
   void find_thresholds() {
-    pass(1, [&](int i, const Seen& s, const std::string& d, const Output& out, const Trained& to) {
+    pass(1, [&](int i, const Seen& s, const std::string& d, Session& run, const Trained& to) {
       // thresholds that nothing reaches, so that nothing saturates at them
       const Trained none{Eigen::VectorXd::Constant(s.robot.dof(), 1e12), to.metric};
       const DetectorSettings settings{{{name_of(d), none}}, kStartUp};
-      const Eigen::VectorXd largest =
-          s.robot.largest_statistic(d, s.trace, out, settings, begin_of(s.trace));
+      const Eigen::VectorXd largest = run.largest_statistic(d, settings, begin_of(s.trace));
       const std::lock_guard lock(mutex_);
       Eigen::VectorXd& known = largest_[&to][i];
       known = known.size() == 0 ? largest : Eigen::VectorXd(known.cwiseMax(largest));
@@ -163,10 +161,10 @@ class Training {
   void pass(int number, Visit&& visit) {
     const auto work = [&](int i) {
       source_.show(i, [&](const Seen& s) {
+        const std::unique_ptr<Session> session = s.robot.session(s.trace);
         for (auto& [e, by_detector] : result_.sets[s.set].by_estimator) {
-          const Output estimates = s.robot.runner(e, "", s.trace)->run();
-          require_estimates(s, e, estimates);
-          for (auto& [d, trained] : by_detector) visit(i, s, d, estimates, trained);
+          require_estimates(s, e, session->estimate(e));
+          for (auto& [d, trained] : by_detector) visit(i, s, d, *session, trained);
         }
       });
     };

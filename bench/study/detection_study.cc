@@ -64,6 +64,8 @@ class Study {
 
   void run(int i) {
     const Job& job = jobs_[static_cast<std::size_t>(i)];
+    if (i == 0 || jobs_[static_cast<std::size_t>(i) - 1].plant != job.plant)
+      require_mujoco_agrees(runs_, job, models_.at(job.plant));
     const Trace truth = simulated(runs_, job, models_.at(job.plant));
     const std::vector<Touch> touches = runs_.touches(job.kind, job.seed);
     for (std::size_t c = 0; c < conditions_.size(); ++c) {
@@ -91,17 +93,17 @@ class Study {
 
   void run(const Job& job, std::size_t c, const Trace& t, const std::vector<Touch>& touches) {
     const Robot& r = *believers_.at(conditions_[c]->believed);
+    const std::unique_ptr<Session> session = r.session(t);
     std::vector<Cell> adds;
     for (const std::string& e : estimators_) {
-      const Output estimates = r.runner(e, "", t)->run();
-      const bool failed = !bad_status(t, estimates).empty();
+      const bool failed = !bad_status(t, session->estimate(e)).empty();
       for (const std::string& d : detectors_) {
         Cell cell{.runs = 1, .failed_runs = failed};
         const DetectorSettings settings{
             trained_for(thresholds_, runs_.robot,
                         conditions_[c]->degradation.sensors.velocity_noise, e, d),
             kStartUp};
-        count(job.kind, t, r.detect(d, t, estimates, settings), touches, cell);
+        count(job.kind, t, session->detect(d, settings), touches, cell);
         adds.push_back(std::move(cell));
       }
     }

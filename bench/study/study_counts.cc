@@ -11,15 +11,19 @@ namespace {
 
 constexpr double kRefractory = 0.2;  // [s] between two crossings of a level
 
-// times [s] at which the score rises through a level
-std::vector<double> crossings(const Trace& t, const std::vector<Detection>& d, double level) {
-  std::vector<double> at;
-  bool above = true;  // nothing rises at the first sample
+// times [s] at which the score rises through each level
+std::array<std::vector<double>, kLevels.size()> crossings(const Trace& t,
+                                                          const std::vector<Detection>& d) {
+  std::array<std::vector<double>, kLevels.size()> at;
+  std::size_t below = kLevels.size();  // the first level above the score; nothing rises at first
   for (std::size_t k = 0; k < d.size(); ++k) {
-    const bool now = d[k].score >= level;
-    const bool late = at.empty() || t.t[k] - at.back() >= kRefractory;
-    if (now && !above && late && t.t[k] >= kScoreFrom) at.push_back(t.t[k]);
-    above = now;
+    std::size_t now = 0;
+    while (now < kLevels.size() && d[k].score >= kLevels[now]) ++now;
+    for (; below < now; ++below) {
+      const bool late = at[below].empty() || t.t[k] - at[below].back() >= kRefractory;
+      if (late && t.t[k] >= kScoreFrom) at[below].push_back(t.t[k]);
+    }
+    below = now;
   }
   return at;
 }
@@ -60,9 +64,8 @@ void count_blows(const Trace& t, const std::vector<Detection>& d, const std::vec
   cell.blows += static_cast<int>(touches.size());
   cell.detected = static_cast<int>(cell.delays.size());
   cell.stray += static_cast<int>(marks.size()) - belonging;
-  for (std::size_t i = 0; i < kLevels.size(); ++i) {
-    cell.detected_at[i] += count_detected(crossings(t, d, kLevels[i]), touches);
-  }
+  const auto at = crossings(t, d);
+  for (std::size_t i = 0; i < at.size(); ++i) cell.detected_at[i] += count_detected(at[i], touches);
 }
 
 void count_alarms(const Trace& t, const std::vector<Detection>& d, Cell& cell) {
@@ -75,9 +78,8 @@ void count_alarms(const Trace& t, const std::vector<Detection>& d, Cell& cell) {
     ++cell.quiet_samples;
     cell.alarmed_samples += d[k].score >= 1;
   }
-  for (std::size_t i = 0; i < kLevels.size(); ++i) {
-    cell.alarms_at[i] += static_cast<int>(crossings(t, d, kLevels[i]).size());
-  }
+  const auto at = crossings(t, d);
+  for (std::size_t i = 0; i < at.size(); ++i) cell.alarms_at[i] += static_cast<int>(at[i].size());
 }
 
 void count_brisk(const Trace& t, const std::vector<Detection>& d, const std::vector<Touch>& touches,

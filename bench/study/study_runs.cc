@@ -12,7 +12,7 @@
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
 #include "mjcf/plant/model_error.h"
-#include "mjcf/record.h"
+#include "mjcf/record_plain.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/scenarios/testbed1.h"
 #include "mjcf/trace/known.h"
@@ -164,7 +164,16 @@ const Condition& condition(const StudyRuns& runs, const std::string& name) {
 }
 
 Trace simulated(const StudyRuns& runs, const Job& job, const Model& model) {
-  return simulate(model, runs.touched(job.kind, job.seed));
+  return robot(runs.robot).simulate(model, runs.touched(job.kind, job.seed));
+}
+
+void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model) {
+  const double off =
+      difference(simulate(model, runs.touched(job.kind, job.seed)), simulated(runs, job, model));
+  if (off < 1e-9) return;
+  throw std::runtime_error(
+      fmt::format("{}: the run of seed {} differs by {:.2g} from MuJoCo's, and 1e-9 is allowed",
+                  runs.robot, job.seed, off));
 }
 
 Trace measured(const Trace& truth, Sensors sensors, const Job& job) {

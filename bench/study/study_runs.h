@@ -80,6 +80,10 @@ struct Job {
 /// The true trace of a run.
 Trace simulated(const StudyRuns& runs, const Job& job, const Model& model);
 
+/// That MuJoCo simulates that run likewise, to 1e-9 of its largest values.
+/// @throws std::runtime_error if it does not
+void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model);
+
 /// What the sensors make of a run, with a seed of their own.
 Trace measured(const Trace& truth, Sensors sensors, const Job& job);
 

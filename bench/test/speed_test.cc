@@ -10,13 +10,15 @@
 
 #include "bench/live/histogram.h"
 #include "bench/live/live.h"
+#include "bench/peers/textbook_ekf.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/stages.h"
-#include "estimators/test/textbook_ekf.h"
 #include "mjcf/record.h"
 
 namespace tauext::test {
 namespace {
+
+using peers::TextbookEkf;
 
 double seconds_of_a_batch(Runner& r) {
   const auto start = std::chrono::steady_clock::now();

@@ -8,14 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "bench/peers/textbook_ekf.h"
 #include "estimators/test/arm.h"
 #include "estimators/test/precise.h"
 #include "estimators/test/random_tree.h"
-#include "estimators/test/textbook_ekf.h"
 #include "estimators/testbed1.h"
 
 namespace tauext::test {
 namespace {
+
+using peers::TextbookEkf;
 
 using ArmEkf = Ekf<WallMoBot3>;
 

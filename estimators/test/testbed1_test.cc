@@ -6,12 +6,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/peers/textbook_ekf.h"
 #include "estimators/ekf.h"
 #include "estimators/test/precise.h"
-#include "estimators/test/textbook_ekf.h"
 
 namespace tauext::test {
 namespace {
+
+using peers::TextbookEkf;
 
 Vec<1> vec(double x) {
   return Vec<1>(x);

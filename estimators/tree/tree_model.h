@@ -255,11 +255,30 @@ class TreeModel {
   // what is over the joints, over the coordinates; in place where these are as many
   [[gnu::always_inline]] decltype(auto) to_q(Bodies& of_rho) const noexcept {
     if constexpr (M == N) {
-      if (!direct_) of_rho = Square::from(drho_.transpose() * of_rho.matrix() * drho_);
+      if (!direct_) of_rho = tied(of_rho);
       return (of_rho);
     } else {
-      return Square::from(drho_.transpose() * of_rho.matrix() * drho_);
+      return tied(of_rho);
     }
+  }
+
+  // drho^T of_rho drho; few joints depend on a coordinate
+  [[gnu::noinline]] Square tied(const Bodies& of_rho) const noexcept {
+    Square out = Square::zero();
+    for (int j = 0; j < N; ++j) {
+      auto column = detail::Column<M, Scalar>::zero();
+      for (int k = 0; k < M; ++k) {
+        if (drho_(k, j) != Scalar(0)) column = column + drho_(k, j) * of_rho.column[k];
+      }
+      for (int i = 0; i < N; ++i) {
+        Scalar sum(0);
+        for (int k = 0; k < M; ++k) {
+          if (drho_(k, i) != Scalar(0)) sum += drho_(k, i) * column[k];
+        }
+        out.column[j].set(i, sum);
+      }
+    }
+    return out;
   }
 
   [[gnu::always_inline]] static Factor factorised(const Square& B) noexcept {

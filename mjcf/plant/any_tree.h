@@ -93,9 +93,12 @@ class AnyTree {
   detail::LinearMotion<N> motion(const VecN& q, const VecN& qd, const VecN& u,
                                  detail::Block<N>* B = nullptr) const noexcept {
     if (tied_) [[unlikely]] {
-      if (B) *B = detail::Block<N>::from(inertia(q));
-      return tied<detail::LinearMotion<N>>(
-          [&](const auto& arm) { return arm.motion(wide(q), wide(qd), wide(u)); });
+      detail::Block<kMostCoordinates> inertia;
+      const auto m = tied<detail::LinearMotion<N>>([&](const auto& arm) {
+        return arm.motion(wide(q), wide(qd), wide(u), B ? &inertia : nullptr);
+      });
+      if (B) *B = narrow(inertia);
+      return m;
     }
     return arm_.motion(q, qd, u, B);
   }
@@ -119,12 +122,12 @@ class AnyTree {
   static ForwardDynamics<N> narrow(const ForwardDynamics<kMostCoordinates>& f) noexcept {
     return {narrow(f.qdd), narrow(f.dqdd_dq), narrow(f.dqdd_dqd), narrow(f.dqdd_dtau_ext), f.ok};
   }
+  static detail::Block<N> narrow(const detail::Block<kMostCoordinates>& b) noexcept {
+    return detail::Block<N>::from(narrow(b.matrix()));
+  }
   static detail::LinearMotion<N> narrow(const detail::LinearMotion<kMostCoordinates>& f) noexcept {
-    const auto block = [](const detail::Block<kMostCoordinates>& b) {
-      return detail::Block<N>::from(narrow(b.matrix()));
-    };
-    return {detail::Column<N>::template from<N>(f.qdd.template to<N>()), block(f.by_q),
-            block(f.by_qd), block(f.minus_inverse), f.ok};
+    return {detail::Column<N>::template from<N>(f.qdd.template to<N>()), narrow(f.by_q),
+            narrow(f.by_qd), narrow(f.minus_inverse), f.ok};
   }
 
   // out of the way of an arm without tied joints

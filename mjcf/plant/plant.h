@@ -27,6 +27,8 @@ struct Point {
 ///     B qdd + bias + friction + tau_ext = tau.
 class Plant {
  public:
+  using Vector = Eigen::VectorXd;  ///< a number of each joint
+
   /// @throws std::invalid_argument if the model's actuators do not give such coordinates
   explicit Plant(Model model);
 

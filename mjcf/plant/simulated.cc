@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
+#include <stdexcept>
 
 #include "estimators/friction.h"
+#include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
 
@@ -37,6 +40,27 @@ void add_smooth_friction(const mjModel* m, mjData* d) {
 // when MuJoCo asks for the motors' torques, all else is known
 void hold_ties(const mjModel* m, mjData* d) {
   if (has_rigid_ties(*m)) keep_ties(*m, *d);
+}
+
+bool may_touch(const mjModel& m) {
+  if ((m.opt.disableflags & mjDSBL_CONTACT) != 0) return false;
+  for (int i = 0; i < m.ngeom; ++i) {
+    if (m.geom_contype[i] != 0 || m.geom_conaffinity[i] != 0) return true;
+  }
+  return m.npair > 0;
+}
+
+bool any(const mjtByte* of, int count) {
+  return std::any_of(of, of + count, [](mjtByte x) { return x != 0; });
+}
+
+bool needs_mujoco(const mjModel& m) {
+  const int known = mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | mjDSBL_EQUALITY | kSimulated;
+  const bool solver_friction = (m.opt.disableflags & kSimulated) == 0 &&
+                               !Eigen::VectorXd::Map(m.dof_frictionloss, m.nv).isZero(0);
+  return (m.opt.disableflags & ~known) != 0 || m.opt.integrator != mjINT_RK4 || may_touch(m) ||
+         solver_friction || has_ties(m) || any(m.tendon_limited, m.ntendon) ||
+         any(m.actuator_forcelimited, m.nu);
 }
 
 }  // namespace
@@ -80,6 +104,33 @@ std::string too_stiff(const Model& model) {
         1.05 * (rate / kQuickestFriction - 1) / tree.mobility[i]);
   }
   return "";
+}
+
+std::optional<PlainArm> plain_arm(const Model& model) {
+  const mjModel& m = *model;
+  if (needs_mujoco(m)) return std::nullopt;
+  PlainArm arm;
+  try {
+    arm.tree = tree_of(model);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+  const State d = initial_state(m);
+  const Layout layout = layout_of(m, *d);
+  if (layout.dof != m.nv || layout.load_dof >= 0) return std::nullopt;
+  arm.screws = layout.screws;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  arm.least = arm.lowest = Eigen::VectorXd::Constant(m.nv, -kNone);
+  arm.most = arm.highest = Eigen::VectorXd::Constant(m.nv, kNone);
+  for (int i = 0; i < m.nv; ++i) {
+    if (m.actuator_ctrllimited[i] != 0)
+      arm.least[i] = m.actuator_ctrlrange[2 * i], arm.most[i] = m.actuator_ctrlrange[2 * i + 1];
+    if (m.jnt_limited[i] == 0) continue;
+    const double margin = m.jnt_margin[i] + 1e-3 * (m.jnt_range[2 * i + 1] - m.jnt_range[2 * i]);
+    arm.lowest[i] = m.jnt_range[2 * i] + margin;
+    arm.highest[i] = m.jnt_range[2 * i + 1] - margin;
+  }
+  return arm;
 }
 
 }  // namespace tauext

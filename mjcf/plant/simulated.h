@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// An arm as its ArmTree has it, made fit for MuJoCo.
+/// An arm as its ArmTree has it, made fit for MuJoCo, or for a simulation without.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mjcf/plant/tree.h"
+#include "mjcf/trace/screw.h"
 
 namespace tauext {
 
@@ -20,5 +24,17 @@ std::string too_stiff(const Model& model);
 /// contacts, which shapes that somebody drew would have with each other: what touches it is a
 /// scenario's force.
 Model simulated(const Model& model);
+
+/// What its simulation needs of an arm, in plain numbers.
+struct PlainArm {
+  ArmTree tree;                     ///< its joints
+  std::vector<Screw> screws;        ///< of the joints; empty if the robot has none
+  Eigen::VectorXd least, most;      ///< [N m] what the motors can do
+  Eigen::VectorXd lowest, highest;  ///< [rad] or [m] of MuJoCo's joints, short of their limits
+};
+
+/// Nothing for an arm that needs MuJoCo: with something around it, with shapes that may touch each
+/// other, joints that follow others, dry friction by MuJoCo's solver, or another integrator.
+std::optional<PlainArm> plain_arm(const Model& model);
 
 }  // namespace tauext

@@ -104,11 +104,12 @@ const Sample& SensorStream::delayed(double by) const {
   return *it;
 }
 
-// the reading without its time stamp
-Sample SensorStream::values(const Sample& truth) {
+// into the reading, but for its time stamp
+void SensorStream::take_values(const Sample& truth) {
   const bool late_at_all = s_.latency > 0 || s_.tau_latency > 0;
   if (late_at_all) keep_past(truth);
-  Sample y = late_at_all ? delayed(s_.latency) : truth;
+  Sample& y = reading_;
+  y = late_at_all ? delayed(s_.latency) : truth;
   const Sample& late = late_at_all ? delayed(s_.latency + s_.tau_latency) : truth;
   for (int j = 0; j < y.q.size(); ++j) {
     y.tau[j] = late.tau[j];
@@ -119,32 +120,35 @@ Sample SensorStream::values(const Sample& truth) {
     }
     if (s_.loadcell_noise > 0) y.tau[j] += s_.loadcell_noise * torque_[j].normal();
   }
-  return y;
 }
 
-std::optional<Sample> SensorStream::read(const Sample& truth) {
-  Sample y = values(truth);
+const Sample* SensorStream::read(const Sample& truth) {
+  take_values(truth);
+  Sample& y = reading_;
   y.t = truth.t;
   if (s_.jitter > 0) {
     y.t += clock_.uniform(-s_.jitter, s_.jitter);
     y.t = std::max(y.t, std::nextafter(stamp_, truth.t));  // never back in time
   }
-  if (s_.repeated > 0 && line_.uniform() <= s_.repeated && last_) {
-    y.q = last_->q, y.qd = last_->qd, y.tau = last_->tau;
+  if (s_.repeated > 0 && line_.uniform() <= s_.repeated && last_.q.size() > 0) {
+    y.q = last_.q, y.qd = last_.qd, y.tau = last_.tau;
   }
-  if (s_.dropped > 0 && line_.uniform() <= s_.dropped) return std::nullopt;
+  if (s_.dropped > 0 && line_.uniform() <= s_.dropped) return nullptr;
   stamp_ = y.t;
-  last_ = y;
-  return y;
+  if (s_.repeated > 0) last_ = y;
+  return &y;
 }
 
 Trace measure(const Trace& truth, const Sensors& s) {
   SensorStream stream(s, truth.dof(), truth.screws);
   Trace m = truth;
   std::vector<int> kept;
+  Sample now;
   for (int k = 0; k < truth.size(); ++k) {
-    const auto y = stream.read({truth.t[k], truth.q.col(k), truth.qd.col(k), truth.tau.col(k)});
-    if (!y) continue;
+    now.t = truth.t[k];
+    now.q = truth.q.col(k), now.qd = truth.qd.col(k), now.tau = truth.tau.col(k);
+    const Sample* const y = stream.read(now);
+    if (y == nullptr) continue;
     m.t[k] = y->t;
     m.q.col(k) = y->q;
     m.qd.col(k) = y->qd;

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <vector>
 
 #include "mjcf/trace/random.h"
@@ -67,24 +66,24 @@ class SensorStream {
   /// @throws std::invalid_argument for an imperfection out of range
   SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws);
 
-  /// What they read of the next true sample; nothing if it is lost.
-  std::optional<Sample> read(const Sample& truth);
+  /// What they read of the next true sample, until the next one is read; null if it is lost.
+  const Sample* read(const Sample& truth);
 
  private:
   const Sample& delayed(double by) const;
   double lever(int joint, double q) const;
   double force(int joint, double true_force);
   void keep_past(const Sample& truth);
-  Sample values(const Sample& truth);
+  void take_values(const Sample& truth);
 
   Sensors s_;
   std::vector<Screw> screws_;
   std::vector<Random> velocity_, torque_, force_;
   Random clock_, line_;
-  std::vector<double> play_;    // [N] of each loadcell's hysteresis
-  std::deque<Sample> past_;     // as far back as the latencies reach, the newest last
-  std::optional<Sample> last_;  // values of the last reading
-  double stamp_;                // [s] its time stamp
+  std::vector<double> play_;  // [N] of each loadcell's hysteresis
+  std::deque<Sample> past_;   // as far back as the latencies reach, the newest last
+  Sample reading_, last_;     // of the last sample; the last one that was not lost
+  double stamp_;              // [s] its time stamp
 };
 
 /// The trace as these sensors would have recorded it; the truth in it stays the truth, sample by

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's EKF as (10)-(16) print it: dense 3N x 3N matrices and a factorisation of the 2N x 2N
-// innovation covariance, in any scalar. The oracle of Ekf, and what its speed is compared with.
+/// @file
+/// The paper's EKF as (10)-(16) print it: dense 3N x 3N matrices and a factorisation of the 2N x 2N
+/// innovation covariance, in any scalar. The oracle of Ekf, and what its speed is compared with.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,7 +10,7 @@
 #include "estimators/ekf.h"
 #include "estimators/wallmobot3.h"
 
-namespace tauext::test {
+namespace tauext::peers {
 
 template <class S, class Arm = BasicWallMoBot3<S>>
 class TextbookEkf {
@@ -101,4 +102,4 @@ class TextbookEkf {
   bool started_ = false;
 };
 
-}  // namespace tauext::test
+}  // namespace tauext::peers

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/simulation/run.h"
+
+#include <fmt/format.h>
+
+namespace tauext::detail {
+
+Tracking tracking(const Scenario& s, const Recording& r) {
+  if (!(r.Ts > 0 && r.Ts <= 0.1) || r.substeps < 1 || r.substeps > 1000) {
+    throw std::invalid_argument(
+        fmt::format("sampling time {} s with {} substeps: 0 < Ts <= 0.1 s and 1 to 1000 substeps",
+                    r.Ts, r.substeps));
+  }
+  const Tracking c{r.Kp.value_or(s.tracking.Kp), r.Kd.value_or(s.tracking.Kd)};
+  if (!(c.Kp >= 0 && c.Kp <= 1e6 && c.Kd >= 0 && c.Kd <= 1e4)) {
+    throw std::invalid_argument(
+        fmt::format("Kp = {} 1/s^2, Kd = {} 1/s: 0 to 1e6 and 0 to 1e4", c.Kp, c.Kd));
+  }
+  return c;
+}
+
+void fail_limit(const Scenario& s, int joint, double t, double q, bool is_tied) {
+  throw std::runtime_error(
+      fmt::format("scenario {}: joint {} reaches its limit at t = {:g} s, at {:.4g} rad (or m); {}",
+                  s.name, joint + 1, t, q,
+                  is_tied ? "an arm whose joints follow others must not; --lock REGEX fixes these"
+                          : "a scenario that means to sets reaches_limits"));
+}
+
+void fail_step(const Scenario& s, const Recording& r, const std::string& why) {
+  const Tracking c = tracking(s, r);
+  throw std::runtime_error(fmt::format(
+      "scenario {}: {} Tracking may be too stiff for Ts = {} s: Kp = {} 1/s^2, Kd = {} 1/s", s.name,
+      why, r.Ts, c.Kp, c.Kd));
+}
+
+}  // namespace tauext::detail
