@@ -8,6 +8,7 @@
 #include "bench/peers/peers.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
+#include "bench/score/metric_list.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/table_writer.h"
 
@@ -31,15 +32,17 @@ void print(const std::vector<peers::Peer>& all) {
 
 void write(const std::vector<peers::Peer>& all, const std::string& robot,
            const std::string& scenario, double bandwidth, const std::string& path) {
-  nlohmann::ordered_json j = {
-      {"robot", robot}, {"scenario", scenario}, {"bandwidth_rad_s", bandwidth}, {"level", level()}};
+  nlohmann::ordered_json j = {{"robot", robot},
+                              {"scenario", scenario},
+                              {"designed_for_rad_s", bandwidth},
+                              {"level", level()}};
   for (const peers::Peer& p : all) {
     j["peers"].push_back({{"name", p.name},
                           {"beside", p.beside},
                           {"step_ns", p.ns},
                           {"spread", p.spread},
                           {"ratio", p.ratio},
-                          {"rmse_Nm", p.rmse}});
+                          {key_of(Metric::kRmse), p.rmse}});
   }
   AtomicFile file(path);
   file.write(j.dump(2) + "\n");

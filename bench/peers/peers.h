@@ -11,7 +11,7 @@ namespace tauext::peers {
 
 /// One estimator.
 struct Peer {
-  std::string name;
+  std::string name;    ///< of observers.h, or the roster
   std::string beside;  ///< ours of the same kind; its own name for ours
   double ns = 0;       ///< [ns] a step: the median of rounds
   double spread = 0;   ///< [1] half of what lies between the quartiles of rounds, as a share

@@ -46,10 +46,13 @@ class Session {
 template <int N>
 class SessionOf final : public Session {
  public:
+  /// Makes an estimator of a specification.
   using MakeEstimator = std::function<std::unique_ptr<EstimatorStage<N>>(std::string_view)>;
+  /// Makes a detector of a specification.
   using MakeDetector =
       std::function<std::unique_ptr<DetectorStage<N>>(std::string_view, const DetectorSettings&)>;
 
+  /// Over the trace.
   SessionOf(const Trace& trace, MakeEstimator estimator, MakeDetector detector)
       : estimator_(std::move(estimator)), detector_(std::move(detector)) {
     const auto n = static_cast<std::size_t>(trace.size());

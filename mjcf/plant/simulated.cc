@@ -123,6 +123,10 @@ std::optional<PlainArm> plain_arm(const Model& model) {
   arm.least = arm.lowest = Eigen::VectorXd::Constant(m.nv, -kNone);
   arm.most = arm.highest = Eigen::VectorXd::Constant(m.nv, kNone);
   for (int i = 0; i < m.nv; ++i) {
+    if ((m.opt.disableflags & kSimulated) != 0) {  // as it was before errors were added
+      TreeJoint& j = arm.tree.joints[static_cast<std::size_t>(i)];
+      j.v_s = v_s_of(m, i), j.offset = offset_of(m, i), j.viscous_skew = viscous_skew_of(m, i);
+    }
     if (m.actuator_ctrllimited[i] != 0)
       arm.least[i] = m.actuator_ctrlrange[2 * i], arm.most[i] = m.actuator_ctrlrange[2 * i + 1];
     if (m.jnt_limited[i] == 0) continue;

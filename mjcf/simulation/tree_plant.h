@@ -32,36 +32,41 @@ class TreePlant {
     detail::require_size(plain_.tree, N);
   }
 
-  int dof() const { return N; }
+  int dof() const { return N; }  ///< joints
+  /// Empty if the robot has none.
   const std::vector<Screw>& screws() const { return plain_.screws; }
 
+  /// At q [rad], qd [rad/s], at rest from inputs.
   void set_state(const Vector& q, const Vector& qd) {
     q_ = q, qd_ = qd;
     tau_.setZero(), tau_ext_.setZero();
     look();
     qdd_ = solved(terms_, friction_);
   }
+  /// Applies tau [N m], clipped, and tau_ext [N m, sign of (3)] from now on.
   void set_input(const Vector& tau, const Vector& tau_ext) {
     tau_ = tau.cwiseMax(Vector(plain_.least)).cwiseMin(Vector(plain_.most));
     tau_ext_ = tau_ext;
     qdd_ = solved(terms_, friction_);
   }
 
-  const Vector& q() const { return q_; }
-  const Vector& qd() const { return qd_; }
-  const Vector& tau() const { return tau_; }
-  const Vector& tau_ext() const { return tau_ext_; }
-  const Vector& qdd() const { return qdd_; }
-  const Mat<N>& inertia() const { return terms_.B; }
-  const Vector& bias() const { return terms_.bias; }
-  const Vector& damping() const { return friction_; }
-  const Vector& friction() const { return friction_; }
-  double contact_force() const { return 0; }
+  const Vector& q() const { return q_; }                ///< [rad]
+  const Vector& qd() const { return qd_; }              ///< [rad/s]
+  const Vector& tau() const { return tau_; }            ///< [N m] as applied, clipped
+  const Vector& tau_ext() const { return tau_ext_; }    ///< [N m] the input
+  const Vector& qdd() const { return qdd_; }            ///< [rad/s^2] under the present input
+  const Mat<N>& inertia() const { return terms_.B; }    ///< B [kg m^2]
+  const Vector& bias() const { return terms_.bias; }    ///< C qd + g [N m]
+  const Vector& damping() const { return friction_; }   ///< F [N m], all of which is smooth
+  const Vector& friction() const { return friction_; }  ///< the same
+  double contact_force() const { return 0; }            ///< [N] nothing touches it
 
+  /// The point that touches the outside.
   Point end_effector() const {
     const Vec<3> at = arm_.position(q_, end_.joint, end_.place);
     return {plain_.tree.base + at, jacobian() * qd_};
   }
+  /// -J^T f [N m] of a force f [N, world frame] on the arm at its end effector.
   Vector tau_ext_of(const Eigen::Vector3d& f) const { return -jacobian().transpose() * f; }
 
   /// Whether MuJoCo has to take over: near a limit of a joint, or far from anywhere.
@@ -71,6 +76,7 @@ class TreePlant {
            !(rho.array() < plain_.highest.array()).all() || !qd_.allFinite();
   }
 
+  /// Integrates over h [s] by RK4, input held.
   void step(double h) {
     const Vector v1 = qd_, a1 = qdd_;
     const Vector v2 = qd_ + h / 2 * a1, a2 = acceleration(q_ + h / 2 * v1, v2);

@@ -66,7 +66,11 @@ TEST(RecordPlain, StudiesSimulateWithoutMuJoCo) {
   EXPECT_TRUE(plain_arm(arm).has_value());
   Scenario touched = touched_arm(scale_of(arm), TouchKind::kBlow, 7);
   touched.duration = 8;
-  expect_same(simulate(arm, touched), simulate_plain<6>(arm, touched));
+  for (const Model& of :
+       {arm, with_errors(arm, {.mass = 1.05}), with_errors(arm, {.friction_share = 0.05}),
+        with_errors(arm, {.viscous = 2, .armature = 0.1})}) {
+    expect_same(simulate(of, touched), simulate_plain<6>(of, touched));
+  }
 }
 
 TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
