@@ -9,10 +9,10 @@ namespace tauext {
 double difference(const Trace& a, const Trace& b) {
   if (a.t != b.t) return std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (const auto of : {&Trace::q, &Trace::qd, &Trace::tau, &Trace::tau_ext}) {
-    const double size = (a.*of).cwiseAbs().maxCoeff();
-    const double off = (a.*of - b.*of).cwiseAbs().maxCoeff();
-    largest = std::max(largest, size > 0 ? off / size : off);
+  for (const auto of :
+       {&Trace::q, &Trace::qd, &Trace::qdd, &Trace::tau, &Trace::tau_ext, &Trace::friction}) {
+    const double size = std::max((a.*of).cwiseAbs().maxCoeff(), 1e-3);
+    largest = std::max(largest, (a.*of - b.*of).cwiseAbs().maxCoeff() / size);
   }
   return largest;
 }

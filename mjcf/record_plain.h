@@ -31,8 +31,8 @@ Trace simulate_plain(const Model& model, const Scenario& scenario,
   return simulate(model, scenario, recording);
 }
 
-/// The largest difference between two runs, of q, qd, tau and tau_ext, each as a share of its
-/// largest value; infinite if one is longer.
+/// The largest difference between two runs, of q, qd, qdd, tau, tau_ext and friction, each as a
+/// share of its largest value, or of 1e-3 of its unit if that is more; infinite if one is longer.
 double difference(const Trace& a, const Trace& b);
 
 }  // namespace tauext

@@ -69,9 +69,16 @@ extern "C" {
 [[gnu::visibility("default")]] bool tauext_kdl_terms(int n, const void* arm, const double* q,
                                                      const double* qd, double* B, double* bias) {
   using namespace tauext::peers;
-  if (n != 6 && n != 7) return false;
-  n == 6 ? terms<6>(arm, q, qd, B, bias) : terms<7>(arm, q, qd, B, bias);
-  return true;
+  switch (n) {
+    case 3:
+      return terms<3>(arm, q, qd, B, bias), true;
+    case 6:
+      return terms<6>(arm, q, qd, B, bias), true;
+    case 7:
+      return terms<7>(arm, q, qd, B, bias), true;
+    default:
+      return false;
+  }
 }
 
 }  // extern "C"

@@ -13,8 +13,43 @@
 
 namespace tauext::peers {
 
-/// The momentum observer r = K (p - integral of tau + C^T qd - g - F + r) of momentum_observer.h's
-/// sources, tau_ext = -r. C^T qd is Bdot qd - C qd, Bdot by a difference.
+/// What both observers below take of a sample: p = B qd and n = tau + C^T qd - g - F, where C^T qd
+/// is Bdot qd - C qd and Bdot a difference, since KDL has neither.
+template <int N>
+class KdlMomentum {
+ public:
+  explicit KdlMomentum(const KdlArm<N>& arm) : arm_(arm) {}  ///< of this arm
+
+  void reset() noexcept { started_ = false; }  ///< the next sample starts anew
+  /// Takes a sample; whether there was one before it, so that n and h are known.
+  bool advance(const Measurement<N>& y) noexcept {
+    const bool known = started_;
+    const Mat<N> B = arm_.inertia(y.q);
+    p_ = B * y.qd;
+    if (known) {
+      h_ = y.t - t_;
+      const Vec<N> transposed = (B - B_) / h_ * y.qd - arm_.coriolis(y.q, y.qd);
+      n_ = tau_ + transposed - arm_.gravity(y.q) - arm_.friction(y.qd);
+    }
+    started_ = true;
+    t_ = y.t, B_ = B, tau_ = y.tau;
+    return known;
+  }
+
+  const Vec<N>& p() const noexcept { return p_; }  ///< [kg m^2/s]
+  const Vec<N>& n() const noexcept { return n_; }  ///< [N m] from the last sample to this one
+  double h() const noexcept { return h_; }         ///< [s] likewise
+
+ private:
+  KdlArm<N> arm_;
+  double t_ = 0, h_ = 0;
+  bool started_ = false;
+  Mat<N> B_;
+  Vec<N> tau_, p_, n_;
+};
+
+/// The momentum observer r = K (p - integral of n + r) of momentum_observer.h's sources, tau_ext =
+/// -r.
 template <int N>
 class KdlMomentumObserver {
  public:
@@ -22,36 +57,28 @@ class KdlMomentumObserver {
   static constexpr int kDof = N;
 
   /// @param K [rad/s] bandwidth of every joint
-  KdlMomentumObserver(const KdlArm<N>& arm, double K) : arm_(arm), K_(K) {}
+  KdlMomentumObserver(const KdlArm<N>& arm, double K) : momentum_(arm), K_(K) {}
 
-  void reset() noexcept { started_ = false; }
+  void reset() noexcept { momentum_.reset(); }
   Estimate<N> update(const Measurement<N>& y) noexcept {
-    const Mat<N> B = arm_.inertia(y.q);
-    const Vec<N> p = B * y.qd;
-    if (started_) {
-      const double h = y.t - t_;
-      const Vec<N> transposed = (B - B_) / h * y.qd - arm_.coriolis(y.q, y.qd);
-      integral_ += h * (tau_ + transposed - arm_.gravity(y.q) - arm_.friction(y.qd) + r_);
-      r_ = K_ * (p - integral_ - p0_);
+    if (momentum_.advance(y)) {
+      integral_ += momentum_.h() * (momentum_.n() + r_);
+      r_ = K_ * (momentum_.p() - integral_);
     } else {
-      p0_ = p;
-      integral_.setZero(), r_.setZero();
+      integral_ = momentum_.p();
+      r_.setZero();
     }
-    started_ = true;
-    t_ = y.t, B_ = B, tau_ = y.tau;
     return {-r_};
   }
 
  private:
-  KdlArm<N> arm_;
-  double K_, t_ = 0;
-  bool started_ = false;
-  Mat<N> B_;
-  Vec<N> tau_, integral_, r_, p0_;
+  KdlMomentum<N> momentum_;
+  double K_;
+  Vec<N> integral_, r_;  // the first momentum included
 };
 
 /// The NDOB of the paper, (17) to (19), with the gain X = w B: L = w, so that with z = tau_ext + w
-/// p the two terms of B cancel, zdot = w (tau + C^T qd - g - F - tau_ext).
+/// p the two terms of Bdot cancel, zdot = w (n - tau_ext).
 template <int N>
 class KdlNdob {
  public:
@@ -59,32 +86,24 @@ class KdlNdob {
   static constexpr int kDof = N;
 
   /// @param w [rad/s] bandwidth of every joint
-  KdlNdob(const KdlArm<N>& arm, double w) : arm_(arm), w_(w) {}
+  KdlNdob(const KdlArm<N>& arm, double w) : momentum_(arm), w_(w) {}
 
-  void reset() noexcept { started_ = false; }
+  void reset() noexcept { momentum_.reset(); }
   Estimate<N> update(const Measurement<N>& y) noexcept {
-    const Mat<N> B = arm_.inertia(y.q);
-    const Vec<N> p = B * y.qd;
-    if (!started_) {
-      d_.setZero();
-      z_ = w_ * p;
+    if (momentum_.advance(y)) {
+      z_ += momentum_.h() * w_ * (momentum_.n() - d_);
+      d_ = z_ - w_ * momentum_.p();
     } else {
-      const double h = y.t - t_;
-      const Vec<N> transposed = (B - B_) / h * y.qd - arm_.coriolis(y.q, y.qd);
-      z_ += h * w_ * (tau_ + transposed - arm_.gravity(y.q) - arm_.friction(y.qd) - d_);
-      d_ = z_ - w_ * p;
+      z_ = w_ * momentum_.p();
+      d_.setZero();
     }
-    started_ = true;
-    t_ = y.t, B_ = B, tau_ = y.tau;
     return {d_};
   }
 
  private:
-  KdlArm<N> arm_;
-  double w_, t_ = 0;
-  bool started_ = false;
-  Mat<N> B_;
-  Vec<N> tau_, z_, d_;
+  KdlMomentum<N> momentum_;
+  double w_;
+  Vec<N> z_, d_;
 };
 
 /// KDL's ChainExternalWrenchEstimator, of which it takes the torques. It knows no friction: that is

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -16,6 +15,8 @@
 #include "bench/peers/kdl_module.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/stages.h"
+#include "bench/score/detection_metrics.h"
+#include "bench/score/metrics.h"
 #include "estimators/ekf_parameters.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/record.h"
@@ -31,22 +32,11 @@ struct Entry {
   std::vector<double> rounds;  // [s]
 };
 
-double quantile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-double rmse(const Trace& t, const Output& out) {
-  double sum = 0;
-  int count = 0;
-  for (int k = 0; k < t.size(); ++k) {
-    if (t.t[static_cast<std::size_t>(k)] < 1) continue;
-    sum += (t.tau_ext.col(k) - out.tau_ext.col(k)).squaredNorm();
-    count += t.dof();
-  }
-  return std::sqrt(sum / std::max(count, 1));
+double rmse(const Trace& trace, const Output& out, double from) {
+  double worst = 0;
+  for (int j = 0; j < trace.dof(); ++j)
+    worst = std::max(worst, metrics::rmse(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from));
+  return worst;
 }
 
 template <int N>
@@ -113,7 +103,7 @@ std::vector<Peer> compare(const std::string& module, const std::string& name,
   const Model model = r.load_for(s);
   const Trace trace = record(model, s);
   std::vector<Entry> all = entries(module, r, trace, model, bandwidth);
-  for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner->run());
+  for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner->run(), s.score_from);
   for (int i = 0; i < rounds; ++i) {
     for (Entry& e : all) {
       const auto from = Clock::now();
@@ -128,10 +118,11 @@ std::vector<Peer> compare(const std::string& module, const std::string& name,
     std::vector<double> ratios;
     for (std::size_t i = 0; i < e.rounds.size(); ++i)
       ratios.push_back(e.rounds[i] / ours->rounds[i]);
-    const double median = quantile(e.rounds, 0.5);
+    const double median = metrics::quantile(e.rounds, 0.5);
     e.peer.ns = median * 1e9 / Runner::kBatch;
-    e.peer.spread = (quantile(e.rounds, 0.75) - quantile(e.rounds, 0.25)) / 2 / median;
-    e.peer.ratio = quantile(ratios, 0.5);
+    e.peer.spread =
+        (metrics::quantile(e.rounds, 0.75) - metrics::quantile(e.rounds, 0.25)) / 2 / median;
+    e.peer.ratio = metrics::quantile(ratios, 0.5);
     peers.push_back(e.peer);
   }
   return peers;

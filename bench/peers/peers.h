@@ -16,7 +16,7 @@ struct Peer {
   double ns = 0;       ///< [ns] a step: the median of rounds
   double spread = 0;   ///< [1] half of what lies between the quartiles of rounds, as a share
   double ratio = 1;    ///< [1] of its time to that of `beside`: the median of rounds
-  double rmse = 0;     ///< [N m] of all joints, from 1 s on
+  double rmse = 0;     ///< [N m] of the worst joint, over what the scenario scores
 };
 
 /// All of them on an arm with 3, 6 or 7 joints in a chain, at so many rad/s, over its scenario.

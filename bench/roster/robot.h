@@ -131,7 +131,7 @@ class Robot {
   Supervisor supervisor(std::string_view estimator, std::string_view detector,
                         const DetectorSettings& settings = {}) const;
 
-  /// The trace for many estimators, and many detectors behind each.
+  /// The trace, which must outlive it, for many estimators, and many detectors behind each.
   virtual std::unique_ptr<Session> session(const Trace& trace) const = 0;
 
   /// What a detector says of estimates that an estimator made of the trace, sample by sample.

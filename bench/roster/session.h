@@ -66,11 +66,7 @@ class SessionOf final : public Session {
     const auto stage = estimator_(estimator);
     stage->run(samples_, estimates_);
     Output out{Eigen::MatrixXd(N, static_cast<Eigen::Index>(samples_.size())), {}, {}, {}};
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
-      out.tau_ext.col(static_cast<Eigen::Index>(k)) = estimates_[k].tau_ext;
-      out.status.push_back(estimates_[k].status);
-      out.counts.add(estimates_[k].status, estimates_[k].joints);
-    }
+    for (const Estimate<N>& e : estimates_) add(e, out);
     return out;
   }
 

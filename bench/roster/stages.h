@@ -96,6 +96,14 @@ struct Output {
   StatusCounts counts;              ///< of the statuses
 };
 
+/// Adds what an estimator said of the next sample.
+template <int N>
+void add(const Estimate<N>& e, Output& to) {
+  to.tau_ext.col(static_cast<Eigen::Index>(to.status.size())) = e.tau_ext;
+  to.status.push_back(e.status);
+  to.counts.add(e.status, e.joints);
+}
+
 /// An estimator, and a detector behind it if there is one, bound to the samples of a trace.
 class Runner {
  public:
@@ -173,11 +181,9 @@ class RunnerOf final : public Runner {
     Output out{Eigen::MatrixXd(N, samples_.size()), {}, {}, {}};
     next_ = 0;
     for (std::size_t done = 0; done < samples_.size();) {
-      const std::size_t first = next_, n = advance();
+      const std::size_t n = advance();
       for (std::size_t k = 0; k < n; ++k) {
-        out.tau_ext.col(first + k) = estimates_[k].tau_ext;
-        out.status.push_back(estimates_[k].status);
-        out.counts.add(estimates_[k].status, estimates_[k].joints);
+        add(estimates_[k], out);
         if (detector_) out.marks.push_back(detections_[k].mark);
       }
       done += n;

@@ -27,7 +27,6 @@ class TreePlant {
   explicit TreePlant(PlainArm plain)
       : plain_(std::move(plain)),
         arm_(detail::filled<TreeModel<N>>(plain_.tree)),
-        drho_(plain_.tree.drho),
         end_(plain_.tree.point(kEndEffector)) {
     detail::require_size(plain_.tree, N);
   }
@@ -41,7 +40,6 @@ class TreePlant {
     q_ = q, qd_ = qd;
     tau_.setZero(), tau_ext_.setZero();
     look();
-    qdd_ = solved(terms_, friction_);
   }
   /// Applies tau [N m], clipped, and tau_ext [N m, sign of (3)] from now on.
   void set_input(const Vector& tau, const Vector& tau_ext) {
@@ -71,7 +69,8 @@ class TreePlant {
 
   /// Whether MuJoCo has to take over: near a limit of a joint, or far from anywhere.
   bool is_lost() const {
-    const Eigen::VectorXd rho = drho_ * q_ + plain_.tree.rho0;
+    const auto& p = arm_.parameters();
+    const Vector rho = p.drho * q_ + p.rho0;
     return !(rho.array() > plain_.lowest.array()).all() ||
            !(rho.array() < plain_.highest.array()).all() || !qd_.allFinite();
   }
@@ -85,13 +84,13 @@ class TreePlant {
     q_ += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
     qd_ += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
     look();
-    qdd_ = solved(terms_, friction_);
   }
 
  private:
   void look() {
     terms_ = arm_.dynamics(q_, qd_);
     friction_ = arm_.friction(qd_);
+    qdd_ = solved(terms_, friction_);
   }
   Eigen::Matrix<double, 3, N> jacobian() const {
     return arm_.jacobian(q_, end_.joint, end_.place).template topRows<3>();
@@ -105,7 +104,6 @@ class TreePlant {
 
   PlainArm plain_;
   TreeModel<N> arm_;
-  Eigen::MatrixXd drho_;
   ArmPoint end_;
   Dynamics<N> terms_;
   Vector q_, qd_, tau_, tau_ext_, qdd_, friction_;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
 
 #include "mjcf/plant/simulated.h"
@@ -14,27 +16,28 @@
 namespace tauext::test {
 namespace {
 
-using Eigen::MatrixXd;
-
-// as difference() has it, of one quantity; rounding of what is hardly there does not count
-double of(const MatrixXd& a, const MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / std::max(1e-3, a.cwiseAbs().maxCoeff());
-}
-
 void expect_same(const Trace& a, const Trace& b) {
-  EXPECT_LT(of(a.q, b.q), 1e-9);
-  EXPECT_LT(of(a.qd, b.qd), 1e-9);
-  EXPECT_LT(of(a.tau, b.tau), 1e-9);
-  EXPECT_LT(of(a.tau_ext, b.tau_ext), 1e-9);
-  EXPECT_LT(of(a.qdd, b.qdd), 1e-9);
-  EXPECT_LT(of(a.friction, b.friction), 1e-9);
-  EXPECT_EQ(a.t, b.t);
+  EXPECT_LT(difference(a, b), 1e-9);
   EXPECT_EQ(a.contact, b.contact);
   ASSERT_EQ(a.force.cols(), b.force.cols());
   EXPECT_TRUE(a.force == b.force);
-  EXPECT_LT(of(MatrixXd::Map(a.contact_force.data(), 1, a.size()),
-               MatrixXd::Map(b.contact_force.data(), 1, b.size())),
-            1e-9);
+  for (int k = 0; k < a.size(); ++k) {
+    const double force = a.contact_force[static_cast<std::size_t>(k)];
+    ASSERT_NEAR(b.contact_force[static_cast<std::size_t>(k)], force, 1e-9 * std::max(1., force));
+  }
+}
+
+TEST(RecordPlain, ADifferenceIsTheLargestOfAnyQuantity) {
+  const Trace a = simulate(load_robot("testbed1"), scenario("testbed1", "manual"));
+  for (const auto of :
+       {&Trace::q, &Trace::qd, &Trace::qdd, &Trace::tau, &Trace::tau_ext, &Trace::friction}) {
+    Trace b = a;
+    (b.*of)(0, 100) += 2e-9 * std::max((a.*of).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_NEAR(difference(a, b), 2e-9, 1e-12);
+  }
+  Trace shorter = a;
+  shorter.t.pop_back();
+  EXPECT_FALSE(std::isfinite(difference(a, shorter)));
 }
 
 template <int N>

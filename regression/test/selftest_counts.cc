@@ -31,6 +31,12 @@ TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
   EXPECT_EQ(count("base"), kCouldNotRun) << "its name is not its key's: " << text_;
 }
 
+TEST_F(Instructions, ValgrindKnowsThoseOfTheRoster) {
+  EXPECT_EQ(run({"count", "--head", kBin + "/tauext_plugin.so", "--baselines", baselines()}),
+            kUpdateNeeded)
+      << "it has no baseline here: " << text_;
+}
+
 TEST_F(Instructions, AFileThatIsNotWholeIsAnErrorWithItsName) {
   const std::string path = make_counts(), whole = read_whole(path);
   for (const std::string& bad :

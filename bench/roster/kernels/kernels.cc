@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 namespace tauext::detail {
-
 namespace {
 
 // what all else is compiled for runs, or nobody would ask
@@ -45,6 +44,11 @@ const Kernels& choose(const std::vector<const Kernels*>& all, bool (*runs)(const
     if (asked.empty() || asked == known.back()) best = k;
   }
   if (best != nullptr) return *best;
+  if (known.empty())
+    throw std::invalid_argument(
+        fmt::format("this build is for {}, and this processor is not; CMake's TAUEXT_LEVELS builds "
+                    "for several",
+                    all.front()->level));
   throw std::invalid_argument(
       fmt::format("TAUEXT_LEVEL={}: this processor and this build have {}; unset it for the best",
                   asked, fmt::join(known, ", ")));

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/roster/robots.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -26,10 +25,22 @@ TEST(Kernels, TheHighestLevelThatRunsIsTaken) {
             "for the best");
 }
 
-TEST(Kernels, ThisBuildHasOneForThisProcessor) {
-  EXPECT_EQ(level(), detail::kernels().level);
-  EXPECT_EQ(detail::all_kernels().front()->of_file.size(),
-            static_cast<std::size_t>(kMaxFileJoints));
+TEST(Kernels, ABuildForABetterProcessorSaysSo) {
+  const Kernels v4{"x86-64-v4", {}, nullptr, nullptr};
+  const auto none = [](const std::string&) { return false; };
+  EXPECT_EQ(error_of([&] { choose({&v4}, none, ""); }),
+            "this build is for x86-64-v4, and this processor is not; CMake's TAUEXT_LEVELS builds "
+            "for several");
+}
+
+TEST(Kernels, OfEachLevelAreWholeAndInOrder) {
+  std::string before;
+  for (const Kernels* k : detail::all_kernels()) {
+    EXPECT_TRUE(k == detail::all_kernels().front() || before < k->level) << k->level;
+    before = k->level;
+    for (const auto make : k->of_file) EXPECT_NE(make, nullptr) << k->level;
+    EXPECT_TRUE(k->wallmobot3 != nullptr && k->testbed1 != nullptr) << k->level;
+  }
 }
 
 }  // namespace
