@@ -4,16 +4,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "bench/logs/lcm_trace.h"
 #include "bench/logs/read_log.h"
 #include "bench/logs/torque_sampling.h"
 #include "bench/program/program.h"
+#include "bench/replay/estimates_writer.h"
 #include "bench/replay/replayed.h"
+#include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "mjcf/trace/known.h"
@@ -33,54 +38,84 @@ std::string looks_like(double step) {
 
 // statuses that an engineer has to know of; false if most samples could not be used, with those
 // that the reader has skipped
-bool report_status(const Trace& trace, const Replayed& c, std::int64_t skipped) {
-  const StatusCounts& counts = c.output.counts;
-  if (!counts.text().empty()) {
-    say(fmt::format("{}: of {} samples {}", c.estimator, counts.samples(), counts.sentence()));
-  }
+bool report_status(const Replayed& c, const LogReader& log) {
+  const StatusCounts& counts = c.counts();
+  const std::int64_t skipped = log.skipped();
+  if (!counts.text().empty())
+    say(fmt::format("{}: of {} samples {}", c.estimator(), counts.samples(), counts.sentence()));
   if (2 * (counts.left_out() + skipped) <= counts.samples() + skipped) return true;
   if (2 * counts.left_out() <= counts.samples()) {
     say(
         fmt::format("{}: most rows could not be used: {} were skipped (see above), {} of the other "
                     "{} left out",
-                    c.estimator, skipped, counts.left_out(), counts.samples()));
+                    c.estimator(), skipped, counts.left_out(), counts.samples()));
     return false;
   }
   if (2 * counts.of(Status::kFrozen) > counts.samples()) {
     say(
         fmt::format("{}: most readings repeat the one before, so these are no estimates. Is the "
                     "log faster than its sensors?",
-                    c.estimator));
+                    c.estimator()));
     return false;
   }
-  std::vector<double> steps;
-  for (int k = 1; k < trace.size(); ++k) steps.push_back(trace.t[k] - trace.t[k - 1]);
-  if (steps.empty()) return false;
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  const double step = steps[steps.size() / 2];
-  say(fmt::format(
-      "{}: most samples could not be used, so these are no estimates. Samples are {:g} s apart{}. "
-      "Is q in rad, qd in rad/s, tau in N m?",
-      c.estimator, step, looks_like(step)));
+  const double step = log.regularity().step;
+  say(
+      fmt::format("{}: most samples could not be used, so these are no estimates. Samples are "
+                  "{:.3g} s apart{}. "
+                  "Is q in rad, qd in rad/s, tau in N m?",
+                  c.estimator(), step, looks_like(step)));
   return false;
 }
 
-// where the log shows that tau is not what is assumed
-void warn_of_torque(const Robot& r, const Trace& trace, bool assumed_instant) {
-  constexpr double kBandwidth = 30;  // [rad/s]
-  const auto run = [&](const char* torque) {
-    return r.runner(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", trace)
-        ->run();
-  };
-  const Output held = run("held");
-  const auto w =
-      torque_weight(trace, held.tau_ext, run("instant").tau_ext, held.status, kBandwidth);
-  if (!w || !w->contradicts(assumed_instant)) return;
-  say(
-      fmt::format("tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is "
-                  "taken as the other: see --torque",
-                  assumed_instant ? "held from each" : "read at each", w->weight, w->sure));
-}
+// looks whether tau is what the estimators take it for
+class TorqueCheck {
+ public:
+  TorqueCheck(const Robot& r, const RecordingContents& log,
+              const std::vector<std::string>& estimators)
+      : estimates_(2, Eigen::VectorXd::Zero(log.dof)), weigher_(log.dof) {
+    for (const std::string& e : estimators) {
+      const auto fields = r.estimator_fields(name_of_specification(e));
+      if (std::none_of(fields.begin(), fields.end(),
+                       [](const FieldHelp& h) { return h.key == "torque"; }))
+        continue;
+      const std::string by_log = log.torque_at_instants ? "instant" : "held";
+      assumed_[key_of(e, "torque").value_or(by_log) == "instant"] = true;
+    }
+    for (const char* torque : {"held", "instant"})
+      observers_.push_back(
+          r.stepper(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", Trace()));
+  }
+
+  void take(const RecordedSample& y) {
+    Status status = Status::kOk;
+    for (std::size_t i = 0; i < 2; ++i)
+      status = observers_[i]
+                   ->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data())
+                   .status;
+    if (status == Status::kOk && !y.contact)
+      weigher_.take(estimates_[0].data(), estimates_[1].data());
+  }
+
+  void report(const Regularity& log) const {
+    const double samples = static_cast<double>(std::max<std::int64_t>(log.samples - 1, 1));
+    const auto w = weigher_.weight(kBandwidth, (log.to - log.from) / samples);
+    for (const bool instant : {false, true}) {
+      if (!w || !assumed_[instant] || !w->contradicts(instant)) continue;
+      say(fmt::format(
+          "tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken as "
+          "the other: see --torque",
+          instant ? "held from each" : "read at each", w->weight, w->sure));
+    }
+  }
+
+ private:
+  static constexpr double kBandwidth = 30;  // [rad/s]
+
+  std::array<bool, 2> assumed_{};  // held, read at instants
+  std::vector<std::unique_ptr<Stepper>> observers_;
+  std::vector<Eigen::VectorXd> estimates_;
+  TorqueWeigher weigher_;
+};
 
 struct Flags {
   std::string log, channel, columns, robot, lock, detector, thresholds, torque, wrench, out;
@@ -135,53 +170,64 @@ std::vector<DetectorSettings> settings_of(Flags& f, const Robot& r) {
   return settings;
 }
 
-int replay(Flags& f) {
-  if (f.log.empty() || f.robot.empty() || f.estimators.empty() || f.out.empty()) {
+void refuse_incomplete(const Flags& f) {
+  if (f.log.empty() || f.robot.empty() || f.estimators.empty() || f.out.empty())
     throw std::invalid_argument(
         "a log, --robot, --estimator and --out are required; see tauext-replay --help");
-  }
-  if (is_lcm_log(f.out) || f.out.ends_with(".npy") || f.out.ends_with(".db3")) {
+  if (is_lcm_log(f.out) || f.out.ends_with(".npy") || f.out.ends_with(".db3"))
     throw std::invalid_argument(
         fmt::format("--out {}: estimates are written as CSV, or to an .npz", f.out));
-  }
   refuse_twice("estimator", f.estimators);
+}
+
+int replay(Flags& f) {
+  refuse_incomplete(f);
   const Robot& r = robot(with_lock(f.robot, f.lock));
   const std::vector<DetectorSettings> settings = settings_of(f, r);
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
-  RecordedLog recorded = read_any_log(f.log, {f.channel, f.columns, true});
-  r.require_joints(recorded.trace, f.log);
-  r.make_torques(recorded.trace);
-  const Trace& trace = recorded.trace;
-  if (!(f.score_from <= trace.t.back())) {
-    throw std::invalid_argument(
-        fmt::format("--score_from {}: the log ends at {} s", f.score_from, trace.t.back()));
+  const LogOptions options{f.channel, f.columns, true};
+  LogReader log(f.log, options);
+  const RecordingContents& contents = log.contents();
+  r.require_joints(contents.dof, f.log);
+  log.use_gains(r.gains());
+
+  Trace truth;  // which some estimators copy, and no others have in memory
+  if (contents.has_truth && std::any_of(f.estimators.begin(), f.estimators.end(), needs_truth)) {
+    LogReader again(f.log, options);
+    truth = trace_of(again);
   }
-  std::vector<Replayed> columns;
+  truth.torque_at_instants = contents.torque_at_instants;
+  std::vector<Replayed> all;
   for (std::size_t i = 0; i < f.estimators.size(); ++i) {
     const std::string& e = f.estimators[i];
-    columns.push_back({e, f.detector, r.runner(e, f.detector, trace, settings[i])->run(), {}});
-    if (forces) columns.back().acting = acting(*forces, trace, columns.back().output);
+    all.emplace_back(Replayed::Setup{e, f.detector, forces.get(), f.score_from},
+                     r.stepper(e, f.detector, truth, settings[i]), contents);
   }
-  const std::string by_log = trace.torque_at_instants ? "instant" : "held";
-  bool good = recorded.usable();
-  for (const Replayed& c : columns) good = report_status(trace, c, recorded.skipped) && good;
-  for (const bool instant : {false, true}) {
-    if (std::any_of(columns.begin(), columns.end(), [&](const Replayed& c) {
-          const auto fields = r.estimator_fields(name_of_specification(c.estimator));
-          const bool has = std::any_of(fields.begin(), fields.end(),
-                                       [](const FieldHelp& h) { return h.key == "torque"; });
-          return has && (key_of(c.estimator, "torque").value_or(by_log) == "instant") == instant;
-        })) {
-      warn_of_torque(r, trace, instant);
-    }
+  truth = Trace();
+  TorqueCheck torque(r, contents, f.estimators);
+  const auto out = estimates_writer(f.out, all, contents.dof);
+  for (RecordedSample sample; log.next(sample);) {
+    for (Replayed& c : all) c.take(sample);
+    torque.take(sample);
+    out->add(sample.t, all);
   }
-  write_estimates(trace, columns, f.out);
+
+  log.report();
+  const Regularity& samples = log.regularity();
+  r.require_range(log.least(), log.most(), f.log);
+  if (!(f.score_from <= samples.to))
+    throw std::invalid_argument(
+        fmt::format("--score_from {}: the log ends at {} s", f.score_from, samples.to));
+  bool good = log.usable();
+  for (const Replayed& c : all) good = report_status(c, log) && good;
+  torque.report(samples);
+  out->commit();
   std::FILE* const to = f.out == "-" ? stderr : stdout;
-  if (!trace.has_truth())
-    fmt::print(to, "{} samples; no errors, as the log has no tau_ext\n", trace.size());
-  if (good) print_metrics(trace, columns, f.score_from, to);
-  if (good) print_forces(trace, columns, to);
+  if (!contents.has_truth)
+    fmt::print(to, "{} samples; no errors, as the log has no tau_ext\n", samples.samples);
+  if (good) print_metrics(all, contents, to);
+  if (good) print_forces(all, contents.dof, to);
   return good ? kGood : kAnswerIsNo;
 }
 

@@ -3,10 +3,14 @@
 /// LCM's logs, as lcm-logger writes them and lcm-logplayer and lcm-spy play them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lcmtypes/wire.h"
 
@@ -41,8 +45,37 @@ struct LogFaults {
   bool truncated = false;           ///< the last event is cut off
 };
 
-/// Hands every good event of a log on, in its order; skips what is none.
-/// @throws std::runtime_error naming the path: unreadable, or no event in it
+/// The good events of a log, one after the other; what is none is skipped.
+class LogEvents {
+ public:
+  /// @throws std::runtime_error naming the path, if it cannot be read
+  explicit LogEvents(const std::string& path);
+
+  /// The next one, whose views are valid until the next call; false at the end.
+  /// @throws std::runtime_error naming the path: unreadable, or no event in it
+  bool next(LogEvent& event);
+  const LogFaults& faults() const { return faults_; }  ///< so far
+
+ private:
+  bool fill(std::size_t wanted);
+  void read_more(std::size_t bytes);
+  std::size_t next_event();
+  bool believable(std::size_t length);
+  LogEvent event() const;
+  [[noreturn]] void fail(const char* what) const;
+
+  std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::int64_t left_ = 0;  // bytes not yet read
+  std::vector<unsigned char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  // of what was read and not used
+  std::size_t used_ = 0;             // of that, the event that was handed out
+  bool any_ = false, in_junk_ = false;
+  LogFaults faults_;
+};
+
+/// Hands every good event of a log on, in its order.
+/// @throws std::runtime_error as LogEvents does
 LogFaults read_log(const std::string& path, const std::function<void(const LogEvent&)>& handler);
 
 }  // namespace tauext

@@ -5,16 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "bench/logs/lcm_reader.h"
 #include "bench/logs/lcm_trace.h"
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/recording.h"
 
 namespace tauext {
 namespace {
+
+using Eigen::VectorXd;
 
 // what was left out, if anything
 void report_skipped(const SkippedRows& s, const std::string& log) {
@@ -28,84 +32,197 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
 }
 
-double median_step(const std::vector<double>& t) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
-// Says what can hardly be s, rad and rad/s; whether q and qd cannot both be.
-bool doubt_units(const Trace& log, const std::string& path, const std::string& remedy) {
-  constexpr double kTwoTurns = 12.6;              // [rad]
-  constexpr double kMoved = 0.1;                  // [rad], more than a joint at rest trembles
-  constexpr double kLongestGap = 0.1;             // [s]
-  const double longest = 5 * median_step(log.t);  // [s] over a gap qd says nothing
-  bool contradicts = false, far = false;
-  for (int j = 0; j < log.dof() && log.size() > 1; ++j) {
-    double xx = 0, xy = 0, yy = 0;  // of the steps of q, by qd and by q
-    for (int k = 1; k < log.size(); ++k) {
-      const double h = log.t[k] - log.t[k - 1];
-      if (h > longest) continue;
-      const double x = h * (log.qd(j, k) + log.qd(j, k - 1)) / 2, y = log.q(j, k) - log.q(j, k - 1);
-      xx += x * x, xy += x * y, yy += y * y;
-    }
-    const bool rests = xx < 1e-6 * yy;
-    const bool moved = log.q.row(j).maxCoeff() - log.q.row(j).minCoeff() > kMoved;
-    const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy);
-    const bool wrong = rests ? moved : alike && (xy > 2 * xx || xy < 0.5 * xx);
-    if (wrong && !contradicts) {
-      const std::string what =
-          rests ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
-                : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, xy / xx, j + 1);
-      say(fmt::format("{}: {}: {}", path, what, remedy));
-    }
-    contradicts = contradicts || wrong;
-    const double most = log.q.row(j).cwiseAbs().maxCoeff();
-    if (!far && most > kTwoTurns)
-      say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, most,
-                      remedy));
-    far = far || most > kTwoTurns;
-  }
-  if (log.size() > 2 && log.t.back() - log.t.front() > kLongestGap * log.size())
-    say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
-                    (log.t.back() - log.t.front()) / (log.size() - 1), remedy));
-  if (contradicts)
-    say(path + ": q and qd contradict each other, so that no estimate from them means anything");
-  return contradicts;
-}
-
-constexpr const char* kUnits = "are t, q and qd in s, rad and rad/s, with the same sign?";
-
-RecordedLog read_lcm_log(const std::string& path, const LogOptions& o) {
-  if (!o.columns.empty())
-    throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
-  LogReport report;
-  Trace trace = read_lcm(path, o.channel, &report);
-  if (const std::string faults = report.in_words(); !faults.empty())
-    say(fmt::format("{}: channel {}: {}", path, report.channel, faults));
-  const bool contradicts = doubt_units(trace, path, kUnits);
-  return {std::move(trace), report.rejected + report.out_of_order, contradicts};
-}
-
-RecordedLog read_rows(const std::string& path, const LogOptions& o) {
-  SkippedRows skipped;
-  Regularity regularity;
-  Trace trace =
-      read_recording(path, {.columns = o.columns, .topic = o.channel}, &skipped, &regularity);
-  report_skipped(skipped, path);
-  if (trace.tau_is_current && !o.currents)
-    throw std::runtime_error(
-        path + ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
-  if (!o.columns.empty() || regularity.gaps > 0) say(path + ": " + regularity.in_words());
-  const bool contradicts =
-      doubt_units(trace, path, std::string(kUnits) + " --columns takes other units and signs");
-  return {std::move(trace), skipped.total(), contradicts};
-}
-
 }  // namespace
+
+namespace detail {
+
+// whether t, q and qd can be in s, rad and rad/s
+class UnitDoubt {
+ public:
+  explicit UnitDoubt(int joints)
+      : least_(VectorXd::Constant(joints, kNever)), most_(-least_), joints_(joints) {}
+
+  // the next sample; gaps are those that its source has seen so far
+  void take(const Sample& s, std::int64_t gaps) {
+    least_ = least_.cwiseMin(s.q);
+    most_ = most_.cwiseMax(s.q);
+    if (samples_++ == 0) from_ = s.t;
+    const double h = s.t - to_;
+    to_ = s.t;
+    const bool gap = gaps > std::exchange(gaps_, gaps);
+    if (gap && steps_ == 1 && h < first_) {  // it was the first one, and this is none
+      std::fill(joints_.begin(), joints_.end(), Joint());
+      steps_ = 0;
+    } else if (gap) {
+      hold(s);
+      return;  // over a gap qd says nothing
+    }
+    if (samples_ > 1) take_step(s, h);
+    hold(s);
+  }
+
+  const VectorXd& least() const { return least_; }
+  const VectorXd& most() const { return most_; }
+
+  // whether q and qd cannot both be
+  bool contradicts() const {
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      if (is_wrong(j)) return true;
+    }
+    return false;
+  }
+
+  // says what can hardly be
+  void tell(const std::string& path, const std::string& remedy) const {
+    constexpr double kTwoTurns = 12.6;    // [rad]
+    constexpr double kLongestStep = 0.1;  // [s]
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      if (!is_wrong(j)) continue;
+      const Joint& sum = joints_[j];
+      const std::string what =
+          rests(sum) ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
+                     : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1,
+                                   sum.xy / sum.xx, j + 1);
+      say(fmt::format("{}: {}: {}", path, what, remedy));
+      break;
+    }
+    const VectorXd size = least_.cwiseAbs().cwiseMax(most_.cwiseAbs());
+    for (Eigen::Index j = 0; j < size.size(); ++j) {
+      if (!(size[j] > kTwoTurns)) continue;
+      say(fmt::format("{}: q{} reaches {:.3g}, more than two turns: {}", path, j + 1, size[j],
+                      remedy));
+      break;
+    }
+    if (samples_ > 2 && to_ - from_ > kLongestStep * static_cast<double>(samples_))
+      say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
+                      (to_ - from_) / static_cast<double>(samples_ - 1), remedy));
+    if (contradicts())
+      say(path + ": q and qd contradict each other, so that no estimate from them means anything");
+  }
+
+ private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  // sums over the steps of q, by qd (x) and by q (y)
+  struct Joint {
+    double xx = 0, xy = 0, yy = 0;
+  };
+
+  static bool rests(const Joint& sum) { return sum.xx < 1e-6 * sum.yy; }
+
+  bool is_wrong(std::size_t j) const {
+    constexpr double kMoved = 0.1;  // [rad], more than a joint at rest trembles
+    const auto [xx, xy, yy] = joints_[j];
+    const auto at = static_cast<Eigen::Index>(j);
+    if (rests(joints_[j])) return most_[at] - least_[at] > kMoved;
+    const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy);
+    return alike && (xy > 2 * xx || xy < 0.5 * xx);
+  }
+
+  void take_step(const Sample& s, double h) {
+    if (steps_++ == 0) first_ = h;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      const auto at = static_cast<Eigen::Index>(j);
+      const double x = h * (s.qd[at] + qd_[at]) / 2, y = s.q[at] - q_[at];
+      joints_[j].xx += x * x, joints_[j].xy += x * y, joints_[j].yy += y * y;
+    }
+  }
+
+  void hold(const Sample& s) { q_ = s.q, qd_ = s.qd; }
+
+  VectorXd least_, most_, q_, qd_;
+  std::vector<Joint> joints_;
+  std::int64_t samples_ = 0, steps_ = 0, gaps_ = 0;
+  double from_ = 0, to_ = 0, first_ = 0;  // [s]
+};
+
+}  // namespace detail
+
+struct LogReader::Impl {
+  Impl(const std::string& p, const LogOptions& o) : path(p), mapped(!o.columns.empty()) {
+    if (is_lcm_log(path)) {
+      if (mapped)
+        throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
+      lcm = std::make_unique<LcmReader>(path, o.channel);
+      source = lcm.get();
+    } else {
+      rows = std::make_unique<RecordingReader>(
+          path, RecordingOptions{.columns = o.columns, .topic = o.channel});
+      source = rows.get();
+    }
+    contents = source->contents();
+    if (contents.tau_is_current && !o.currents)
+      throw std::runtime_error(
+          path +
+          ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
+    doubt = std::make_unique<detail::UnitDoubt>(contents.dof);
+  }
+
+  std::string path;
+  bool mapped;
+  std::unique_ptr<LcmReader> lcm;
+  std::unique_ptr<RecordingReader> rows;
+  SampleSource* source = nullptr;  // the one that there is
+  RecordingContents contents;
+  VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents
+  std::unique_ptr<detail::UnitDoubt> doubt;
+};
+
+LogReader::LogReader(const std::string& path, const LogOptions& options)
+    : impl_(std::make_unique<Impl>(path, options)) {}
+LogReader::~LogReader() = default;
+
+void LogReader::use_gains(const VectorXd& gain) {
+  if (!impl_->contents.tau_is_current) return;
+  require_gains(gain, impl_->contents.dof);
+  impl_->gain = gain;
+  impl_->contents.tau_is_current = false;
+}
+
+const RecordingContents& LogReader::contents() const {
+  return impl_->contents;
+}
+const Regularity& LogReader::regularity() const {
+  return impl_->source->regularity();
+}
+const VectorXd& LogReader::least() const {
+  return impl_->doubt->least();
+}
+const VectorXd& LogReader::most() const {
+  return impl_->doubt->most();
+}
+bool LogReader::contradicts() const {
+  return impl_->doubt->contradicts();
+}
+
+bool LogReader::next(RecordedSample& s) {
+  if (!impl_->source->next(s)) return false;
+  if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
+  impl_->doubt->take(s, regularity().gaps);
+  return true;
+}
+
+std::int64_t LogReader::skipped() const {
+  if (impl_->rows) return impl_->rows->skipped().total();
+  const LogReport& found = impl_->lcm->report();
+  return found.rejected + found.out_of_order;
+}
+
+void LogReader::report() const {
+  const Impl& i = *impl_;
+  std::string remedy = "are t, q and qd in s, rad and rad/s, with the same sign?";
+  if (i.rows) {
+    report_skipped(i.rows->skipped(), i.path);
+    if (i.mapped || regularity().gaps > 0) say(i.path + ": " + regularity().in_words());
+    remedy += " --columns takes other units and signs";
+  } else if (const std::string faults = i.lcm->report().in_words(); !faults.empty()) {
+    say(fmt::format("{}: channel {}: {}", i.path, i.lcm->report().channel, faults));
+  }
+  i.doubt->tell(i.path, remedy);
+  if (skipped() > regularity().samples)
+    say(fmt::format("{}: most of it could not be used: {} skipped, {} used", i.path, skipped(),
+                    regularity().samples));
+}
 
 void RecordedLog::require_consistent(const std::string& path) const {
   if (contradicts)
@@ -113,12 +230,10 @@ void RecordedLog::require_consistent(const std::string& path) const {
 }
 
 RecordedLog read_any_log(const std::string& path, const LogOptions& o) {
-  RecordedLog log = is_lcm_log(path) ? read_lcm_log(path, o) : read_rows(path, o);
-  if (log.skipped > log.trace.size()) {
-    say(fmt::format("{}: most of it could not be used: {} skipped, {} used", path, log.skipped,
-                    log.trace.size()));
-  }
-  return log;
+  LogReader reader(path, o);
+  Trace trace = trace_of(reader);
+  reader.report();
+  return {std::move(trace), reader.skipped(), reader.contradicts()};
 }
 
 }  // namespace tauext

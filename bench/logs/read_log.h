@@ -3,26 +3,15 @@
 /// A recorded log of any kind.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 
+#include "mjcf/trace/read/recording.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
-
-/// A log, and how much of it could not be used.
-struct RecordedLog {
-  Trace trace;               ///< what could be used
-  std::int64_t skipped = 0;  ///< rows, or messages of the channel
-  /// Whether a joint moves at least twice as fast as its qd says, at most half as fast, or the
-  /// other way.
-  bool contradicts = false;
-  /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
-  bool usable() const { return skipped <= trace.size() && !contradicts; }
-  /// Asked by programs that write down what they learn from it.
-  /// @throws std::invalid_argument if q and qd contradict each other
-  void require_consistent(const std::string& path) const;
-};
 
 /// How a log is to be read.
 struct LogOptions {
@@ -33,8 +22,51 @@ struct LogOptions {
   bool currents = false;  ///< whether tau may be currents, which Robot::make_torques() then mends
 };
 
-/// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag. What was skipped, what is irregular in it,
-/// and what can hardly be in the units of a Trace, goes to standard error.
+/// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag, sample by sample.
+class LogReader final : public SampleSource {
+ public:
+  /// @throws std::runtime_error or std::invalid_argument naming the path and the reason
+  explicit LogReader(const std::string& path, const LogOptions& options = {});
+  ~LogReader() override;
+
+  /// Makes torques of currents, if it has these, by the gains of the drives [N m/A].
+  /// @throws std::invalid_argument as require_gains does
+  void use_gains(const Eigen::VectorXd& gain);
+
+  const RecordingContents& contents() const override;
+  bool next(RecordedSample& sample) override;
+  const Regularity& regularity() const override;
+
+  std::int64_t skipped() const;          ///< rows so far, or messages of the channel, not used
+  const Eigen::VectorXd& least() const;  ///< q [rad] so far, joint by joint
+  const Eigen::VectorXd& most() const;   ///< likewise
+  /// Says on standard error, at the end, what was skipped, what is irregular in it, and what can
+  /// hardly be in the units of a Trace.
+  void report() const;
+  /// Whether a joint moves at least twice as fast as its qd says, at most half as fast, or the
+  /// other way.
+  bool contradicts() const;
+  /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
+  bool usable() const { return skipped() <= regularity().samples && !contradicts(); }
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A log, and how much of it could not be used.
+struct RecordedLog {
+  Trace trace;               ///< what could be used
+  std::int64_t skipped = 0;  ///< rows, or messages of the channel
+  bool contradicts = false;  ///< as LogReader says
+  /// Likewise.
+  bool usable() const { return skipped <= trace.size() && !contradicts; }
+  /// Asked by programs that write down what they learn from it.
+  /// @throws std::invalid_argument if q and qd contradict each other
+  void require_consistent(const std::string& path) const;
+};
+
+/// All of a log, with its report.
 /// @throws std::runtime_error or std::invalid_argument naming the path and the reason
 RecordedLog read_any_log(const std::string& path, const LogOptions& options = {});
 

@@ -12,22 +12,21 @@ bool TorqueWeight::contradicts(bool assumed_instant) const {
   return sure < 0.3 && std::abs(weight - other) < 0.25 && std::abs(weight - other) + sure < 0.5;
 }
 
-std::optional<TorqueWeight> torque_weight(const Trace& trace, const Eigen::MatrixXd& held,
-                                          const Eigen::MatrixXd& instant,
-                                          const std::vector<Status>& status, double bandwidth) {
-  const double step = (trace.t.back() - trace.t.front()) / std::max(trace.size() - 1, 1);
+void TorqueWeigher::take(const double* held, const double* instant) {
+  ++count_;
+  for (std::size_t j = 0; j < sums_.size(); ++j) {
+    const double a = held[j], d = a - instant[j];
+    sums_[j].dd += d * d, sums_[j].ad += a * d, sums_[j].aa += a * a;
+  }
+}
+
+std::optional<TorqueWeight> TorqueWeigher::weight(double bandwidth, double step) const {
+  if (count_ < 1000) return std::nullopt;
   const double dependent = std::max(1., 2 / (bandwidth * step));
+  const auto count = static_cast<double>(count_);
   double weighted = 0, weights = 0;
-  for (int j = 0; j < trace.dof(); ++j) {
-    double dd = 0, ad = 0, aa = 0;
-    int count = 0;
-    for (int k = 0; k < trace.size(); ++k) {
-      if (status[k] != Status::kOk || (!trace.contact.empty() && trace.contact[k])) continue;
-      const double a = held(j, k), delta = a - instant(j, k);
-      dd += delta * delta, ad += a * delta, aa += a * a;
-      ++count;
-    }
-    if (count < 1000 || dd == 0) continue;
+  for (const auto& [dd, ad, aa] : sums_) {
+    if (dd == 0) continue;
     const double weight = ad / dd, rest = std::max(aa - ad * weight, 1e-12 * aa) / count;
     const double certain = dd / (rest * dependent);
     weighted += certain * weight, weights += certain;

@@ -4,12 +4,10 @@
 /// without contact.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
-
-#include "estimators/types.h"
-#include "mjcf/trace/trace.h"
 
 namespace tauext {
 
@@ -24,12 +22,27 @@ struct TorqueWeight {
 /// Between one momentum observer's estimates by both readings lies a signal that is known; without
 /// a contact the estimate by `held` is weight times that signal, and noise. A joint counts by its
 /// weight's standard error, over as many fewer samples as the observer is slower than they.
-/// @param held, instant [N m] estimates, a column each sample
-/// @param status of the samples; those that are not kOk, or in contact, do not count
-/// @param bandwidth [rad/s] of the observer
-/// @return nothing where no joint has 1000 samples that count, or none moves
-std::optional<TorqueWeight> torque_weight(const Trace& trace, const Eigen::MatrixXd& held,
-                                          const Eigen::MatrixXd& instant,
-                                          const std::vector<Status>& status, double bandwidth);
+class TorqueWeigher {
+ public:
+  /// For an arm of so many joints.
+  explicit TorqueWeigher(int joints) : sums_(static_cast<std::size_t>(joints)) {}
+
+  /// Estimates of a sample without contact by both readings, a number for each joint [N m]; only of
+  /// one that was used.
+  void take(const double* held, const double* instant);
+
+  /// Nothing where there were fewer than 1000 samples, or no joint moves.
+  /// @param bandwidth [rad/s] of the observer
+  /// @param step [s] from one sample to the next
+  std::optional<TorqueWeight> weight(double bandwidth, double step) const;
+
+ private:
+  // of the estimate by `held` (a) and what it is above the other (d)
+  struct Sums {
+    double dd = 0, ad = 0, aa = 0;
+  };
+  std::vector<Sums> sums_;
+  std::int64_t count_ = 0;
+};
 
 }  // namespace tauext

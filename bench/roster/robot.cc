@@ -116,21 +116,30 @@ void Robot::make_torques(Trace& trace) const {
   tauext::make_torques(trace, gains());
 }
 
-void Robot::require_joints(const Trace& trace, const std::string& log) const {
-  if (trace.dof() != dof_)
+void Robot::require_joints(int joints, const std::string& log) const {
+  if (joints != dof_)
     throw std::invalid_argument(fmt::format("{}{}{} has {} joints, the samples have {}", log,
-                                            log.empty() ? "" : ": ", name_, dof_, trace.dof()));
-  if (log.empty() || !file_ || trace.size() == 0) return;
+                                            log.empty() ? "" : ": ", name_, dof_, joints));
+}
+
+void Robot::require_range(const Eigen::VectorXd& least, const Eigen::VectorXd& most,
+                          const std::string& log) const {
+  if (!file_) return;
   const ArmTree arm = tree_of(file_);
   for (int j = 0; j < dof_; ++j) {
     const double slack = (arm.upper[j] - arm.lower[j]) / 4;  // infinite without a range
-    const double least = trace.q.row(j).minCoeff(), most = trace.q.row(j).maxCoeff();
-    if (least < arm.lower[j] - slack || most > arm.upper[j] + slack)
+    if (least[j] < arm.lower[j] - slack || most[j] > arm.upper[j] + slack)
       throw std::invalid_argument(fmt::format(
           "{}: q{} goes from {:.3g} to {:.3g}, and that joint of {} from {:.3g} to {:.3g} rad (or "
           "m): are both in these units, with the same zero, and in the same order?",
-          log, j + 1, least, most, name_, arm.lower[j], arm.upper[j]));
+          log, j + 1, least[j], most[j], name_, arm.lower[j], arm.upper[j]));
   }
+}
+
+void Robot::require_joints(const Trace& trace, const std::string& log) const {
+  require_joints(trace.dof(), log);
+  if (log.empty() || trace.size() == 0) return;
+  require_range(trace.q.rowwise().minCoeff(), trace.q.rowwise().maxCoeff(), log);
 }
 
 Eigen::VectorXd Robot::gains() const {

@@ -139,19 +139,19 @@ class RobotOf final : public Robot {
 
   std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                  const Trace& trace, const DetectorSettings& s) const override {
-    require_joints(trace);
+    require_joints(trace.dof());
     return std::make_unique<RunnerOf<N>>(estimator_of(estimator, trace), detector_of(detector, s),
                                          trace);
   }
 
   std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
                                    const Trace& trace, const DetectorSettings& s) const override {
-    if (trace.size() > 0) require_joints(trace);
+    if (trace.size() > 0) require_joints(trace.dof());
     return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
   }
 
   std::unique_ptr<Session> session(const Trace& trace) const override {
-    require_joints(trace);
+    require_joints(trace.dof());
     return std::make_unique<SessionOf<N>>(
         trace, [this, &trace](std::string_view e) { return estimator_of(e, trace); },
         [this](std::string_view d, const DetectorSettings& s) { return detector_of(d, s); });
@@ -236,6 +236,13 @@ void RobotOf<N>::add_roster_detectors() {
 extern template class RobotOf<1>;
 extern template class RobotOf<2>;
 extern template class RobotOf<3>;
+#if TAUEXT_FILE_JOINTS >= 8
+extern template class RobotOf<4>;
+extern template class RobotOf<5>;
+extern template class RobotOf<6>;
+extern template class RobotOf<7>;
+extern template class RobotOf<8>;
+#endif
 
 }  // namespace detail
 

@@ -8,19 +8,6 @@ namespace tauext {
 namespace metrics {
 namespace {
 
-// one past the last sample of the collision that begins at sample k, rebounds and grace included
-std::size_t end_of_collision(const std::vector<double>& t, const std::vector<std::uint8_t>& contact,
-                             std::size_t k) {
-  std::size_t last = k;  // sample of contact
-  std::size_t j = k + 1;
-  for (; j < t.size(); ++j) {
-    const bool goes_on = contact[j] && last == j - 1;  // whatever the time between two samples
-    if (!goes_on && t[j] > t[last] + kGrace) break;
-    if (contact[j]) last = j;
-  }
-  return j;
-}
-
 // the mean with which at most `count` events are seen in this share of all trials
 double poisson_mean(int count, double share) {
   // P(at most `count`) falls with the mean
@@ -40,30 +27,42 @@ double poisson_mean(int count, double share) {
 
 }  // namespace
 
+void DetectionCounter::take(double t, bool contact, bool mark) {
+  if (samples_++ == 0) from_ = t;
+  to_ = t;
+  const bool goes_on = contact && touched_;  // whatever the time between two samples
+  touched_ = contact;
+  if (in_collision_ && !goes_on && t > last_ + kGrace) in_collision_ = false;
+  if (!in_collision_ && !contact) {
+    s_.false_alarms += mark;
+    return;
+  }
+  if (!in_collision_) {
+    ++s_.collisions;
+    in_collision_ = true;
+    marked_ = false;
+    begin_ = t;
+  }
+  if (contact) last_ = t;
+  if (!mark || marked_) return;
+  marked_ = true;
+  ++s_.detected;
+  s_.delays.push_back(t - begin_);
+}
+
+DetectionScore DetectionCounter::score() const {
+  DetectionScore s = s_;
+  s.delay = s.delays.empty() ? kNoValue : *std::max_element(s.delays.begin(), s.delays.end());
+  if (samples_ > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (to_ - from_);
+  return s;
+}
+
 DetectionScore detection_score(const std::vector<double>& t,
                                const std::vector<std::uint8_t>& contact,
                                const std::vector<std::uint8_t>& marks) {
-  DetectionScore s;
-  s.delay = kNoValue;
-  const std::size_t n = t.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!contact[k]) {
-      s.false_alarms += marks[k] != 0;
-      continue;
-    }
-    ++s.collisions;
-    const std::size_t end = end_of_collision(t, contact, k);
-    std::size_t first = k;
-    while (first < end && !marks[first]) ++first;
-    if (first < end) {
-      ++s.detected;
-      s.delay = std::fmax(s.delay, t[first] - t[k]);
-      s.delays.push_back(t[first] - t[k]);
-    }
-    k = end - 1;
-  }
-  if (n > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (t.back() - t.front());
-  return s;
+  DetectionCounter counter;
+  for (std::size_t k = 0; k < t.size(); ++k) counter.take(t[k], contact[k] != 0, marks[k] != 0);
+  return counter.score();
 }
 
 double overtravel(const Trace& trace) {
@@ -109,7 +108,10 @@ Interval share_interval(int found, int all) {
 
 void add_detection_metrics(const Trace& trace, const Output& out, Score& score) {
   if (out.marks.empty() || trace.contact.empty()) return;
-  const metrics::DetectionScore d = metrics::detection_score(trace.t, trace.contact, out.marks);
+  add_detection_metrics(metrics::detection_score(trace.t, trace.contact, out.marks), score);
+}
+
+void add_detection_metrics(const metrics::DetectionScore& d, Score& score) {
   score.collisions = d.collisions;
   if (d.collisions > 0) {
     score.set(Metric::kDelay, d.delay);

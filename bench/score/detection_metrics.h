@@ -28,6 +28,21 @@ struct DetectionScore {
   double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
   double false_alarms_per_hour = 0;  ///< [1/h]
 };
+/// Takes samples as they come.
+class DetectionCounter {
+ public:
+  /// The next one, at t [s]: whether a contact acts, and whether the detector marks it.
+  void take(double t, bool contact, bool mark);
+  DetectionScore score() const;  ///< of those that were taken
+
+ private:
+  DetectionScore s_;
+  std::int64_t samples_ = 0;
+  double from_ = 0, to_ = 0;  // [s] of the samples
+  bool in_collision_ = false, touched_ = false, marked_ = false;
+  double begin_ = 0, last_ = 0;  // [s] of the collision: its first and last contact
+};
+
 /// The score of these marks; all three are as long as t [s].
 DetectionScore detection_score(const std::vector<double>& t,
                                const std::vector<std::uint8_t>& contact,
@@ -60,6 +75,9 @@ double quantile(std::vector<double> values, double share);
 double poisson_upper(int count);
 
 }  // namespace metrics
+
+/// What these marks are worth.
+void add_detection_metrics(const metrics::DetectionScore& marks, Score& score);
 
 /// The trace's contacts against the output's marks; nothing without a detector or without known
 /// contacts.

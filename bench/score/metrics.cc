@@ -20,6 +20,13 @@ Eigen::RowVectorXd error(const Times& t, const Signal& truth, const Signal& esti
   return estimate.tail(n) - truth.tail(n);
 }
 
+Errors errors(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+  Errors all;
+  for (Eigen::Index k = first_from(t, from); k < truth.size(); ++k)
+    all.take(estimate[k] - truth[k]);
+  return all;
+}
+
 // [s] when the signal first reaches level in the direction up, from sample `start` on
 double crossing(const Times& t, const Signal& x, Eigen::Index start, double level, bool up) {
   for (Eigen::Index k = start; k < x.size(); ++k) {
@@ -52,18 +59,15 @@ double spread(const Signal& truth, const Signal& estimate, Eigen::Index first, E
 }  // namespace
 
 double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
-  return e.size() == 0 ? kNoValue : std::sqrt(e.array().square().mean());
+  return errors(t, truth, estimate, from).rmse();
 }
 
 double bias(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
-  return e.size() == 0 ? kNoValue : e.mean();
+  return errors(t, truth, estimate, from).bias();
 }
 
 double max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {
-  const Eigen::RowVectorXd e = error(t, truth, estimate, from);
-  return e.size() == 0 ? kNoValue : e.cwiseAbs().maxCoeff();
+  return errors(t, truth, estimate, from).max();
 }
 
 double time_of_max_error(const Times& t, const Signal& truth, const Signal& estimate, double from) {

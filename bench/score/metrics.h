@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "bench/roster/stages.h"
 #include "bench/score/bandwidth.h"
@@ -16,6 +17,24 @@
 
 namespace tauext {
 namespace metrics {
+
+/// Errors of one joint's estimates, estimate - truth [N m], as they come.
+class Errors {
+ public:
+  /// The next one.
+  void take(double error) {
+    ++count_;
+    sum_ += error;
+    squares_ += error * error;
+    if (std::abs(error) > max_) max_ = std::abs(error);
+  }
+  double rmse() const { return count_ == 0 ? kNoValue : std::sqrt(squares_ / count_); }  ///< [N m]
+  double bias() const { return count_ == 0 ? kNoValue : sum_ / count_; }  ///< [N m] mean
+  double max() const { return count_ == 0 ? kNoValue : max_; }            ///< [N m] largest size
+
+ private:
+  double count_ = 0, sum_ = 0, squares_ = 0, max_ = 0;
+};
 
 /// [N m] root of the mean squared error over samples with t >= from.
 double rmse(const Times& t, const Signal& truth, const Signal& estimate, double from);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tauext-replay.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +159,46 @@ TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
   const Outcome o = run("tauext-replay --robot testbed1 --estimator ekf,ndob ms.csv --out est.csv");
   EXPECT_EQ(o.code, 1) << o.text;
   EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
+}
+
+// [kB] the peak memory of one of the programs
+long memory_of(const std::string& folder, const std::string& command) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const std::string line =
+        "cd " + folder + " && exec " TAUEXT_BIN "/" + command + " >/dev/null 2>&1";
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    ::_exit(127);
+  }
+  int status = 0;
+  struct rusage used {};
+  ::wait4(child, &status, 0, &used);
+  EXPECT_EQ(status, 0) << command;
+  return used.ru_maxrss;
+}
+
+TEST_F(Programs, ReplayTakesNoMoreMemoryForALongerLog) {
+  for (const char* ending : {"csv", "lcm"}) {
+    std::vector<long> kilobytes;
+    for (const int seconds : {2, 60}) {
+      write("long.json",
+            fmt::format(R"({{ "scenarios": [ {{ "name": "long", "duration": {}, "asks": "error",
+        "sines": [ {{ "joint": 1, "amplitude": 0.3, "w": 2 }} ] }} ] }})",
+                        seconds));
+      const std::string log = fmt::format("log{}.{}", seconds, ending);
+      const Outcome o =
+          run("tauext-record --robot wallmobot3 --scenarios long.json --scenario long "
+              "--out " +
+              log);
+      ASSERT_EQ(o.code, 0) << o.text;
+      kilobytes.push_back(
+          memory_of(folder_.string(), "tauext-replay " + log +
+                                          " --robot wallmobot3 --estimator "
+                                          "mo2,ekf --detector pan_tompkins --out est.csv"));
+    }
+    EXPECT_LT(kilobytes[1], kilobytes[0] + 4000) << ending;
+    EXPECT_LT(kilobytes[1], 64000) << ending;
+  }
 }
 
 TEST_F(Programs, ReplayScoresFromATimeWithinTheLog) {

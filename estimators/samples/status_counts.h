@@ -20,6 +20,7 @@ class StatusCounts {
   void add(Status s, std::uint8_t joints) noexcept {
     ++samples_;
     ++by_status_[index(s)];
+    if (joints == 0) return;
     for (std::size_t j = 0; j < kJoints; ++j) by_joint_[index(s)][j] += joints >> j & 1;
   }
 

@@ -56,6 +56,14 @@ class TimedRows {
     waiting_.erase(waiting_.begin());
   }
 
+  /// Room for a row, of one that came out, so that none has to be allocated.
+  std::vector<double> spare() {
+    if (spare_.empty()) return {};
+    std::vector<double> row = std::move(spare_.back());
+    spare_.pop_back();
+    return row;
+  }
+
   /// No more rows follow.
   void finish() {
     skip_waiting();
@@ -65,7 +73,7 @@ class TimedRows {
   /// The next one of those that are kept; false if there is none yet.
   bool next(std::vector<double>& row) {
     if (kept_.empty() || (!finished_ && kept_.size() <= kUnsure)) return false;
-    row = std::move(kept_.front().first);
+    spare_.push_back(std::exchange(row, std::move(kept_.front().first)));
     kept_.pop_front();
     return true;
   }
@@ -118,6 +126,7 @@ class TimedRows {
   std::deque<Row> kept_;
   bool finished_ = false;
   std::vector<Row> waiting_;
+  std::vector<std::vector<double>> spare_;
   double shift_ = 0;  // [s]
 };
 

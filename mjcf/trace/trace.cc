@@ -35,11 +35,10 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
   return s;
 }
 
-void make_torques(Trace& trace, const Eigen::VectorXd& gain) {
-  if (!trace.tau_is_current) return;
-  if (trace.dof() != gain.size())
+void require_gains(const Eigen::VectorXd& gain, int joints) {
+  if (joints != gain.size())
     throw std::invalid_argument(
-        fmt::format("the log has {} joints, and the robot {}", trace.dof(), gain.size()));
+        fmt::format("the log has {} joints, and the robot {}", joints, gain.size()));
   for (Eigen::Index i = 0; i < gain.size(); ++i) {
     if (gain[i] != 0) continue;
     throw std::invalid_argument(fmt::format(
@@ -47,6 +46,11 @@ void make_torques(Trace& trace, const Eigen::VectorXd& gain) {
         "of columns, or in a robot file, where tauext-calibrate writes it",
         i + 1));
   }
+}
+
+void make_torques(Trace& trace, const Eigen::VectorXd& gain) {
+  if (!trace.tau_is_current) return;
+  require_gains(gain, trace.dof());
   trace.tau = gain.asDiagonal() * trace.tau;
   trace.tau_is_current = false;
 }

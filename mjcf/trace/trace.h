@@ -60,9 +60,12 @@ struct Trace {
 /// The samples of these indices alone, in increasing order.
 Trace select_samples(const Trace& trace, const std::vector<int>& samples);
 
+/// @throws std::invalid_argument unless there are as many gains [N m/A] as joints, and none is 0,
+/// which nobody knows, saying where it may stand
+void require_gains(const Eigen::VectorXd& gain, int joints);
+
 /// Makes torques of a trace whose tau is in A, by these gains [N m/A]; else does nothing.
-/// @throws std::invalid_argument for another number of joints, and for a gain of 0, which nobody
-/// knows, saying where it may stand
+/// @throws std::invalid_argument as require_gains does
 void make_torques(Trace& trace, const Eigen::VectorXd& gain);
 
 /// Writes t,q1..,qd1..,tau1..[,tau_ext1..][,contact] with a header line, %.17g, SI units; to

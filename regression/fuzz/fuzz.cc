@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "bench/live/stream_table.h"
-#include "bench/logs/lcm_trace.h"
+#include "bench/logs/lcm_reader.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/degradation.h"
 #include "lcmtypes/receive/arrivals.h"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/live/entry_tap.h"
+#include "bench/logs/lcm_reader.h"
 #include "bench/score/suite.h"
 #include "mjcf/record.h"
 #include "mjcf/trace/test/same_trace.h"

@@ -4,36 +4,29 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace tauext::test {
 namespace {
 
-// estimates that differ by a sine on the first joint of two, with noise
-struct Estimates {
-  Estimates(double weight, double noise, int samples = 4000) {
-    std::mt19937_64 generator(3);
-    const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-52 - 1; };
-    trace.q = trace.qd = trace.tau = held = instant = Eigen::MatrixXd::Zero(2, samples);
-    for (int k = 0; k < samples; ++k) {
-      trace.t.push_back(k * 1e-3);
-      const double delta = std::sin(2e-3 * k);
-      held(0, k) = weight * delta + noise * uniform();
-      instant(0, k) = held(0, k) - delta;
-    }
-    status.assign(static_cast<std::size_t>(samples), Status::kOk);
+// of estimates that differ by a sine on the first joint of two, with noise
+std::optional<TorqueWeight> weight_of(double weight, double noise, int samples = 4000) {
+  std::mt19937_64 generator(3);
+  const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-52 - 1; };
+  TorqueWeigher weigher(2);
+  for (int k = 0; k < samples; ++k) {
+    const double delta = std::sin(2e-3 * k);
+    const double held[] = {weight * delta + noise * uniform(), 0};
+    const double instant[] = {held[0] - delta, 0};
+    weigher.take(held, instant);
   }
-  std::optional<TorqueWeight> weigh() const {
-    return torque_weight(trace, held, instant, status, 30);
-  }
-  Trace trace;
-  Eigen::MatrixXd held, instant;
-  std::vector<Status> status;
-};
+  return weigher.weight(30, 1e-3);
+}
 
 TEST(TorqueWeight, IsThatOfTheDifferenceInTheEstimate) {
   for (const double weight : {0., 1.}) {
-    const auto w = Estimates(weight, 0.1).weigh();
+    const auto w = weight_of(weight, 0.1);
     ASSERT_TRUE(w);
     EXPECT_NEAR(w->weight, weight, w->sure);
     EXPECT_LT(w->sure, 0.1);
@@ -43,19 +36,12 @@ TEST(TorqueWeight, IsThatOfTheDifferenceInTheEstimate) {
 }
 
 TEST(TorqueWeight, SaysNothingWhereTheLogDoesNot) {
-  for (const Estimates& e :
-       {Estimates(1, 100), Estimates(30, 0.1), Estimates(-2, 0.1), Estimates(0.6, 0.1)}) {
-    const auto w = e.weigh();
+  for (const auto& w :
+       {weight_of(1, 100), weight_of(30, 0.1), weight_of(-2, 0.1), weight_of(0.6, 0.1)}) {
     ASSERT_TRUE(w);
     EXPECT_FALSE(w->contradicts(false) || w->contradicts(true)) << w->weight;
   }
-  EXPECT_FALSE(Estimates(1, 0.1, 999).weigh()) << "too short";
-  Estimates in_contact(1, 0.1);
-  in_contact.trace.contact.assign(4000, 1);
-  EXPECT_FALSE(in_contact.weigh());
-  Estimates unused(1, 0.1);
-  unused.status.assign(4000, Status::kJump);
-  EXPECT_FALSE(unused.weigh());
+  EXPECT_FALSE(weight_of(1, 0.1, 999)) << "too short";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 /// unit, with which sign, in which order of the joints.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>

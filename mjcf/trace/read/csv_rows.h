@@ -3,6 +3,7 @@
 /// Text of numbers: a line for each row, the columns apart by commas or whatever it is.
 #pragma once
 
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -80,15 +80,18 @@ class VelocityFilter {
 }  // namespace detail
 
 struct RecordingReader::Impl {
-  Impl(const std::string& path, const RecordingOptions& o)
-      : map(column_map(!o.columns.empty() ? o.columns
+  Impl(const std::string& file, const RecordingOptions& o)
+      : path(file),
+        map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
                                           : "tauext")),
         rows(open_rows(path, o, map.csv())),
-        layout(layout_of(known(path), rows->columns(), path)),
+        layout(layout_of(known(), rows->columns(), path)),
         timed(0, skipped),
         filter(map.velocity_filter()) {
     rows->read_only(layout.columns());
+    contents = {layout.dof,          layout.instants,    layout.currents,
+                layout.tau_ext >= 0, layout.driver >= 0, layout.contact >= 0};
     if (layout.qd < 0) {
       skipped.notes.push_back(fmt::format(
           "no qd: it is made of q by two poles at {:g} rad/s and a difference (velocity_filter)",
@@ -97,7 +100,7 @@ struct RecordingReader::Impl {
   }
 
   // what the map finds; in a bag, whose messages may leave fields empty, what the first one has
-  MappedColumns known(const std::string& path) {
+  MappedColumns known() {
     MappedColumns all = map.mapped(rows->columns(), path);
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
     if (!is_bag(path)) return all;
@@ -113,7 +116,9 @@ struct RecordingReader::Impl {
   // false if the source is at its end
   bool take_row() {
     if (!std::exchange(has_first, false) && !rows->next(raw, skipped)) return false;
-    std::vector<double> values(static_cast<std::size_t>(layout.size), 0.);
+    std::vector<double> values = timed.spare();
+    values.resize(static_cast<std::size_t>(layout.size));
+    values[0] = 0;
     for (const auto& [c, gain] : layout.t) values[0] += gain * raw[static_cast<std::size_t>(c)];
     for (std::size_t i = 0; i < layout.rest.size(); ++i) {
       const auto& [c, gain] = layout.rest[i];
@@ -129,22 +134,29 @@ struct RecordingReader::Impl {
   }
 
   void fill(RecordedSample& s) {
-    const auto some = [&](int at, int count) -> VectorXd {
-      if (at < 0) return {};
-      return VectorXd::Map(row.data() + at, count);
+    const auto copy = [&](Eigen::VectorXd& to, int at, int count) {
+      if (at >= 0) to = VectorXd::Map(row.data() + at, count);
     };
-    const auto part = [&](int at) { return some(at, layout.dof); };
     s.t = row[0];
-    s.q = part(layout.q);
-    s.qd = layout.qd < 0 ? filter(s.t, s.q) : part(layout.qd);
-    s.tau = part(layout.tau);
-    s.tau_ext = part(layout.tau_ext);
-    s.driver = part(layout.driver);
-    s.force = some(layout.force, 3);
+    copy(s.q, layout.q, layout.dof);
+    copy(s.qd, layout.qd, layout.dof);
+    if (layout.qd < 0) s.qd = filter(s.t, s.q);
+    copy(s.tau, layout.tau, layout.dof);
+    copy(s.tau_ext, layout.tau_ext, layout.dof);
+    copy(s.driver, layout.driver, layout.dof);
+    copy(s.force, layout.force, 3);
     s.contact = layout.contact >= 0 && row[static_cast<std::size_t>(layout.contact)] != 0;
     counter.take(s.t, s.q, s.qd, s.tau);
   }
 
+  [[noreturn]] void fail_empty() const {
+    throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,
+                                         skipped.total(), skipped.first.empty() ? "" : "; ",
+                                         skipped.first.empty() ? "" : skipped.first[0]));
+  }
+
+  std::string path;
+  RecordingContents contents;
   SkippedRows skipped;
   std::vector<double> raw, row;
   bool has_first = false, ended = false;
@@ -160,23 +172,8 @@ RecordingReader::RecordingReader(const std::string& path, const RecordingOptions
     : impl_(std::make_unique<Impl>(path, options)) {}
 RecordingReader::~RecordingReader() = default;
 
-int RecordingReader::dof() const {
-  return impl_->layout.dof;
-}
-bool RecordingReader::tau_is_current() const {
-  return impl_->layout.currents;
-}
-bool RecordingReader::torque_at_instants() const {
-  return impl_->layout.instants;
-}
-bool RecordingReader::has_truth() const {
-  return impl_->layout.tau_ext >= 0;
-}
-bool RecordingReader::has_driver() const {
-  return impl_->layout.driver >= 0;
-}
-bool RecordingReader::has_contact() const {
-  return impl_->layout.contact >= 0;
+const RecordingContents& RecordingReader::contents() const {
+  return impl_->contents;
 }
 const SkippedRows& RecordingReader::skipped() const {
   return impl_->skipped;
@@ -188,7 +185,10 @@ const Regularity& RecordingReader::regularity() const {
 bool RecordingReader::next(RecordedSample& s) {
   Impl& r = *impl_;
   while (!r.timed.next(r.row)) {
-    if (r.ended) return false;
+    if (r.ended) {
+      if (r.counter.so_far().samples == 0) r.fail_empty();
+      return false;
+    }
     if (r.take_row()) continue;
     r.timed.finish();
     r.ended = true;
@@ -197,36 +197,37 @@ bool RecordingReader::next(RecordedSample& s) {
   return true;
 }
 
-Trace read_recording(const std::string& path, const RecordingOptions& options, SkippedRows* skipped,
-                     Regularity* regularity) {
-  RecordingReader reader(path, options);
+Trace trace_of(SampleSource& source) {
+  const RecordingContents& has = source.contents();
   Trace trace;
   std::vector<double> q, qd, tau, tau_ext, driver, force;
   const auto append = [](std::vector<double>& to, const VectorXd& v) {
     to.insert(to.end(), v.begin(), v.end());
   };
-  for (RecordedSample s; reader.next(s);) {
+  for (RecordedSample s; source.next(s);) {
     trace.t.push_back(s.t);
     append(q, s.q), append(qd, s.qd), append(tau, s.tau);
     append(tau_ext, s.tau_ext), append(driver, s.driver), append(force, s.force);
-    if (reader.has_contact()) trace.contact.push_back(s.contact);
-  }
-  *skipped = reader.skipped();
-  if (regularity != nullptr) *regularity = reader.regularity();
-  if (trace.t.empty()) {
-    throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,
-                                         skipped->total(), skipped->first.empty() ? "" : "; ",
-                                         skipped->first.empty() ? "" : skipped->first[0]));
+    if (has.has_contact) trace.contact.push_back(s.contact);
   }
   const auto matrix = [&](const std::vector<double>& all) -> Eigen::MatrixXd {
     if (all.empty()) return {};
-    return Eigen::MatrixXd::Map(all.data(), reader.dof(), trace.size());
+    return Eigen::MatrixXd::Map(all.data(), has.dof, trace.size());
   };
   trace.q = matrix(q), trace.qd = matrix(qd), trace.tau = matrix(tau);
   trace.tau_ext = matrix(tau_ext), trace.tau_ext_of_driver = matrix(driver);
   if (!force.empty()) trace.force = Eigen::Matrix3Xd::Map(force.data(), 3, trace.size());
-  trace.torque_at_instants = reader.torque_at_instants();
-  trace.tau_is_current = reader.tau_is_current();
+  trace.torque_at_instants = has.torque_at_instants;
+  trace.tau_is_current = has.tau_is_current;
+  return trace;
+}
+
+Trace read_recording(const std::string& path, const RecordingOptions& options, SkippedRows* skipped,
+                     Regularity* regularity) {
+  RecordingReader reader(path, options);
+  Trace trace = trace_of(reader);
+  *skipped = reader.skipped();
+  if (regularity != nullptr) *regularity = reader.regularity();
   return trace;
 }
 

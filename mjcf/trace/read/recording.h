@@ -36,23 +36,43 @@ struct RecordedSample : Sample {
   bool contact = false;     ///< the label
 };
 
-/// Reads a recording sample by sample, in memory that does not grow with it.
-class RecordingReader {
+/// What a recording has beside t, q, qd and tau.
+struct RecordingContents {
+  int dof = 0;                      ///< joints
+  bool torque_at_instants = false;  ///< samples/options.h
+  bool tau_is_current = false;      ///< Trace::tau_is_current
+  bool has_truth = false;           ///< whether it knows tau_ext
+  bool has_driver = false;          ///< whether it knows the maker's estimate
+  bool has_contact = false;         ///< whether it has labels
+};
+
+/// A recording of any kind, sample by sample, in memory that does not grow with it.
+class SampleSource {
+ public:
+  virtual ~SampleSource() = default;
+  virtual const RecordingContents& contents() const = 0;  ///< the same for all samples
+  /// The next one; false at the end.
+  /// @throws std::runtime_error naming the path and what is wrong
+  virtual bool next(RecordedSample& sample) = 0;
+  virtual const Regularity& regularity() const = 0;  ///< of the samples so far
+};
+
+/// All samples that a source still has.
+Trace trace_of(SampleSource& source);
+
+/// A recording of these formats.
+class RecordingReader final : public SampleSource {
  public:
   /// @throws std::runtime_error or std::invalid_argument naming the path and what is wrong with the
   /// file, or with its map
   RecordingReader(const std::string& path, const RecordingOptions& options);
-  ~RecordingReader();
+  ~RecordingReader() override;
 
-  int dof() const;                       ///< joints
-  bool torque_at_instants() const;       ///< samples/options.h
-  bool tau_is_current() const;           ///< Trace::tau_is_current
-  bool has_truth() const;                ///< whether it knows tau_ext
-  bool has_driver() const;               ///< whether it knows the maker's estimate
-  bool has_contact() const;              ///< whether it has labels
-  bool next(RecordedSample& sample);     ///< false at the end; throws as the constructor does
-  const SkippedRows& skipped() const;    ///< rows that were left out so far
-  const Regularity& regularity() const;  ///< of the samples so far
+  const RecordingContents& contents() const override;
+  /// Throws at the end, too, if there was no usable row.
+  bool next(RecordedSample& sample) override;
+  const Regularity& regularity() const override;
+  const SkippedRows& skipped() const;  ///< rows that were left out so far
 
  private:
   struct Impl;
@@ -60,7 +80,7 @@ class RecordingReader {
 };
 
 /// All of a recording.
-/// @throws std::runtime_error as RecordingReader does, and if it has no usable row
+/// @throws std::runtime_error as RecordingReader does
 Trace read_recording(const std::string& path, const RecordingOptions& options, SkippedRows* skipped,
                      Regularity* regularity = nullptr);
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The file of what estimators made of a log.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/replay/replayed.h"
+
+namespace tauext {
+
+/// Takes estimates as they come. The file appears whole, by commit(), or not at all.
+class EstimatesWriter {
+ public:
+  virtual ~EstimatesWriter() = default;
+  /// What all of them made of the sample at t [s], which they have taken.
+  /// @throws std::runtime_error naming the path
+  virtual void add(double t, const std::vector<Replayed>& all) = 0;
+  /// @throws std::runtime_error naming the path
+  virtual void commit() = 0;
+};
+
+/// A CSV with a row for each sample: t, and of each estimator its tau_ext, status, mark and forces,
+/// each number in as many digits as tell it from others; standard output if the path is "-". Or a
+/// .npz with the arrays t, NAME_tau_ext, NAME_status, the marks, and NAME_force, NAME_moment and
+/// NAME_link, which lies in memory until commit().
+/// @param all those whose estimates will come
+/// @throws std::runtime_error naming the path
+std::unique_ptr<EstimatesWriter> estimates_writer(const std::string& path,
+                                                  const std::vector<Replayed>& all, int dof);
+
+}  // namespace tauext
