@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "mjcf/plant/tree.h"
+#include "mjcf/plant/any_tree.h"
 
 namespace tauext {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/calibrate/arm_motion.h"
 
+#include "mjcf/plant/any_tree.h"
+
 namespace tauext {
 
 ArmMotion::ArmMotion(const ArmTree& arm, const Trace& log) : log_(log) {

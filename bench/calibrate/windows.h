@@ -3,6 +3,7 @@
 /// A log in windows of time, over which equation (3) is integrated.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>

@@ -10,6 +10,7 @@
 /// in a source that CMake's tauext_add_plugin(target source) builds. Needs Eigen alone.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <new>

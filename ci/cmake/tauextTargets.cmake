@@ -48,8 +48,8 @@ endfunction()
 function(tauext_program name source)
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARGN} tauext_program tauext_flags tauext_estimators fmt::fmt)
-  target_compile_options(${name} PRIVATE -fPIC)  # as libraries are, to share what is precompiled
-  target_precompile_headers(${name} REUSE_FROM tauext_precompiled)
+  target_compile_options(${name} PRIVATE -O1)  # as the precompiled headers of programs: what takes time is in libraries
+  target_precompile_headers(${name} REUSE_FROM tauext_precompiled_program)
   target_link_options(${name} PRIVATE -Wl,--as-needed)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} OPTIONAL)  # ci/bench does not build them all

@@ -3,9 +3,11 @@
 /// What an arm of hinges and slides is made of: a joint and the rigid body behind it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "estimators/types.h"
 
@@ -57,6 +59,28 @@ inline void check_joint(const TreeJoint& j, int i) {
           "armature and friction must be 0 or more, v_s above 0");
   require(std::abs(j.viscous_skew) <= j.viscous, "viscous_skew must not exceed viscous");
   require(std::isfinite(j.offset), "its offset must be finite");
+}
+
+// whether the columns are independent: none vanishes where the others are taken out of it
+template <int Rows, int Columns>
+bool has_full_rank(Eigen::Matrix<double, Rows, Columns> m) {
+  double size[Columns] = {};
+  for (int c = 0; c < Columns; ++c) {
+    for (int r = 0; r < Rows; ++r) size[c] = std::max(size[c], std::abs(m(r, c)));
+  }
+  for (int c = 0; c < Columns; ++c) {
+    int pivot = c;
+    for (int r = c; r < Rows; ++r) {
+      if (std::abs(m(r, c)) > std::abs(m(pivot, c))) pivot = r;
+    }
+    if (!(std::abs(m(pivot, c)) > 1e-12 * size[c])) return false;
+    for (int j = c; j < Columns; ++j) std::swap(m(c, j), m(pivot, j));
+    for (int r = c + 1; r < Rows; ++r) {
+      const double share = m(r, c) / m(c, c);
+      for (int j = c; j < Columns; ++j) m(r, j) -= share * m(c, j);
+    }
+  }
+  return true;
 }
 
 }  // namespace detail

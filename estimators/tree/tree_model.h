@@ -23,7 +23,6 @@
 ///     d tau_i/d qd_j = 2 S_i . (B^c_j S_j + I^c_j S'_j)                                       (iv)
 #pragma once
 
-#include <Eigen/LU>
 #include <array>
 #include <cstddef>
 #include <stdexcept>
@@ -68,7 +67,7 @@ class TreeModel {
         drho_(p.drho.template cast<Scalar>()) {
     if (!p.drho.allFinite() || !p.gravity.allFinite() || !p.rho0.allFinite())
       throw std::invalid_argument("a tree's numbers must be finite");
-    if (Eigen::FullPivLU<Eigen::MatrixXd>(p.drho).rank() < N)
+    if (!detail::has_full_rank(p.drho))
       throw std::invalid_argument("a tree's drho must have full rank");
     for (int i = 0; i < M; ++i) {
       const TreeJoint& j = p.joints[static_cast<std::size_t>(i)];

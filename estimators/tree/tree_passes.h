@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 
+#include "estimators/math/block.h"
 #include "estimators/math/sin_cos.h"
 #include "estimators/tree/tree_joint.h"
 #include "estimators/tree/tree_sums.h"

@@ -5,21 +5,44 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
-#include "estimators/tree/tree_model.h"
+#include "mjcf/plant/tree.h"
 
 namespace tauext {
-
-/// The most coordinates of an arm from a file.
-inline constexpr int kMostCoordinates = 8;
-/// The most joints of it that follow others.
-inline constexpr int kMostFollowers = 8;
 
 /// An arm of any size, filled up to this one: each missing coordinate turns a rotor of 1 kg m^2
 /// that stands alone on the base; each missing joint has no mass and never moves.
 using TiedTree = TreeModel<kMostCoordinates, double, kMostCoordinates + kMostFollowers>;
 
 extern template class TreeModel<kMostCoordinates, double, kMostCoordinates + kMostFollowers>;
+
+namespace detail {
+
+// filled() up to that size
+std::shared_ptr<const TiedTree> tied_tree(const ArmTree& tree);
+
+// functions of a TiedTree, compiled once: whoever has AnyTree<N> needs none of its code
+struct Tied {
+  using VecN = Vec<kMostCoordinates>;
+  using MatN = Mat<kMostCoordinates>;
+  using Both = Dynamics<kMostCoordinates>;
+
+  static MatN inertia(const TiedTree& arm, const VecN& q) noexcept;
+  static VecN gravity(const TiedTree& arm, const VecN& q) noexcept;
+  static VecN bias(const TiedTree& arm, const VecN& q, const VecN& qd) noexcept;
+  static VecN momentum_bias(const TiedTree& arm, const VecN& q, const VecN& qd) noexcept;
+  static VecN friction(const TiedTree& arm, const VecN& qd) noexcept;
+  static VecN dry_friction(const TiedTree& arm, const VecN& qd) noexcept;
+  static Both dynamics(const TiedTree& arm, const VecN& q, const VecN& qd) noexcept;
+  static Both momentum_dynamics(const TiedTree& arm, const VecN& q, const VecN& qd) noexcept;
+  static ForwardDynamics<kMostCoordinates> forward_dynamics(const TiedTree& arm, const VecN& q,
+                                                            const VecN& qd, const VecN& u) noexcept;
+  static LinearMotion<kMostCoordinates> motion(const TiedTree& arm, const VecN& q, const VecN& qd,
+                                               const VecN& u, Block<kMostCoordinates>* B) noexcept;
+};
+
+}  // namespace detail
 
 /// A TreeModel<N>, or a TiedTree of N coordinates.
 template <int N>
@@ -34,59 +57,58 @@ class AnyTree {
   /// One without tied joints.
   explicit AnyTree(const TreeModel<N>& arm) : arm_(arm) {}
   /// One with tied joints.
-  explicit AnyTree(const TiedTree& arm)
-      : arm_(typename TreeModel<N>::Parameters()), tied_(std::make_shared<const TiedTree>(arm)) {}
+  explicit AnyTree(std::shared_ptr<const TiedTree> arm)
+      : arm_(typename TreeModel<N>::Parameters()), tied_(std::move(arm)) {}
 
   // as TreeModel has them, with units and signs
 
   MatN inertia(const VecN& q) const noexcept {  ///< B(q) [kg m^2]
     if (tied_) [[unlikely]]
-      return tied<MatN>([&](const auto& arm) { return arm.inertia(wide(q)); });
+      return tied<MatN>([&] { return Tied::inertia(*tied_, wide(q)); });
     return arm_.inertia(q);
   }
   VecN gravity(const VecN& q) const noexcept {  ///< g(q) [N m]
     if (tied_) [[unlikely]]
-      return tied<VecN>([&](const auto& arm) { return arm.gravity(wide(q)); });
+      return tied<VecN>([&] { return Tied::gravity(*tied_, wide(q)); });
     return arm_.gravity(q);
   }
   VecN bias(const VecN& q, const VecN& qd) const noexcept {  ///< C qd + g [N m]
     if (tied_) [[unlikely]]
-      return tied<VecN>([&](const auto& arm) { return arm.bias(wide(q), wide(qd)); });
+      return tied<VecN>([&] { return Tied::bias(*tied_, wide(q), wide(qd)); });
     return arm_.bias(q, qd);
   }
   VecN momentum_bias(const VecN& q, const VecN& qd) const noexcept {  ///< C^T qd - g [N m]
     if (tied_) [[unlikely]]
-      return tied<VecN>([&](const auto& arm) { return arm.momentum_bias(wide(q), wide(qd)); });
+      return tied<VecN>([&] { return Tied::momentum_bias(*tied_, wide(q), wide(qd)); });
     return arm_.momentum_bias(q, qd);
   }
   VecN friction(const VecN& qd) const noexcept {  ///< F(qd) [N m]
     if (tied_) [[unlikely]]
-      return tied<VecN>([&](const auto& arm) { return arm.friction(wide(qd)); });
+      return tied<VecN>([&] { return Tied::friction(*tied_, wide(qd)); });
     return arm_.friction(qd);
   }
   VecN dry_friction(const VecN& qd) const noexcept {  ///< Coulomb's share of it [N m]
     if (tied_) [[unlikely]]
-      return tied<VecN>([&](const auto& arm) { return arm.dry_friction(wide(qd)); });
+      return tied<VecN>([&] { return Tied::dry_friction(*tied_, wide(qd)); });
     return arm_.dry_friction(qd);
   }
   /// inertia and bias, sharing the pose.
   Dynamics<N> dynamics(const VecN& q, const VecN& qd) const noexcept {
     if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>([&](const auto& arm) { return arm.dynamics(wide(q), wide(qd)); });
+      return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });
     return arm_.dynamics(q, qd);
   }
   /// inertia and momentum_bias, sharing the pose.
   Dynamics<N> momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
     if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>(
-          [&](const auto& arm) { return arm.momentum_dynamics(wide(q), wide(qd)); });
+      return tied<Dynamics<N>>([&] { return Tied::momentum_dynamics(*tied_, wide(q), wide(qd)); });
     return arm_.momentum_dynamics(q, qd);
   }
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians.
   ForwardDynamics<N> forward_dynamics(const VecN& q, const VecN& qd, const VecN& u) const noexcept {
     if (tied_) [[unlikely]]
       return tied<ForwardDynamics<N>>(
-          [&](const auto& arm) { return arm.forward_dynamics(wide(q), wide(qd), wide(u)); });
+          [&] { return Tied::forward_dynamics(*tied_, wide(q), wide(qd), wide(u)); });
     return arm_.forward_dynamics(q, qd, u);
   }
   /// The same in lanes, but without dry friction; and inertia(q), where B is asked for.
@@ -94,9 +116,8 @@ class AnyTree {
                                  detail::Block<N>* B = nullptr) const noexcept {
     if (tied_) [[unlikely]] {
       detail::Block<kMostCoordinates> inertia;
-      const auto m = tied<detail::LinearMotion<N>>([&](const auto& arm) {
-        return arm.motion(wide(q), wide(qd), wide(u), B ? &inertia : nullptr);
-      });
+      const auto m = tied<detail::LinearMotion<N>>(
+          [&] { return Tied::motion(*tied_, wide(q), wide(qd), wide(u), B ? &inertia : nullptr); });
       if (B) *B = narrow(inertia);
       return m;
     }
@@ -104,7 +125,8 @@ class AnyTree {
   }
 
  private:
-  using Wide = Vec<kMostCoordinates>;
+  using Tied = detail::Tied;
+  using Wide = Tied::VecN;
 
   static Wide wide(const VecN& v) noexcept {
     Wide w = Wide::Zero();
@@ -132,12 +154,23 @@ class AnyTree {
 
   // out of the way of an arm without tied joints
   template <class Result, class Ask>
-  [[gnu::noinline]] Result tied(Ask ask) const noexcept {
-    return narrow(ask(*tied_));
+  [[gnu::noinline]] static Result tied(Ask ask) noexcept {
+    return narrow(ask());
   }
 
   TreeModel<N> arm_;
   std::shared_ptr<const TiedTree> tied_;
 };
+
+/// The model of an arm with N coordinates, of which joints may follow others.
+/// @throws std::invalid_argument as tree_of does, for another number of coordinates, and where more
+/// than kMostFollowers joints follow others
+template <int N>
+AnyTree<N> any_tree(const Model& model) {
+  const ArmTree tree = tree_of(model);
+  detail::require_size(tree, N);
+  if (tree.joints.size() == N) return AnyTree<N>(detail::filled<TreeModel<N>>(tree));
+  return AnyTree<N>(detail::tied_tree(tree));
+}
 
 }  // namespace tauext

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/measured.h"

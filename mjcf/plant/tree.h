@@ -12,10 +12,15 @@
 #include <vector>
 
 #include "estimators/force/site_force.h"
-#include "mjcf/plant/any_tree.h"
+#include "estimators/tree/tree_model.h"
 #include "mjcf/plant/model.h"
 
 namespace tauext {
+
+/// The most coordinates of an arm from a file.
+inline constexpr int kMostCoordinates = 8;
+/// The most joints of it that follow others.
+inline constexpr int kMostFollowers = 8;
 
 /// [1/s] the quickest friction that samples of 1 ms show: it stops 40 % of a speed within one.
 inline constexpr double kQuickestFriction = 500;
@@ -74,7 +79,7 @@ namespace detail {
 /// @throws std::invalid_argument unless it has that many coordinates, and joints that fit
 void require_size(const ArmTree& tree, int coordinates);
 
-/// The model of an arm in the estimators' numbers, filled up as TiedTree says.
+/// The model of an arm in the estimators' numbers, filled up as TiedTree (any_tree.h) says.
 template <class Tree>
 Tree filled(const ArmTree& tree) {
   const auto joints = static_cast<Eigen::Index>(tree.joints.size());
@@ -101,17 +106,6 @@ TreeModel<N> tree_model(const Model& model) {
   if (tree.joints.size() != N)
     throw std::invalid_argument("joints follow others; any_tree() takes such arms");
   return detail::filled<TreeModel<N>>(tree);
-}
-
-/// The same of an arm with N coordinates, of which joints may follow others.
-/// @throws std::invalid_argument as tree_of does, for another number of coordinates, and where more
-/// than kMostFollowers joints follow others
-template <int N>
-AnyTree<N> any_tree(const Model& model) {
-  const ArmTree tree = tree_of(model);
-  detail::require_size(tree, N);
-  if (tree.joints.size() == N) return AnyTree<N>(detail::filled<TreeModel<N>>(tree));
-  return AnyTree<N>(detail::filled<TiedTree>(tree));
 }
 
 }  // namespace tauext

@@ -1,112 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// An arm that nothing but prescribed forces acts on, simulated by the estimators' own dynamics:
-/// the equation (3) and the RK4 of Plant, in a tenth of the time.
+/// An arm that nothing but prescribed forces acts on, simulated by the estimators' own dynamics, in
+/// a tenth of the time.
 #pragma once
 
 #include <Eigen/Core>
-#include <utility>
+#include <memory>
 #include <vector>
 
-#include "estimators/math/ldlt.h"
-#include "estimators/tree/tree_model.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
-#include "mjcf/plant/tree.h"
+#include "mjcf/simulation/tree_motion.h"
 #include "mjcf/trace/screw.h"
 
 namespace tauext {
 
-/// As Plant, of an arm of N joints; functions of the same name mean the same.
-template <int N>
+/// As Plant; functions of the same name mean the same.
 class TreePlant {
  public:
-  using Vector = Vec<N>;  ///< a number of each joint
+  using Vector = TreeState::Vector;  ///< a number of each joint
 
-  /// @throws std::invalid_argument for an arm of another number of joints
-  explicit TreePlant(PlainArm plain)
-      : plain_(std::move(plain)),
-        arm_(detail::filled<TreeModel<N>>(plain_.tree)),
-        end_(plain_.tree.point(kEndEffector)) {
-    detail::require_size(plain_.tree, N);
-  }
+  /// The motion is that of the arm.
+  TreePlant(PlainArm arm, std::unique_ptr<const TreeMotion> motion);
 
-  int dof() const { return N; }  ///< joints
+  int dof() const { return arm_.tree.dof(); }  ///< joints
   /// Empty if the robot has none.
-  const std::vector<Screw>& screws() const { return plain_.screws; }
+  const std::vector<Screw>& screws() const { return arm_.screws; }
 
   /// At q [rad], qd [rad/s], at rest from inputs.
-  void set_state(const Vector& q, const Vector& qd) {
-    q_ = q, qd_ = qd;
-    tau_.setZero(), tau_ext_.setZero();
-    look();
-  }
+  void set_state(const Vector& q, const Vector& qd);
   /// Applies tau [N m], clipped, and tau_ext [N m, sign of (3)] from now on.
-  void set_input(const Vector& tau, const Vector& tau_ext) {
-    tau_ = tau.cwiseMax(Vector(plain_.least)).cwiseMin(Vector(plain_.most));
-    tau_ext_ = tau_ext;
-    qdd_ = solved(terms_, friction_);
-  }
+  void set_input(const Vector& tau, const Vector& tau_ext);
 
-  const Vector& q() const { return q_; }                ///< [rad]
-  const Vector& qd() const { return qd_; }              ///< [rad/s]
-  const Vector& tau() const { return tau_; }            ///< [N m] as applied, clipped
-  const Vector& tau_ext() const { return tau_ext_; }    ///< [N m] the input
-  const Vector& qdd() const { return qdd_; }            ///< [rad/s^2] under the present input
-  const Mat<N>& inertia() const { return terms_.B; }    ///< B [kg m^2]
-  const Vector& bias() const { return terms_.bias; }    ///< C qd + g [N m]
-  const Vector& damping() const { return friction_; }   ///< F [N m], all of which is smooth
-  const Vector& friction() const { return friction_; }  ///< the same
-  double contact_force() const { return 0; }            ///< [N] nothing touches it
+  const Vector& q() const { return s_.q; }                   ///< [rad]
+  const Vector& qd() const { return s_.qd; }                 ///< [rad/s]
+  const Vector& tau() const { return s_.tau; }               ///< [N m] as applied, clipped
+  const Vector& tau_ext() const { return s_.tau_ext; }       ///< [N m] the input
+  const Vector& qdd() const { return s_.qdd; }               ///< [rad/s^2] under the present input
+  const TreeState::Matrix& inertia() const { return s_.B; }  ///< B [kg m^2]
+  const Vector& bias() const { return s_.bias; }             ///< C qd + g [N m]
+  const Vector& damping() const { return s_.friction; }      ///< F [N m], all of which is smooth
+  const Vector& friction() const { return s_.friction; }     ///< the same
+  double contact_force() const { return 0; }                 ///< [N] nothing touches it
 
-  /// The point that touches the outside.
-  Point end_effector() const {
-    const Vec<3> at = arm_.position(q_, end_.joint, end_.place);
-    return {plain_.tree.base + at, jacobian() * qd_};
-  }
+  Point end_effector() const;  ///< the point that touches the outside
   /// -J^T f [N m] of a force f [N, world frame] on the arm at its end effector.
-  Vector tau_ext_of(const Eigen::Vector3d& f) const { return -jacobian().transpose() * f; }
+  Vector tau_ext_of(const Eigen::Vector3d& f) const { return motion_->tau_ext_of(s_, f); }
 
   /// Whether MuJoCo has to take over: near a limit of a joint, or far from anywhere.
-  bool is_lost() const {
-    const auto& p = arm_.parameters();
-    const Vector rho = p.drho * q_ + p.rho0;
-    return !(rho.array() > plain_.lowest.array()).all() ||
-           !(rho.array() < plain_.highest.array()).all() || !qd_.allFinite();
-  }
+  bool is_lost() const;
 
-  /// Integrates over h [s] by RK4, input held.
-  void step(double h) {
-    const Vector v1 = qd_, a1 = qdd_;
-    const Vector v2 = qd_ + h / 2 * a1, a2 = acceleration(q_ + h / 2 * v1, v2);
-    const Vector v3 = qd_ + h / 2 * a2, a3 = acceleration(q_ + h / 2 * v2, v3);
-    const Vector v4 = qd_ + h * a3, a4 = acceleration(q_ + h * v3, v4);
-    q_ += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
-    qd_ += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    look();
-  }
+  void step(double h) { motion_->step(s_, h); }  ///< integrates over h [s] by RK4, input held
 
  private:
-  void look() {
-    terms_ = arm_.dynamics(q_, qd_);
-    friction_ = arm_.friction(qd_);
-    qdd_ = solved(terms_, friction_);
-  }
-  Eigen::Matrix<double, 3, N> jacobian() const {
-    return arm_.jacobian(q_, end_.joint, end_.place).template topRows<3>();
-  }
-  Vector solved(const Dynamics<N>& d, const Vector& friction) const {
-    return Ldlt<N>(d.B).solve(Vector(tau_ - tau_ext_ - d.bias - friction));
-  }
-  Vector acceleration(const Vector& q, const Vector& qd) const {
-    return solved(arm_.dynamics(q, qd), arm_.friction(qd));
-  }
-
-  PlainArm plain_;
-  TreeModel<N> arm_;
-  ArmPoint end_;
-  Dynamics<N> terms_;
-  Vector q_, qd_, tau_, tau_ext_, qdd_, friction_;
+  PlainArm arm_;
+  std::unique_ptr<const TreeMotion> motion_;
+  TreeState s_;
+  Vector least_, most_;      // [N m] what the motors can do
+  TreeState::Matrix drho_;   // of the tree
+  Vector lowest_, highest_;  // [rad] or [m] of rho - rho0
 };
 
 }  // namespace tauext

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/simulated.h"
-#include "mjcf/plant/tree.h"
 #include "mjcf/record.h"
 #include "mjcf/test/error_of.h"
 

@@ -11,11 +11,11 @@
 #include <fstream>
 #include <string>
 
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model_error.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/test/arm_dynamics.h"
-#include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/simulation/tree_plant.h"
+
+#include <utility>
+
+namespace tauext {
+
+TreePlant::TreePlant(PlainArm arm, std::unique_ptr<const TreeMotion> motion)
+    : arm_(std::move(arm)),
+      motion_(std::move(motion)),
+      s_(arm_.tree.dof()),
+      least_(arm_.least),
+      most_(arm_.most),
+      drho_(arm_.tree.drho),
+      lowest_(arm_.lowest - arm_.tree.rho0),
+      highest_(arm_.highest - arm_.tree.rho0) {}
+
+void TreePlant::set_state(const Vector& q, const Vector& qd) {
+  s_.q = q, s_.qd = qd;
+  s_.tau.setZero(), s_.tau_ext.setZero();
+  motion_->look(s_);
+}
+
+void TreePlant::set_input(const Vector& tau, const Vector& tau_ext) {
+  s_.tau = tau.cwiseMax(least_).cwiseMin(most_);
+  s_.tau_ext = tau_ext;
+  motion_->accelerate(s_);
+}
+
+Point TreePlant::end_effector() const {
+  Point end = motion_->end_effector(s_);
+  end.position += arm_.tree.base;
+  return end;
+}
+
+bool TreePlant::is_lost() const {
+  const Vector moved = drho_ * s_.q;
+  return !(moved.array() > lowest_.array()).all() || !(moved.array() < highest_.array()).all() ||
+         !s_.qd.allFinite();
+}
+
+}  // namespace tauext
