@@ -11,21 +11,35 @@ namespace {
 
 constexpr double kRefractory = 0.2;  // [s] between two crossings of a level
 
-// times [s] at which the score rises through each level
-std::array<std::vector<double>, kLevels.size()> crossings(const Trace& t,
-                                                          const std::vector<Detection>& d) {
-  std::array<std::vector<double>, kLevels.size()> at;
+struct Mark {
+  double t;
+  Contact contact;
+};
+
+// what a detector said of samples that count
+struct Said {
+  std::vector<Mark> marks;
+  std::array<std::vector<double>, kLevels.size()> rises;  // [s] where the score rose through each
+  long samples = 0, alarmed = 0;                          // all; with a score of at least 1
+};
+
+Said said(const Trace& t, const std::vector<Detection>& d) {
+  Said all;
   std::size_t below = kLevels.size();  // the first level above the score; nothing rises at first
   for (std::size_t k = 0; k < d.size(); ++k) {
-    std::size_t now = 0;
-    while (now < kLevels.size() && d[k].score >= kLevels[now]) ++now;
-    for (; below < now; ++below) {
-      const bool late = at[below].empty() || t.t[k] - at[below].back() >= kRefractory;
-      if (late && t.t[k] >= kScoreFrom) at[below].push_back(t.t[k]);
+    const double now = t.t[k], score = d[k].score;
+    const bool counts = now >= kScoreFrom;
+    for (; below < kLevels.size() && score >= kLevels[below]; ++below) {
+      std::vector<double>& at = all.rises[below];
+      if (counts && (at.empty() || now - at.back() >= kRefractory)) at.push_back(now);
     }
-    below = now;
+    while (below > 0 && !(score >= kLevels[below - 1])) --below;
+    if (!counts) continue;
+    ++all.samples;
+    all.alarmed += score >= 1;
+    if (d[k].mark) all.marks.push_back({now, d[k].contact});
   }
-  return at;
+  return all;
 }
 
 bool belongs_to(double mark, const Touch& touch) {
@@ -38,22 +52,8 @@ int count_detected(const std::vector<double>& marks, const std::vector<Touch>& t
   }));
 }
 
-struct Mark {
-  double t;
-  Contact contact;
-};
-
-std::vector<Mark> marks_of(const Trace& t, const std::vector<Detection>& d) {
-  std::vector<Mark> marks;
-  for (std::size_t k = 0; k < d.size(); ++k) {
-    if (d[k].mark && t.t[k] >= kScoreFrom) marks.push_back({t.t[k], d[k].contact});
-  }
-  return marks;
-}
-
-void count_blows(const Trace& t, const std::vector<Detection>& d, const std::vector<Touch>& touches,
-                 Cell& cell) {
-  const std::vector<Mark> marks = marks_of(t, d);
+void count_blows(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = said.marks;
   int belonging = 0;
   for (const Touch& touch : touches) {
     const auto mine = [&](const Mark& m) { return belongs_to(m.t, touch); };
@@ -64,27 +64,23 @@ void count_blows(const Trace& t, const std::vector<Detection>& d, const std::vec
   cell.blows += static_cast<int>(touches.size());
   cell.detected = static_cast<int>(cell.delays.size());
   cell.stray += static_cast<int>(marks.size()) - belonging;
-  const auto at = crossings(t, d);
-  for (std::size_t i = 0; i < at.size(); ++i) cell.detected_at[i] += count_detected(at[i], touches);
+  for (std::size_t i = 0; i < kLevels.size(); ++i)
+    cell.detected_at[i] += count_detected(said.rises[i], touches);
 }
 
-void count_alarms(const Trace& t, const std::vector<Detection>& d, Cell& cell) {
-  for (const Mark& m : marks_of(t, d)) {
+void count_alarms(const Said& said, Cell& cell) {
+  for (const Mark& m : said.marks) {
     ++cell.alarms;
     cell.collision_alarms += m.contact == Contact::kCollision;
   }
-  for (std::size_t k = 0; k < d.size(); ++k) {
-    if (t.t[k] < kScoreFrom) continue;
-    ++cell.quiet_samples;
-    cell.alarmed_samples += d[k].score >= 1;
-  }
-  const auto at = crossings(t, d);
-  for (std::size_t i = 0; i < at.size(); ++i) cell.alarms_at[i] += static_cast<int>(at[i].size());
+  cell.quiet_samples += said.samples;
+  cell.alarmed_samples += said.alarmed;
+  for (std::size_t i = 0; i < kLevels.size(); ++i)
+    cell.alarms_at[i] += static_cast<int>(said.rises[i].size());
 }
 
-void count_brisk(const Trace& t, const std::vector<Detection>& d, const std::vector<Touch>& touches,
-                 Cell& cell) {
-  const std::vector<Mark> marks = marks_of(t, d);
+void count_brisk(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = said.marks;
   for (const Touch& touch : touches) {
     ++cell.brisk;
     cell.brisk_flagged += std::any_of(marks.begin(), marks.end(),
@@ -92,9 +88,8 @@ void count_brisk(const Trace& t, const std::vector<Detection>& d, const std::vec
   }
 }
 
-void count_clampings(const Trace& t, const std::vector<Detection>& d,
-                     const std::vector<Touch>& touches, Cell& cell) {
-  const std::vector<Mark> marks = marks_of(t, d);
+void count_clampings(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = said.marks;
   for (const Touch& touch : touches) {
     // caught in time: before it lets go
     const auto within = [&](const Mark& m) {
@@ -112,15 +107,16 @@ void count_clampings(const Trace& t, const std::vector<Detection>& d,
 
 void count(TouchKind kind, const Trace& t, const std::vector<Detection>& d,
            const std::vector<Touch>& touches, Cell& cell) {
+  const Said what = said(t, d);
   switch (kind) {
     case TouchKind::kBlow:
-      return count_blows(t, d, touches, cell);
+      return count_blows(what, touches, cell);
     case TouchKind::kSlowPush:
-      return count_alarms(t, d, cell);
+      return count_alarms(what, cell);
     case TouchKind::kBriskPush:
-      return count_brisk(t, d, touches, cell);
+      return count_brisk(what, touches, cell);
     case TouchKind::kClamp:
-      return count_clampings(t, d, touches, cell);
+      return count_clampings(what, touches, cell);
   }
 }
 
