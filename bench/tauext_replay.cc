@@ -81,19 +81,21 @@ class TorqueCheck {
       const std::string by_log = log.torque_at_instants ? "instant" : "held";
       assumed_[key_of(e, "torque").value_or(by_log) == "instant"] = true;
     }
+    if (!assumed_[0] && !assumed_[1]) return;
     for (const char* torque : {"held", "instant"})
       observers_.push_back(
           r.stepper(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", Trace()));
   }
 
   void take(const RecordedSample& y) {
-    Status status = Status::kOk;
-    for (std::size_t i = 0; i < 2; ++i)
-      status = observers_[i]
-                   ->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data())
-                   .status;
-    if (status == Status::kOk && !y.contact)
-      weigher_.take(estimates_[0].data(), estimates_[1].data());
+    if (observers_.empty()) return;
+    bool ok = !y.contact;
+    for (std::size_t i = 0; i < observers_.size(); ++i) {
+      const Stepped s =
+          observers_[i]->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data());
+      ok = ok && s.status == Status::kOk;
+    }
+    if (ok) weigher_.take(estimates_[0].data(), estimates_[1].data());
   }
 
   void report(const Regularity& log) const {
@@ -192,12 +194,12 @@ int replay(Flags& f) {
   r.require_joints(contents.dof, f.log);
   log.use_gains(r.gains());
 
-  Trace truth;  // which some estimators copy, and no others have in memory
+  Trace truth;  // truth and delayed_truth copy it; nothing else needs the log in memory
   if (contents.has_truth && std::any_of(f.estimators.begin(), f.estimators.end(), needs_truth)) {
     LogReader again(f.log, options);
     truth = trace_of(again);
   }
-  truth.torque_at_instants = contents.torque_at_instants;
+  truth.torque_at_instants = contents.torque_at_instants;  // which a stepper looks at
   std::vector<Replayed> all;
   for (std::size_t i = 0; i < f.estimators.size(); ++i) {
     const std::string& e = f.estimators[i];

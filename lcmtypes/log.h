@@ -31,7 +31,7 @@ class LogBuffer {
   std::uint64_t events_ = 0;
 };
 
-/// One message of a log; views are valid during the call.
+/// One message of a log; its views are valid until the next one is read.
 struct LogEvent {
   std::int64_t utime = 0;    ///< [us]
   std::string_view channel;  ///< its name

@@ -31,7 +31,8 @@ double difference(const Trace& a, const Trace& b) {
   for (const auto of :
        {&Trace::q, &Trace::qd, &Trace::qdd, &Trace::tau, &Trace::tau_ext, &Trace::friction}) {
     const double size = std::max((a.*of).cwiseAbs().maxCoeff(), 1e-3);
-    largest = std::max(largest, (a.*of - b.*of).cwiseAbs().maxCoeff() / size);
+    const double off = (a.*of - b.*of).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / size;
+    if (!(off <= largest)) largest = off;
   }
   return largest;
 }

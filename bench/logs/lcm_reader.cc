@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <deque>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -28,7 +27,7 @@ struct Census {
     std::int64_t readings = 0, with_truth = 0, of_sender = 0;
   };
   std::array<Of, kMaxJoints + 1> of{};
-  std::int64_t messages = 0;
+  std::int64_t messages = 0;  // from the first one on that is of a type that we know
 
   int joints() const {  // of most
     const auto most = std::max_element(
@@ -138,8 +137,7 @@ struct LcmReader::Impl {
   // one false time lay far ahead, to which all after it were late
   void believe_late() {
     used.pop_back();
-    const std::int64_t before = used.empty() ? given_utime : used.back().utime;
-    if (before >= late.front().utime) {
+    if (!used.empty() && used.back().utime >= late.front().utime) {
       throw std::runtime_error(fmt::format(
           "{}: time goes back on channel {}: the sender was restarted, or there are several; "
           "give it one run a log",
@@ -155,17 +153,17 @@ struct LcmReader::Impl {
     while (!ended && used.size() <= 2) ended = !take();
     if (used.empty()) return false;
     r = used.front();
-    given_utime = r.utime;
     used.pop_front();
     return true;
   }
 
-  void finish() {
-    if (std::exchange(finished, true)) return;
-    found.faults = events.faults();
-    found.two_arms = arrivals.counts().two_arms;
-    found.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
-    found.lost = arrivals.counts().lost;
+  LogReport report() const {
+    LogReport all = found;
+    all.faults = events.faults();
+    all.two_arms = arrivals.counts().two_arms;
+    all.out_of_order += arrivals.counts().late + arrivals.counts().repeated;
+    all.lost = arrivals.counts().lost;
+    return all;
   }
 
   void fill(const Reading& r, RecordedSample& s) {
@@ -189,9 +187,9 @@ struct LcmReader::Impl {
   RecordingContents contents;
   LogReport found;
   Arrivals arrivals;
-  std::deque<Reading> used, late;  // of which the last but one may still turn out wrong
-  std::int64_t given_utime = std::numeric_limits<std::int64_t>::min();
-  bool ended = false, finished = false;
+  std::deque<Reading> used;  // not yet handed out; the last one may still turn out wrong
+  std::deque<Reading> late;  // since then
+  bool ended = false;
   double newest = -1, origin = 0;  // [s]
   RegularityCounter counter;
 };
@@ -206,8 +204,8 @@ const RecordingContents& LcmReader::contents() const {
 const Regularity& LcmReader::regularity() const {
   return impl_->counter.so_far();
 }
-const LogReport& LcmReader::report() const {
-  return impl_->found;
+LogReport LcmReader::report() const {
+  return impl_->report();
 }
 
 bool LcmReader::next(RecordedSample& s) {
@@ -221,7 +219,6 @@ bool LcmReader::next(RecordedSample& s) {
     impl_->fill(r, s);
     return true;
   }
-  impl_->finish();
   return false;
 }
 

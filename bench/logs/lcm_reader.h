@@ -25,9 +25,10 @@ struct LogReport {
   std::string in_words() const;
 };
 
-/// A log's measurements on one channel, of most of its messages' number of joints, in the order in
-/// which an estimator would have got them. Times count from 0 if they are those of a wall clock
-/// (more than 10^8 s).
+/// A log's measurements on one channel, in the order in which an estimator would have got them.
+/// Messages of another number of joints than most have are rejected. It has a truth, or the
+/// driver's estimate, if all good messages have. Times count from 0 if they are those of a wall
+/// clock (more than 10^8 s).
 class LcmReader final : public SampleSource {
  public:
   /// @param channel by its name, or "" for the only one that has any (of several, TAUEXT_SAMPLE)
@@ -39,7 +40,7 @@ class LcmReader final : public SampleSource {
   const RecordingContents& contents() const override;
   bool next(RecordedSample& sample) override;
   const Regularity& regularity() const override;
-  const LogReport& report() const;  ///< of what was read so far
+  LogReport report() const;  ///< of what was read so far
 
  private:
   struct Impl;

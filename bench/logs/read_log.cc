@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -42,23 +43,19 @@ class UnitDoubt {
   explicit UnitDoubt(int joints)
       : least_(VectorXd::Constant(joints, kNever)), most_(-least_), joints_(joints) {}
 
-  // the next sample; gaps are those that its source has seen so far
-  void take(const Sample& s, std::int64_t gaps) {
+  // the next sample
+  void take(const Sample& s) {
     least_ = least_.cwiseMin(s.q);
     most_ = most_.cwiseMax(s.q);
     if (samples_++ == 0) from_ = s.t;
-    const double h = s.t - to_;
     to_ = s.t;
-    const bool gap = gaps > std::exchange(gaps_, gaps);
-    if (gap && steps_ == 1 && h < first_) {  // it was the first one, and this is none
-      std::fill(joints_.begin(), joints_.end(), Joint());
-      steps_ = 0;
-    } else if (gap) {
-      hold(s);
-      return;  // over a gap qd says nothing
-    }
-    if (samples_ > 1) take_step(s, h);
-    hold(s);
+    if (longest_ > 0) return take_step(s);
+    first_.push_back(s);
+    if (first_.size() == kFirst) settle();
+  }
+  // no more samples follow
+  void finish() {
+    if (first_.size() > 1) settle();
   }
 
   const VectorXd& least() const { return least_; }
@@ -119,27 +116,47 @@ class UnitDoubt {
     return alike && (xy > 2 * xx || xy < 0.5 * xx);
   }
 
-  void take_step(const Sample& s, double h) {
-    if (steps_++ == 0) first_ = h;
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-      const auto at = static_cast<Eigen::Index>(j);
-      const double x = h * (s.qd[at] + qd_[at]) / 2, y = s.q[at] - q_[at];
-      joints_[j].xx += x * x, joints_[j].xy += x * y, joints_[j].yy += y * y;
-    }
+  // takes the first samples, whose median step tells what a gap is
+  void settle() {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < first_.size(); ++k) steps.push_back(first_[k].t - first_[k - 1].t);
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    longest_ = 5 * *middle;
+    last_ = first_.front();
+    for (std::size_t k = 1; k < first_.size(); ++k) take_step(first_[k]);
+    first_.clear();
   }
 
-  void hold(const Sample& s) { q_ = s.q, qd_ = s.qd; }
+  void take_step(const Sample& s) {
+    const double h = s.t - last_.t;
+    for (std::size_t j = 0; j < joints_.size() && h <= longest_; ++j) {
+      const auto at = static_cast<Eigen::Index>(j);
+      const double x = h * (s.qd[at] + last_.qd[at]) / 2, y = s.q[at] - last_.q[at];
+      joints_[j].xx += x * x, joints_[j].xy += x * y, joints_[j].yy += y * y;
+    }
+    last_ = s;
+  }
 
-  VectorXd least_, most_, q_, qd_;
+  static constexpr std::size_t kFirst = 1000;
+
+  VectorXd least_, most_;
   std::vector<Joint> joints_;
-  std::int64_t samples_ = 0, steps_ = 0, gaps_ = 0;
-  double from_ = 0, to_ = 0, first_ = 0;  // [s]
+  std::vector<Sample> first_;  // until they are kFirst, or all
+  Sample last_;
+  std::int64_t samples_ = 0;
+  double longest_ = 0;        // [s] over a gap qd says nothing; 0 until settle()
+  double from_ = 0, to_ = 0;  // [s]
 };
 
 }  // namespace detail
 
 struct LogReader::Impl {
   Impl(const std::string& p, const LogOptions& o) : path(p), mapped(!o.columns.empty()) {
+    if (std::filesystem::is_fifo(path))
+      throw std::runtime_error(path +
+                               ": is a pipe, and a log is read from its begin more than "
+                               "once: save it to a file first");
     if (is_lcm_log(path)) {
       if (mapped)
         throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
@@ -196,15 +213,18 @@ bool LogReader::contradicts() const {
 }
 
 bool LogReader::next(RecordedSample& s) {
-  if (!impl_->source->next(s)) return false;
+  if (!impl_->source->next(s)) {
+    impl_->doubt->finish();
+    return false;
+  }
   if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
-  impl_->doubt->take(s, regularity().gaps);
+  impl_->doubt->take(s);
   return true;
 }
 
 std::int64_t LogReader::skipped() const {
   if (impl_->rows) return impl_->rows->skipped().total();
-  const LogReport& found = impl_->lcm->report();
+  const LogReport found = impl_->lcm->report();
   return found.rejected + found.out_of_order;
 }
 

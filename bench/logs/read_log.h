@@ -19,7 +19,8 @@ struct LogOptions {
   std::string channel;
   /// of any other log a preset or a TOML file of mjcf/trace/read/column_map.h; "": ours
   std::string columns;
-  bool currents = false;  ///< whether tau may be currents, which Robot::make_torques() then mends
+  bool currents =
+      false;  ///< whether tau may be currents, which LogReader::use_gains() or Robot::make_torques() then mends
 };
 
 /// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag, sample by sample.
@@ -43,8 +44,8 @@ class LogReader final : public SampleSource {
   /// Says on standard error, at the end, what was skipped, what is irregular in it, and what can
   /// hardly be in the units of a Trace.
   void report() const;
-  /// Whether a joint moves at least twice as fast as its qd says, at most half as fast, or the
-  /// other way.
+  /// At the end: whether a joint moves at least twice as fast as its qd says, at most half as fast,
+  /// or the other way.
   bool contradicts() const;
   /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
   bool usable() const { return skipped() <= regularity().samples && !contradicts(); }
@@ -59,7 +60,7 @@ struct RecordedLog {
   Trace trace;               ///< what could be used
   std::int64_t skipped = 0;  ///< rows, or messages of the channel
   bool contradicts = false;  ///< as LogReader says
-  /// Likewise.
+  /// Whether most of it could be used, and q and qd agree.
   bool usable() const { return skipped <= trace.size() && !contradicts; }
   /// Asked by programs that write down what they learn from it.
   /// @throws std::invalid_argument if q and qd contradict each other

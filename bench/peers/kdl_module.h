@@ -17,7 +17,7 @@ namespace tauext::peers {
 using MakeStage = void* (*)(int n, const char* kind, const void* arm, const void* ekf, double w);
 
 /// Writes B (n x n) [kg m^2] and C qd + g [N m] of the arm at q [rad], qd [rad/s].
-/// @returns false for another n
+/// @returns false unless n is 3, 6 or 7
 using Terms = bool (*)(int n, const void* arm, const double* q, const double* qd, double* B,
                        double* bias);
 

@@ -48,8 +48,8 @@ class KdlMomentum {
   Vec<N> tau_, p_, n_;
 };
 
-/// The momentum observer r = K (p - integral of n + r) of momentum_observer.h's sources, tau_ext =
-/// -r.
+/// The momentum observer of momentum_observer.h's sources, r = K (p - p(0) - integral of (n + r)),
+/// tau_ext = -r.
 template <int N>
 class KdlMomentumObserver {
  public:

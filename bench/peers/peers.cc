@@ -32,11 +32,11 @@ struct Entry {
   std::vector<double> rounds;  // [s]
 };
 
+// [N m] of the worst joint
 double rmse(const Trace& trace, const Output& out, double from) {
-  double worst = 0;
-  for (int j = 0; j < trace.dof(); ++j)
-    worst = std::max(worst, metrics::rmse(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j), from));
-  return worst;
+  Score score;
+  add_error_metrics(trace, out, from, score);
+  return score.get(Metric::kRmse).value_or(kNoValue);
 }
 
 template <int N>

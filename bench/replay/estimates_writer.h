@@ -11,7 +11,8 @@
 
 namespace tauext {
 
-/// Takes estimates as they come. The file appears whole, by commit(), or not at all.
+/// Takes estimates as they come. A file appears whole, by commit(), or not at all; standard output
+/// and pipes get rows at once.
 class EstimatesWriter {
  public:
   virtual ~EstimatesWriter() = default;
@@ -22,10 +23,10 @@ class EstimatesWriter {
   virtual void commit() = 0;
 };
 
-/// A CSV with a row for each sample: t, and of each estimator its tau_ext, status, mark and forces,
-/// each number in as many digits as tell it from others; standard output if the path is "-". Or a
-/// .npz with the arrays t, NAME_tau_ext, NAME_status, the marks, and NAME_force, NAME_moment and
-/// NAME_link, which lies in memory until commit().
+/// A CSV with a row for each sample: t, and of each estimator its tau_ext, status, mark and forces;
+/// t and tau_ext in as many digits as tell them from others, forces in nine. Standard output if the
+/// path is "-". Or a .npz with the arrays t, NAME_tau_ext, NAME_status, the marks, and NAME_force,
+/// NAME_moment and NAME_link, which lies in memory until commit().
 /// @param all those whose estimates will come
 /// @throws std::runtime_error naming the path
 std::unique_ptr<EstimatesWriter> estimates_writer(const std::string& path,

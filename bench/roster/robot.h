@@ -73,13 +73,14 @@ class Robot {
   /// Makes torques of currents, by the gains of the robot's file.
   /// @throws std::invalid_argument as tauext::make_torques()
   void make_torques(Trace& trace) const;
-  /// @throws std::invalid_argument unless these are its joints; naming the log, if it is one
+  /// @throws std::invalid_argument for samples of another number of joints, naming the log unless
+  /// it is ""
   void require_joints(int joints, const std::string& log = "") const;
   /// @throws std::invalid_argument naming the log where its q, from least to most [rad], goes far
   /// outside the range of a joint
   void require_range(const Eigen::VectorXd& least, const Eigen::VectorXd& most,
                      const std::string& log) const;
-  /// The first of a trace, and the second if it is a log.
+  /// Both of a log's trace; of one that is no log ("") the number of joints alone.
   void require_joints(const Trace& trace, const std::string& log) const;
   /// [N m/A] of each drive; 0 where nobody says.
   Eigen::VectorXd gains() const;

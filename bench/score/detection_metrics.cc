@@ -108,10 +108,7 @@ Interval share_interval(int found, int all) {
 
 void add_detection_metrics(const Trace& trace, const Output& out, Score& score) {
   if (out.marks.empty() || trace.contact.empty()) return;
-  add_detection_metrics(metrics::detection_score(trace.t, trace.contact, out.marks), score);
-}
-
-void add_detection_metrics(const metrics::DetectionScore& d, Score& score) {
+  const metrics::DetectionScore d = metrics::detection_score(trace.t, trace.contact, out.marks);
   score.collisions = d.collisions;
   if (d.collisions > 0) {
     score.set(Metric::kDelay, d.delay);

@@ -28,7 +28,8 @@ struct DetectionScore {
   double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
   double false_alarms_per_hour = 0;  ///< [1/h]
 };
-/// Takes samples as they come.
+
+/// The same score, of samples that come one by one.
 class DetectionCounter {
  public:
   /// The next one, at t [s]: whether a contact acts, and whether the detector marks it.
@@ -75,9 +76,6 @@ double quantile(std::vector<double> values, double share);
 double poisson_upper(int count);
 
 }  // namespace metrics
-
-/// What these marks are worth.
-void add_detection_metrics(const metrics::DetectionScore& marks, Score& score);
 
 /// The trace's contacts against the output's marks; nothing without a detector or without known
 /// contacts.

@@ -17,14 +17,14 @@ struct Mark {
 };
 
 // what a detector said of samples that count
-struct Said {
+struct Answers {
   std::vector<Mark> marks;
   std::array<std::vector<double>, kLevels.size()> rises;  // [s] where the score rose through each
   long samples = 0, alarmed = 0;                          // all; with a score of at least 1
 };
 
-Said said(const Trace& t, const std::vector<Detection>& d) {
-  Said all;
+Answers answers_of(const Trace& t, const std::vector<Detection>& d) {
+  Answers all;
   std::size_t below = kLevels.size();  // the first level above the score; nothing rises at first
   for (std::size_t k = 0; k < d.size(); ++k) {
     const double now = t.t[k], score = d[k].score;
@@ -52,8 +52,8 @@ int count_detected(const std::vector<double>& marks, const std::vector<Touch>& t
   }));
 }
 
-void count_blows(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
-  const std::vector<Mark>& marks = said.marks;
+void count_blows(const Answers& answers, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = answers.marks;
   int belonging = 0;
   for (const Touch& touch : touches) {
     const auto mine = [&](const Mark& m) { return belongs_to(m.t, touch); };
@@ -65,22 +65,22 @@ void count_blows(const Said& said, const std::vector<Touch>& touches, Cell& cell
   cell.detected = static_cast<int>(cell.delays.size());
   cell.stray += static_cast<int>(marks.size()) - belonging;
   for (std::size_t i = 0; i < kLevels.size(); ++i)
-    cell.detected_at[i] += count_detected(said.rises[i], touches);
+    cell.detected_at[i] += count_detected(answers.rises[i], touches);
 }
 
-void count_alarms(const Said& said, Cell& cell) {
-  for (const Mark& m : said.marks) {
+void count_alarms(const Answers& answers, Cell& cell) {
+  for (const Mark& m : answers.marks) {
     ++cell.alarms;
     cell.collision_alarms += m.contact == Contact::kCollision;
   }
-  cell.quiet_samples += said.samples;
-  cell.alarmed_samples += said.alarmed;
+  cell.quiet_samples += answers.samples;
+  cell.alarmed_samples += answers.alarmed;
   for (std::size_t i = 0; i < kLevels.size(); ++i)
-    cell.alarms_at[i] += static_cast<int>(said.rises[i].size());
+    cell.alarms_at[i] += static_cast<int>(answers.rises[i].size());
 }
 
-void count_brisk(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
-  const std::vector<Mark>& marks = said.marks;
+void count_brisk(const Answers& answers, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = answers.marks;
   for (const Touch& touch : touches) {
     ++cell.brisk;
     cell.brisk_flagged += std::any_of(marks.begin(), marks.end(),
@@ -88,8 +88,8 @@ void count_brisk(const Said& said, const std::vector<Touch>& touches, Cell& cell
   }
 }
 
-void count_clampings(const Said& said, const std::vector<Touch>& touches, Cell& cell) {
-  const std::vector<Mark>& marks = said.marks;
+void count_clampings(const Answers& answers, const std::vector<Touch>& touches, Cell& cell) {
+  const std::vector<Mark>& marks = answers.marks;
   for (const Touch& touch : touches) {
     // caught in time: before it lets go
     const auto within = [&](const Mark& m) {
@@ -107,16 +107,16 @@ void count_clampings(const Said& said, const std::vector<Touch>& touches, Cell& 
 
 void count(TouchKind kind, const Trace& t, const std::vector<Detection>& d,
            const std::vector<Touch>& touches, Cell& cell) {
-  const Said what = said(t, d);
+  const Answers answers = answers_of(t, d);
   switch (kind) {
     case TouchKind::kBlow:
-      return count_blows(what, touches, cell);
+      return count_blows(answers, touches, cell);
     case TouchKind::kSlowPush:
-      return count_alarms(what, cell);
+      return count_alarms(answers, cell);
     case TouchKind::kBriskPush:
-      return count_brisk(what, touches, cell);
+      return count_brisk(answers, touches, cell);
     case TouchKind::kClamp:
-      return count_clampings(what, touches, cell);
+      return count_clampings(answers, touches, cell);
   }
 }
 

@@ -128,6 +128,20 @@ TEST_F(Programs, ReplayTakesTheTorqueAsTheLogsColumnsSay) {
   EXPECT_TRUE(rows(told) != rows(held));
 }
 
+TEST_F(Programs, ReplaySaysWhereTheTorqueIsReadTheWrongWay) {
+  ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario free --out log.csv").code, 0);
+  const std::string replay = "tauext-replay log.csv --robot wallmobot3 --out est.csv --estimator ";
+  const std::string seems = "tau seems to be";
+  EXPECT_TRUE(run(replay + "mo1 --torque instant").says("tau seems to be held from each t"));
+  EXPECT_FALSE(run(replay + "mo1").says(seems));
+  EXPECT_FALSE(run(replay + "zero").says(seems)) << "which reads no torque";
+  std::string log = content("log.csv");  // in contact all the time, it tells nothing
+  for (std::size_t at = log.find('\n'); (at = log.find(",0\n", at)) != log.npos; ++at)
+    log.replace(at, 3, ",1\n");
+  write("log.csv", log);
+  EXPECT_FALSE(run(replay + "mo1 --torque instant").says(seems));
+}
+
 TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
   write("empty.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\nx\n");
@@ -146,6 +160,11 @@ TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   EXPECT_EQ(npy.code, 2);
   EXPECT_TRUE(npy.says("--out est.npy: estimates are written as CSV, or to an .npz")) << npy.text;
   EXPECT_FALSE(exists("est.npy"));
+  const Outcome pipe = run_system("mkfifo log.fifo && " TAUEXT_BIN
+                                  "/tauext-replay log.fifo --robot wallmobot3 --estimator ndob "
+                                  "--out est.csv");
+  EXPECT_EQ(pipe.code, 2);
+  EXPECT_TRUE(pipe.says("log.fifo: is a pipe")) << pipe.text;
   const Outcome bag = run("tauext-record --robot wallmobot3 --scenario free --out log.db3");
   EXPECT_TRUE(bag.says("--out log.db3: --layout joint_state makes a bag")) << bag.text;
   EXPECT_FALSE(exists("log.db3"));

@@ -2,7 +2,7 @@
 # How every room makes its library and its tests.
 include_guard(GLOBAL)
 
-# parsed once for all libraries and programs, and with GoogleTest for all tests; sources include what they use all the same
+# parsed once for all libraries, with CLI11 for all programs, and with GoogleTest for all tests; sources include what they use all the same
 # (not nlohmann/json.hpp: each source would take a second longer)
 set(precompiled <array> <algorithm> <cmath> <functional> <map> <memory> <stdexcept> <string> <vector> <Eigen/LU> <fmt/format.h>
                 <fmt/ranges.h>)

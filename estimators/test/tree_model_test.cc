@@ -127,6 +127,9 @@ TEST(TreeModel, RefusesJointsThatAreNone) {
   refuses([](auto& r) { r.drho.setZero(); }, "full rank");
   refuses([](auto& r) { r.drho.col(1) = 0.1 * r.drho.col(0); }, "full rank");
   refuses([](auto& r) { r.drho(0, 0) = NAN; }, "finite");
+  RandomTree<3> permuted(1);
+  permuted.drho << 0, 1, 0, 0, 0, 2, 1, 0, 0;
+  EXPECT_NO_THROW(permuted.model<double>());
 }
 
 TEST(TreeModel, SaysWhereItIsSingular) {

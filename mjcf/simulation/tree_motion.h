@@ -53,9 +53,7 @@ class TreeMotionOf final : public TreeMotion {
  public:
   /// @throws std::invalid_argument for another number of joints
   explicit TreeMotionOf(const ArmTree& tree)
-      : arm_(detail::filled<TreeModel<N>>(tree)), end_(tree.point(kEndEffector)) {
-    detail::require_size(tree, N);
-  }
+      : arm_(model_of(tree)), end_(tree.point(kEndEffector)) {}
 
   void look(TreeState& s) const override {
     const Vec<N> q = fixed(s.q), qd = fixed(s.qd);
@@ -92,8 +90,14 @@ class TreeMotionOf final : public TreeMotion {
   }
 
  private:
-  static auto fixed(TreeState::Vector& v) { return Vec<N>::Map(v.data()); }
-  static auto fixed(const TreeState::Vector& v) { return Vec<N>::Map(v.data()); }
+  static TreeModel<N> model_of(const ArmTree& tree) {
+    detail::require_size(tree, N);
+    return detail::filled<TreeModel<N>>(tree);
+  }
+  static Eigen::Map<Vec<N>> fixed(TreeState::Vector& v) { return Eigen::Map<Vec<N>>(v.data()); }
+  static Eigen::Map<const Vec<N>> fixed(const TreeState::Vector& v) {
+    return Eigen::Map<const Vec<N>>(v.data());
+  }
 
   static Vec<N> solved(const Mat<N>& B, const Vec<N>& torque) { return Ldlt<N>(B).solve(torque); }
   Vec<N> acceleration(const Vec<N>& q, const Vec<N>& qd, const Vec<N>& u) const {

@@ -56,7 +56,7 @@ class TimedRows {
     waiting_.erase(waiting_.begin());
   }
 
-  /// Room for a row, of one that came out, so that none has to be allocated.
+  /// A row that came out, whose memory the next one can use; its numbers are old ones.
   std::vector<double> spare() {
     if (spare_.empty()) return {};
     std::vector<double> row = std::move(spare_.back());

@@ -134,6 +134,38 @@ TEST_F(LcmTrace, OneBadMessageDoesNotSpoilALog) {
   EXPECT_EQ(report_.out_of_order, 0);
 }
 
+TEST_F(LcmTrace, FalseTimesAreBorneAtTheBeginAndInARow) {
+  const std::vector<Reading> all = readings_of(truth());
+  LogBuffer log;
+  for (int k = 0; k < 300; ++k) {
+    Reading r = all[k];
+    if (k == 0 || k == 100 || k == 150) {  // far ahead, each farther
+      r.utime = (std::int64_t{1} << 52) + k;
+      r.t = static_cast<double>(r.utime) * 1e-6;
+    }
+    log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
+  }
+  put(log);
+  const Trace back = get();
+  EXPECT_EQ(back.size(), 297);
+  EXPECT_EQ(back.t[0], all[1].t);
+  EXPECT_EQ(back.t[99], all[101].t);
+  EXPECT_EQ(back.t[148], all[151].t);
+  EXPECT_EQ(report_.rejected, 3);
+  EXPECT_EQ(report_.out_of_order, 0);
+}
+
+TEST_F(LcmTrace, ASenderThatWasRestartedIsAnError) {
+  const std::vector<Reading> all = readings_of(truth());
+  LogBuffer log;
+  for (int k = 0; k < 400; ++k) {
+    const Reading& r = all[k < 300 ? k : k - 200];
+    log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
+  }
+  put(log);
+  EXPECT_NE(error().find("time goes back on channel TAUEXT_SAMPLE"), std::string::npos) << error();
+}
+
 TEST_F(LcmTrace, TimesBelowZeroAreShifted) {
   Trace t = truth();
   for (double& time : t.t) time -= 0.25;

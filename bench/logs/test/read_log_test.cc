@@ -65,5 +65,26 @@ TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
   EXPECT_FALSE(read_sine(1, 1, 1, 5000).log.contradicts) << "over a gap qd says nothing";
 }
 
+// 1 kHz whose first sample came 0.9 ms early, of an encoder with steps of 1e-4 rad
+TEST(ReadAnyLog, AShortFirstStepIsNoContradiction) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / fmt::format("tauext_burst_{}.csv", ::getpid()))
+          .string();
+  for (const double q : {1., 180 / M_PI}) {
+    std::ofstream file(path);
+    file << "t,q1,qd1,tau1\n";
+    for (int k = 0; k < 3000; ++k) {
+      const double s = 0.001 * k + (k == 0 ? 0.0009 : 0);
+      file << fmt::format("{},{},{},0\n", s, q * 1e-4 * std::round(0.2e4 * std::sin(s)),
+                          0.2 * std::cos(s));
+    }
+    file.close();
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(read_any_log(path).contradicts, q > 1);
+    testing::internal::GetCapturedStderr();
+  }
+  std::filesystem::remove(path);
+}
+
 }  // namespace
 }  // namespace tauext::test

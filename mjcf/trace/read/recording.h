@@ -51,7 +51,7 @@ class SampleSource {
  public:
   virtual ~SampleSource() = default;
   virtual const RecordingContents& contents() const = 0;  ///< the same for all samples
-  /// The next one; false at the end.
+  /// The next one; false at the end. What the source does not have is left in it as it was.
   /// @throws std::runtime_error naming the path and what is wrong
   virtual bool next(RecordedSample& sample) = 0;
   virtual const Regularity& regularity() const = 0;  ///< of the samples so far

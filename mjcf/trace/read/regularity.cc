@@ -30,6 +30,7 @@ void RegularityCounter::take(double t, const Eigen::VectorXd& q, const Eigen::Ve
 }
 
 void RegularityCounter::take_step(double h) {
+  constexpr std::int64_t kSteps = 3;     // in a row are no gaps
   if (steps_ == 1 && 8 * h < r_.step) {  // the first one was a gap
     ++r_.gaps;
     r_.longest_gap = r_.step;
@@ -37,10 +38,16 @@ void RegularityCounter::take_step(double h) {
     r_.step = squares_ = 0;
   }
   if (steps_ > 0 && h > 8 * r_.step) {
+    if (in_a_row_++ == 0) longest_before_ = r_.longest_gap;
     ++r_.gaps;
     r_.longest_gap = std::max(r_.longest_gap, h);
-    return;
+    if (in_a_row_ < kSteps) return;
+    r_.gaps -= in_a_row_;  // so that is how far samples are apart now
+    r_.longest_gap = longest_before_;
+    steps_ = 0;
+    r_.step = squares_ = 0;
   }
+  in_a_row_ = 0;
   ++steps_;  // Welford's sums
   const double off = h - r_.step;
   r_.step += off / static_cast<double>(steps_);

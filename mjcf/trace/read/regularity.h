@@ -15,7 +15,7 @@ struct Regularity {
   double from = 0, to = 0;   ///< [s] of t
   double step = 0;           ///< [s] mean, gaps left aside
   double jitter = 0;         ///< [s] standard deviation of it
-  std::int64_t gaps = 0;     ///< steps of more than 8 such
+  std::int64_t gaps = 0;     ///< steps of more than 8 such, at most two in a row
   double longest_gap = 0;    ///< [s]
   std::int64_t repeats = 0;  ///< samples whose q, qd and tau are those of the one before
   /// In a sentence.
@@ -34,8 +34,10 @@ class RegularityCounter {
   void take_step(double h);
 
   Regularity r_;
-  std::int64_t steps_ = 0;
-  double squares_ = 0;  // [s^2]
+  std::int64_t steps_ = 0,
+               in_a_row_ = 0;  // steps that are none of the gaps; gaps one behind another
+  double longest_before_ = 0;  // [s] gap before these
+  double squares_ = 0;         // [s^2]
   Eigen::VectorXd q_, qd_, tau_;
 };
 

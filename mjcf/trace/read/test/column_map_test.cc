@@ -237,6 +237,11 @@ TEST_F(Columns, GapsAndJitterAreCounted) {
   EXPECT_EQ(counter.so_far().gaps, 1) << "where the first step is the gap";
   EXPECT_NEAR(counter.so_far().step, 0.01, 1e-9);
   EXPECT_EQ(counter.so_far().longest_gap, 301);
+  RegularityCounter burst;
+  for (const double t : {0., 0.0001, 0.01, 0.02, 0.03, 0.04, 5.04}) burst.take(t, none, none, none);
+  EXPECT_EQ(burst.so_far().gaps, 1) << "where the first step is short, or samples become rarer";
+  EXPECT_NEAR(burst.so_far().step, 0.01, 1e-9);
+  EXPECT_EQ(burst.so_far().longest_gap, 5);
 }
 
 }  // namespace
