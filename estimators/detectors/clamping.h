@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "estimators/concepts.h"
@@ -69,7 +70,8 @@ class Clamping {
       : p_(check_parameters(p, kName)),
         baseline_(p.w_baseline),
         smooth_(p.w_smooth),
-        marking_(p.refractory, p.start_up) {
+        marking_(p.refractory, p.start_up),
+        least_threshold_(p.threshold.minCoeff()) {
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
     require(p.metric.isApprox(p.metric.transpose()) && Ldlt<N>(p.metric).ok(),
             "metric of clamping must be symmetric and positive definite");
@@ -93,7 +95,7 @@ class Clamping {
       z_ = smooth_(t, changed);                    // (i)
       keep(t, std::sqrt(z_.dot(p_.metric * z_)));  // (ii)
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kClamping);
+    return marking_(t, statistic_[0] / least_threshold_, Contact::kClamping);
   }
 
   /// [N m] `lasting`, the same for every joint.
@@ -107,6 +109,7 @@ class Clamping {
     z_.setZero();
     statistic_.setZero();
     blocks_.fill(0);
+    older_ = 0;
   }
 
   static constexpr int kBlocks = 8;
@@ -116,16 +119,20 @@ class Clamping {
     if (t - block_began_ >= p_.duration / kBlocks) {
       block_began_ = t;
       newest_ = (newest_ + 1) % kBlocks;
+      blocks_[newest_] = std::numeric_limits<double>::infinity();
+      older_ = *std::min_element(blocks_.begin(), blocks_.end());
       blocks_[newest_] = size;
     }
     blocks_[newest_] = std::min(blocks_[newest_], size);
-    statistic_.setConstant(*std::min_element(blocks_.begin(), blocks_.end()));
+    statistic_.setConstant(std::min(older_, blocks_[newest_]));
   }
 
   Parameters p_;
   LowPass<N> baseline_, smooth_;
   Marking marking_;
+  double least_threshold_;                // [N m]
   std::array<double, kBlocks> blocks_{};  // [N m]
+  double older_ = 0;                      // [N m] least of all but the newest
   int newest_ = 0;
   double block_began_ = 0;  // [s]
   Vec<N> z_ = Vec<N>::Zero();

@@ -65,12 +65,12 @@ class PanTompkins {
   Detection update(double t, const Vec<N>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
-    const int newest = static_cast<int>(count_++ % kHistory);
-    t_[newest] = t;
-    tau_ext_[newest] = tau_ext;
-    if (count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
+    newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
+    t_[newest_] = t;
+    tau_ext_[newest_] = tau_ext;
+    if (++count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
-    const Vec<N> energy = slope(newest).cwiseAbs2();
+    const Vec<N> energy = slope(newest_).cwiseAbs2();
     for (int i = 0; i < N; ++i) {  // (ii)
       if (energy[i] >= held_[i] || t - held_at_[i] > p_.hold) {
         held_[i] = energy[i];
@@ -95,18 +95,21 @@ class PanTompkins {
   // (i), [N m/s]
   Vec<N> slope(int newest) const noexcept {
     std::array<int, 5> at;
-    double mean_t = 0;
-    for (int j = 0; j < 5; ++j) {
-      at[j] = (newest - j * p_.stride + kHistory) % kHistory;
-      mean_t += t_[at[j]] / 5;
+    double sum_t = 0;
+    for (int& place : at) {
+      place = newest;
+      sum_t += t_[place];
+      newest -= p_.stride;
+      if (newest < 0) newest += kHistory;
     }
+    const double mean_t = 0.2 * sum_t;
     Vec<N> numerator = Vec<N>::Zero();
     double denominator = 0;
     for (const int j : at) {
       numerator += (t_[j] - mean_t) * tau_ext_[j];
       denominator += (t_[j] - mean_t) * (t_[j] - mean_t);
     }
-    return numerator / denominator;
+    return numerator * (1 / denominator);
   }
 
   Parameters p_;
@@ -114,6 +117,7 @@ class PanTompkins {
   std::array<double, kHistory> t_{};
   std::array<Vec<N>, kHistory> tau_ext_;
   long count_ = 0;
+  int newest_ = 0;  // of the history
   Vec<N> held_ = Vec<N>::Zero();
   Vec<N> held_at_ = Vec<N>::Zero();
 };
