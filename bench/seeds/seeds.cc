@@ -43,23 +43,30 @@ std::vector<SeededRow> SeedScorer::operator()(const std::vector<Entry>& entries,
   std::vector<SeededRow> rows;
   for (const Entry& e : entries) rows.push_back({e, std::vector<Score>(seeds_.size())});
   const std::vector<Group> groups = groups_of(entries);
+  // fewer groups than threads: several take turns with the seeds of a group
+  const auto threads = static_cast<std::size_t>(thread_count(threads_));
+  const std::size_t turns =
+      groups.empty() ? 1 : std::min((threads + groups.size() - 1) / groups.size(), seeds_.size());
   std::vector<Suite*> suites;  // all places exist before threads look for them
   for (const Group& g : groups) {
-    std::unique_ptr<Suite>& suite = suites_[entries[g.rows.front()].group()];
-    if (!suite) suite = std::make_unique<Suite>(options_);
-    suites.push_back(suite.get());
+    auto& of_group = suites_[entries[g.rows.front()].group()];
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+      if (turn == of_group.size()) of_group.push_back(std::make_unique<Suite>(options_));
+      suites.push_back(of_group[turn].get());
+    }
   }
   const auto work = [&](int i) {
-    Suite& suite = *suites[static_cast<std::size_t>(i)];
-    for (std::size_t seed = 0; seed < seeds_.size(); ++seed) {
+    const auto job = static_cast<std::size_t>(i);
+    Suite& suite = *suites[job];
+    for (std::size_t seed = job % turns; seed < seeds_.size(); seed += turns) {
       Sensors sensors = options_.sensors;
       sensors.seed = seeds_[seed];
       suite.set_sensors(sensors);
-      for (const std::size_t row : groups[static_cast<std::size_t>(i)].rows)
+      for (const std::size_t row : groups[job / turns].rows)
         rows[row].scores[seed] = suite.score(rows[row].entry);
     }
   };
-  parallel_for(static_cast<int>(groups.size()), threads_, work, progress);
+  parallel_for(static_cast<int>(suites.size()), threads_, work, progress);
   return rows;
 }
 

@@ -29,7 +29,8 @@ struct SeededRow {
   std::vector<Score> scores;  ///< by seed
 };
 
-/// Scores entries over seeds, again and again: truths are simulated once.
+/// Scores entries over seeds, again and again: truths are simulated once, or, of fewer groups than
+/// threads, once a thread.
 class SeedScorer {
  public:
   /// @param suite whose sensors draw by the seeds
@@ -46,7 +47,7 @@ class SeedScorer {
   SuiteOptions options_;
   std::vector<std::uint64_t> seeds_;
   int threads_;
-  std::map<std::string, std::unique_ptr<Suite>> suites_;  // by group
+  std::map<std::string, std::vector<std::unique_ptr<Suite>>> suites_;  // by group
 };
 
 /// The same, once.
