@@ -39,16 +39,20 @@ class ActiveObserver {
  public:
   static constexpr const char* kName = "aob";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = ActiveObserver<Other>;  ///< the same over another model
 
   /// The same for all joints: they move alike.
   struct Parameters {
-    double Q_delta =
+    Scalar Q_delta =
         1e-3;  ///< [(rad/s^2)^2/s] density of deltadot, positive: larger is faster, noisier
-    double Q_qdd =
+    Scalar Q_qdd =
         1e-7;  ///< [(rad/s^2)^2 s] density of the model's error, at least 0; larger: slower
-    double R_q = 1e-13;  ///< [rad^2 s] density of the noise of q, positive; 1e-5 rad at 1 ms
-    double R_qd = 1e-9;  ///< [(rad/s)^2 s] density of the noise of qd, positive; 1e-3 rad/s at 1 ms
-    double gate = 100;   ///< [1] standard deviations by which q may jump
+    Scalar R_q = 1e-13;  ///< [rad^2 s] density of the noise of q, positive; 1e-5 rad at 1 ms
+    Scalar R_qd = 1e-9;  ///< [(rad/s)^2 s] density of the noise of qd, positive; 1e-3 rad/s at 1 ms
+    Scalar gate = 100;   ///< [1] standard deviations by which q may jump
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
@@ -83,37 +87,37 @@ class ActiveObserver {
     tau_ext_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    const Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
-    const Ldlt<kDof> B(now.B);
+    const Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);
+    const Ldlt<kDof, Scalar> B(now.B);
     if (!B.ok()) {
       sampling_.reset();
       return {tau_ext_, Status::kSingularInertia};
     }
-    const Vec<kDof> rest = now.bias + model_.friction(y.qd);
+    const Vec<kDof, Scalar> rest = now.bias + model_.friction(y.qd);
     if (status == Status::kStarted) {
       start(y, B);
     } else {
-      const Vec<kDof> tau = sampling_.torque_before();
+      const Vec<kDof, Scalar> tau = sampling_.torque_before();
       if (sampling_.joints() != 0) [[unlikely]]
         put_right(tau);
-      const Vec<kDof> a_end =
-          B.solve(Vec<kDof>((p_.torque == TorqueSampling::kHeld ? tau : y.tau) - rest));
+      const Vec<kDof, Scalar> a_end =
+          B.solve(Vec<kDof, Scalar>((p_.torque == TorqueSampling::kHeld ? tau : y.tau) - rest));
       delta_ = B.solve(tau_ext_);                  // (iv)
       predict(sampling_.h(), 0.5 * (a_ + a_end));  // (i)
       nu_q_ += sampling_.h() * nu_qd_;
       status = sampling_.confirm(unlikely(sampling_.h(), y));
       if (status == Status::kOk) correct(sampling_.h(), y);
       if (status == Status::kOk) tau_ext_ = now.B * delta_;
-      if (!(q_.allFinite() && qd_.allFinite() && within(tau_ext_, kEstimateLimit))) {
+      if (!(finite(q_) && finite(qd_) && within(tau_ext_, kEstimateLimit))) {
         tau_ext_.setZero();
         start(y, B);
         status = Status::kDiverged;
       }
     }
-    a_ = B.solve(Vec<kDof>(y.tau - rest));
+    a_ = B.solve(Vec<kDof, Scalar>(y.tau - rest));
     return {tau_ext_, status, sampling_.joints()};
   }
 
@@ -124,9 +128,16 @@ class ActiveObserver {
     return P;
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tie(sampling_, q_, qd_, delta_, nu_q_, nu_qd_, qq_, vq_, dq_, vv_, dv_, dd_, a_,
+                    tau_ext_);
+  }
+
  private:
   // P0 is what a few steps of noise give: R at 1 ms, and a delta within what w lets through
-  void start(const Measurement<kDof>& y, const Ldlt<kDof>& B) noexcept {
+  void start(const Measurement<kDof, Scalar>& y, const Ldlt<kDof, Scalar>& B) noexcept {
     q_ = y.q;
     qd_ = y.qd;
     delta_ = B.solve(tau_ext_);
@@ -138,23 +149,23 @@ class ActiveObserver {
 
   // a_ anew, since the last sample's tau was an outlier and is now this one [N m]; and q turns with
   // its encoder
-  [[gnu::noinline]] void put_right(const Vec<kDof>& tau) noexcept {
-    const Dynamics<kDof> last = dynamics(model_, q_, qd_);
-    const Ldlt<kDof> B(last.B);
-    if (B.ok()) a_ = B.solve(Vec<kDof>(tau - last.bias - model_.friction(qd_)));
+  [[gnu::noinline]] void put_right(const Vec<kDof, Scalar>& tau) noexcept {
+    const Dynamics<kDof, Scalar> last = dynamics(model_, q_, qd_);
+    const Ldlt<kDof, Scalar> B(last.B);
+    if (B.ok()) a_ = B.solve(Vec<kDof, Scalar>(tau - last.bias - model_.friction(qd_)));
     if (sampling_.wrapped()) q_ += sampling_.turns();
   }
 
   // (ii)
-  [[gnu::always_inline]] void predict(double h, const Vec<kDof>& a) noexcept {
-    const Vec<kDof> dv = h * (a - delta_);
+  [[gnu::always_inline]] void predict(const Scalar& h, const Vec<kDof, Scalar>& a) noexcept {
+    const Vec<kDof, Scalar> dv = h * (a - delta_);
     q_ += h * qd_ + 0.5 * h * dv;
     qd_ += dv;
 
-    const double h2 = 0.5 * h * h;
-    const double Pqq = qq_ + h * vq_ - h2 * dq_, Pqv = vq_ + h * vv_ - h2 * dv_;  // Phi P
-    const double Pqd = dq_ + h * dv_ - h2 * dd_, Pvv = vv_ - h * dv_, Pvd = dv_ - h * dd_;
-    const double Q_v = h * p_.Q_qdd, Q_d = h * p_.Q_delta;
+    const Scalar h2 = 0.5 * h * h;
+    const Scalar Pqq = qq_ + h * vq_ - h2 * dq_, Pqv = vq_ + h * vv_ - h2 * dv_;  // Phi P
+    const Scalar Pqd = dq_ + h * dv_ - h2 * dd_, Pvv = vv_ - h * dv_, Pvd = dv_ - h * dd_;
+    const Scalar Q_v = h * p_.Q_qdd, Q_d = h * p_.Q_delta;
     qq_ = Pqq + h * Pqv - h2 * Pqd + h * h * (Q_v / 3 + h * h / 20 * Q_d);
     vq_ = Pqv - h * Pqd + h * (0.5 * Q_v + h * h / 8 * Q_d);
     dq_ = Pqd - h * h / 6 * Q_d;
@@ -164,24 +175,26 @@ class ActiveObserver {
   }
 
   // of q alone: a blow changes qd at once, and no blow q
-  [[gnu::always_inline]] std::uint8_t unlikely(double h,
-                                               const Measurement<kDof>& y) const noexcept {
-    return beyond<kDof>(p_.gate, y.q - q_, nu_q_, Vec<kDof>::Constant(qq_ + p_.R_q / h));
+  [[gnu::always_inline]] std::uint8_t unlikely(const Scalar& h,
+                                               const Measurement<kDof, Scalar>& y) const noexcept {
+    return beyond<kDof, Scalar>(p_.gate, y.q - q_, nu_q_,
+                                Vec<kDof, Scalar>::Constant(qq_ + p_.R_q / h));
   }
 
   // (iii)
-  [[gnu::always_inline]] void correct(double h, const Measurement<kDof>& y) noexcept {
-    const double s_q = 1 / (qq_ + p_.R_q / h);
+  [[gnu::always_inline]] void correct(const Scalar& h,
+                                      const Measurement<kDof, Scalar>& y) noexcept {
+    const Scalar s_q = 1 / (qq_ + p_.R_q / h);
     update(qq_, vq_, dq_, s_q, y.q - q_);
-    const double s_qd = 1 / (vv_ + p_.R_qd / h);
+    const Scalar s_qd = 1 / (vv_ + p_.R_qd / h);
     update(vq_, vv_, dv_, s_qd, y.qd - qd_);
     nu_q_ = y.q - q_;
     nu_qd_ = y.qd - qd_;
   }
 
-  [[gnu::always_inline]] void update(double c_q, double c_v, double c_d, double s_inverse,
-                                     const Vec<kDof>& innovation) noexcept {
-    const Vec<kDof> scaled = s_inverse * innovation;
+  [[gnu::always_inline]] void update(Scalar c_q, Scalar c_v, Scalar c_d, const Scalar& s_inverse,
+                                     const Vec<kDof, Scalar>& innovation) noexcept {
+    const Vec<kDof, Scalar> scaled = s_inverse * innovation;
     q_ += c_q * scaled;
     qd_ += c_v * scaled;
     delta_ += c_d * scaled;
@@ -195,14 +208,15 @@ class ActiveObserver {
 
   M model_;
   Parameters p_;
-  Sampling<kDof> sampling_;
-  Vec<kDof> q_ = Vec<kDof>::Zero();                     // [rad]
-  Vec<kDof> qd_ = Vec<kDof>::Zero();                    // [rad/s]
-  Vec<kDof> delta_ = Vec<kDof>::Zero();                 // [rad/s^2]
-  Vec<kDof> nu_q_ = Vec<kDof>::Zero(), nu_qd_ = nu_q_;  // sample less filter, to be expected
-  double qq_ = 0, vq_ = 0, dq_ = 0, vv_ = 0, dv_ = 0, dd_ = 0;  // of P
-  Vec<kDof> a_ = Vec<kDof>::Zero();        // [rad/s^2] of (i) at the last sample
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  Sampling<kDof, Scalar> sampling_;
+  Vec<kDof, Scalar> q_ = Vec<kDof, Scalar>::Zero();      // [rad]
+  Vec<kDof, Scalar> qd_ = Vec<kDof, Scalar>::Zero();     // [rad/s]
+  Vec<kDof, Scalar> delta_ = Vec<kDof, Scalar>::Zero();  // [rad/s^2]
+  Vec<kDof, Scalar> nu_q_ = Vec<kDof, Scalar>::Zero(),
+                    nu_qd_ = nu_q_;  // sample less filter, to be expected
+  Scalar qq_ = 0, vq_ = 0, dq_ = 0, vv_ = 0, dv_ = 0, dd_ = 0;  // of P
+  Vec<kDof, Scalar> a_ = Vec<kDof, Scalar>::Zero();        // [rad/s^2] of (i) at the last sample
+  Vec<kDof, Scalar> tau_ext_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

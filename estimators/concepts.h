@@ -10,20 +10,39 @@
 
 namespace tauext {
 
+namespace detail {
+template <class M>
+struct ScalarOf {
+  using type = double;
+};
+template <class M>
+requires requires {
+  typename M::Number;
+}
+struct ScalarOf<M> {
+  using type = typename M::Number;
+};
+}  // namespace detail
+
+/// What a model computes with: double, if it does not say otherwise by `Number`.
+template <class M>
+using ScalarOf = typename detail::ScalarOf<M>::type;
+
 /// The terms of (3) of an arm with kDof joints; all in joint coordinates, all const and noexcept.
 template <class M>
-concept RobotModel = requires(const M& m, const Vec<M::kDof>& q, const Vec<M::kDof>& qd) {
+concept RobotModel = requires(const M& m, const Vec<M::kDof, ScalarOf<M>>& q,
+                              const Vec<M::kDof, ScalarOf<M>>& qd) {
   { M::kDof } -> std::convertible_to<int>;
   { m.inertia(q) }
-  noexcept->std::convertible_to<Mat<M::kDof>>;  // B [kg m^2]
+  noexcept->std::convertible_to<Mat<M::kDof, ScalarOf<M>>>;  // B [kg m^2]
   { m.gravity(q) }
-  noexcept->std::convertible_to<Vec<M::kDof>>;  // g [N m]
+  noexcept->std::convertible_to<Vec<M::kDof, ScalarOf<M>>>;  // g [N m]
   { m.bias(q, qd) }
-  noexcept->std::convertible_to<Vec<M::kDof>>;  // C qd + g [N m]
+  noexcept->std::convertible_to<Vec<M::kDof, ScalarOf<M>>>;  // C qd + g [N m]
   { m.momentum_bias(q, qd) }
-  noexcept->std::convertible_to<Vec<M::kDof>>;  // C^T qd - g [N m]
+  noexcept->std::convertible_to<Vec<M::kDof, ScalarOf<M>>>;  // C^T qd - g [N m]
   { m.friction(qd) }
-  noexcept->std::convertible_to<Vec<M::kDof>>;  // F [N m]
+  noexcept->std::convertible_to<Vec<M::kDof, ScalarOf<M>>>;  // F [N m]
 };
 
 /// Inertia and bias of one state.
@@ -35,8 +54,8 @@ struct Dynamics {
 
 /// B and C qd + g of one state; a model that shares work between the two offers `dynamics` itself.
 template <RobotModel M>
-[[gnu::always_inline]] inline Dynamics<M::kDof> dynamics(const M& m, const Vec<M::kDof>& q,
-                                                         const Vec<M::kDof>& qd) noexcept {
+[[gnu::always_inline]] inline Dynamics<M::kDof, ScalarOf<M>> dynamics(
+    const M& m, const Vec<M::kDof, ScalarOf<M>>& q, const Vec<M::kDof, ScalarOf<M>>& qd) noexcept {
   if constexpr (requires { m.dynamics(q, qd); }) {
     return m.dynamics(q, qd);
   } else {
@@ -56,9 +75,10 @@ struct ForwardDynamics {
 
 /// A model that can be linearised: u [N m] is tau - tau_ext.
 template <class M>
-concept DifferentiableModel = RobotModel<M> && requires(const M& m, const Vec<M::kDof>& x) {
+concept DifferentiableModel = RobotModel<M> &&
+    requires(const M& m, const Vec<M::kDof, ScalarOf<M>>& x) {
   { m.forward_dynamics(x, x, x) }
-  noexcept->std::same_as<ForwardDynamics<M::kDof>>;
+  noexcept->std::same_as<ForwardDynamics<M::kDof, ScalarOf<M>>>;
 };
 
 /// Turns samples into estimates of tau_ext.

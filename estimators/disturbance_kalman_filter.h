@@ -37,25 +37,31 @@ class DisturbanceKalmanFilter {
  public:
   static constexpr const char* kName = "dkf";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = DisturbanceKalmanFilter<Other>;  ///< the same over another model
 
   /// Neither w nor Q_d has a default that fits every arm.
   struct Parameters {
-    double w =
+    Scalar w =
         0;  ///< [rad/s] positive: Q_d = w^4 B Q_qd B^T in every pose, P0 what follows from it
-    Mat<kDof> Q_d =
-        Mat<kDof>::Zero();  ///< [(N m)^2/s] density of ddot, symmetric, positive definite:
-                            ///< larger is faster and noisier
-    Vec<kDof> Q_p =
-        Vec<kDof>::Zero();  ///< [(N m)^2 s] density of the model's error, at least 0: larger
-                            ///< is slower, as it explains what else would be d
-    Vec<kDof> Q_qd =
-        Vec<kDof>::Constant(1e-9);  ///< [(rad/s)^2 s] density of the noise of qd, positive,
-                                    ///< larger is slower; 1e-3 rad/s at 1 ms
-    Vec<kDof> P0_qd =
-        Vec<kDof>::Constant(1e-8);       ///< [(rad/s)^2] variance of the first qd, at least 0
-    Mat<kDof> P0_d = Mat<kDof>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
+    Mat<kDof, Scalar> Q_d =
+        Mat<kDof, Scalar>::Zero();  ///< [(N m)^2/s] density of ddot, symmetric, positive definite:
+                                    ///< larger is faster and noisier
+    Vec<kDof, Scalar> Q_p =
+        Vec<kDof,
+            Scalar>::Zero();  ///< [(N m)^2 s] density of the model's error, at least 0: larger
+                              ///< is slower, as it explains what else would be d
+    Vec<kDof, Scalar> Q_qd =
+        Vec<kDof, Scalar>::Constant(1e-9);  ///< [(rad/s)^2 s] density of the noise of qd, positive,
+                                            ///< larger is slower; 1e-3 rad/s at 1 ms
+    Vec<kDof, Scalar> P0_qd =
+        Vec<kDof, Scalar>::Constant(1e-8);  ///< [(rad/s)^2] variance of the first qd, at least 0
+    Mat<kDof, Scalar> P0_d =
+        Mat<kDof, Scalar>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
     /// [1] standard deviations by which the momentum may jump; a blow makes hundreds
-    double gate = 1000;
+    Scalar gate = 1000;
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
@@ -68,6 +74,11 @@ class DisturbanceKalmanFilter {
           Field{"Q_qd", &P::Q_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
           Field{"P0_qd", &P::P0_qd, "(rad/s)^2", 0, 1e12, "variance of the first qd"},
           gate_field<P>(), torque_field<P>(), max_gap_field<P>());
+    }
+
+    /// What fields() leaves out.
+    static constexpr auto unnamed() {
+      return std::tuple(&Parameters::w, &Parameters::Q_d, &Parameters::P0_d);
     }
 
     /// In every pose every joint is Butterworth's of -3 dB at w [rad/s], however B couples them. P0
@@ -86,9 +97,11 @@ class DisturbanceKalmanFilter {
         sampling_(p.max_gap, limits_of(model), p.torque),
         momentum_(model),
         Q_d_(p.Q_d) {
-    require(p.w >= 0, "w [rad/s] of dkf must not be negative");
-    require(p.w > 0 || Ldlt<kDof>(p.Q_d).ok(), "Q_d of dkf must be positive definite");
-    require(p.P0_d.diagonal().minCoeff() >= 0, "P0_d of dkf must not be negative");
+    require(all(p.w >= Scalar(0)), "w [rad/s] of dkf must not be negative");
+    require(all(p.w > Scalar(0)) || Ldlt<kDof, Scalar>(p.Q_d).ok(),
+            "Q_d of dkf must be positive definite");
+    for (int i = 0; i < kDof; ++i)
+      require(all(p.P0_d(i, i) >= Scalar(0)), "P0_d of dkf must not be negative");
     mirror(Q_d_);
     mirror(p_.P0_d);
   }
@@ -98,27 +111,28 @@ class DisturbanceKalmanFilter {
     d_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {d_, status, sampling_.joints()};
-    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
+    const MomentumStep<kDof, Scalar> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       start(step);
       return {d_, status, sampling_.joints()};
     }
-    const Mat<kDof> R = step.B * p_.Q_qd.asDiagonal() * step.B.transpose();  // (ii), times h
-    if (p_.w > 0) {
+    const Mat<kDof, Scalar> R =
+        step.B * p_.Q_qd.asDiagonal() * step.B.transpose();  // (ii), times h
+    if (all(p_.w > Scalar(0))) {
       Q_d_ = p_.w * p_.w * p_.w * p_.w * R;
       mirror(Q_d_);
     }
     predict(sampling_.h(), step.n);
-    const Mat<kDof> S = P_pp_ + R / sampling_.h();
-    status = sampling_.confirm(beyond<kDof>(p_.gate, step.p - p_hat_, nu_, S.diagonal()));
+    const Mat<kDof, Scalar> S = P_pp_ + R / sampling_.h();
+    status = sampling_.confirm(beyond<kDof, Scalar>(p_.gate, step.p - p_hat_, nu_, S.diagonal()));
     if (status == Status::kOk && !correct(S, step)) {
       sampling_.reset();
       return {d_, Status::kSingularInertia};
     }
-    if (!(p_hat_.allFinite() && within(d_, kEstimateLimit))) {
+    if (!(finite(p_hat_) && within(d_, kEstimateLimit))) {
       d_.setZero();
       start(step);
       status = Status::kDiverged;
@@ -127,30 +141,37 @@ class DisturbanceKalmanFilter {
   }
 
   /// P [(N m s)^2 ... (N m)^2] of [p; d] after the last sample; symmetric.
-  Mat<2 * kDof> covariance() const noexcept {
-    Mat<2 * kDof> P;
+  Mat<2 * kDof, Scalar> covariance() const noexcept {
+    Mat<2 * kDof, Scalar> P;
     P << P_pp_, P_dp_.transpose(), P_dp_, P_dd_;
     return P;
+  }
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(std::tie(sampling_, Q_d_, p_hat_, nu_, d_, P_pp_, P_dp_, P_dd_),
+                          momentum_.memory());
   }
 
  private:
   static constexpr double kRoot2 = 1.4142135623730951;
 
-  void start(const MomentumStep<kDof>& step) noexcept {
+  void start(const MomentumStep<kDof, Scalar>& step) noexcept {
     p_hat_ = step.p;
     nu_.setZero();
     P_pp_.noalias() = step.B * p_.P0_qd.asDiagonal() * step.B.transpose();
     mirror(P_pp_);
     P_dp_.setZero();
     P_dd_ = p_.P0_d;
-    if (p_.w > 0) {
+    if (all(p_.w > Scalar(0))) {
       P_dd_ = kRoot2 * p_.w * p_.w * p_.w * step.B * p_.Q_qd.asDiagonal() * step.B.transpose();
       mirror(P_dd_);
     }
   }
 
   // (ii)
-  [[gnu::always_inline]] void predict(double h, const Vec<kDof>& n) noexcept {
+  [[gnu::always_inline]] void predict(const Scalar& h, const Vec<kDof, Scalar>& n) noexcept {
     p_hat_ += h * (n - d_);
     P_pp_ += h * (h * P_dd_ - (P_dp_ + P_dp_.transpose()) + h * h / 3 * Q_d_);
     P_pp_.diagonal() += h * p_.Q_p;
@@ -159,13 +180,14 @@ class DisturbanceKalmanFilter {
   }
 
   // (iii); false if S is not positive definite
-  [[gnu::always_inline]] bool correct(const Mat<kDof>& variance,
-                                      const MomentumStep<kDof>& step) noexcept {
-    const Ldlt<kDof> S(variance);
+  [[gnu::always_inline]] bool correct(const Mat<kDof, Scalar>& variance,
+                                      const MomentumStep<kDof, Scalar>& step) noexcept {
+    const Ldlt<kDof, Scalar> S(variance);
     if (!S.ok()) return false;
     nu_ = step.p - p_hat_;
-    const Vec<kDof> innovation = S.solve(nu_);
-    const Mat<kDof> G_p = S.solve(P_pp_), G_d = S.solve(Mat<kDof>(P_dp_.transpose()));
+    const Vec<kDof, Scalar> innovation = S.solve(nu_);
+    const Mat<kDof, Scalar> G_p = S.solve(P_pp_),
+                            G_d = S.solve(Mat<kDof, Scalar>(P_dp_.transpose()));
     p_hat_ += P_pp_ * innovation;
     d_ += P_dp_ * innovation;
     P_pp_ -= P_pp_ * G_p;
@@ -177,7 +199,7 @@ class DisturbanceKalmanFilter {
   }
 
   // the lower triangle into the upper one
-  [[gnu::always_inline]] static void mirror(Mat<kDof>& m) noexcept {
+  [[gnu::always_inline]] static void mirror(Mat<kDof, Scalar>& m) noexcept {
 #pragma GCC unroll 8
     for (int j = 1; j < kDof; ++j) {
 #pragma GCC unroll 8
@@ -186,14 +208,14 @@ class DisturbanceKalmanFilter {
   }
 
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Momentum<M> momentum_;
-  Mat<kDof> Q_d_;                        // of this pose, if w is given
-  Vec<kDof> p_hat_ = Vec<kDof>::Zero();  // [N m s]
-  Vec<kDof> nu_ = Vec<kDof>::Zero();     // [N m s] innovation of the last correction
-  Vec<kDof> d_ = Vec<kDof>::Zero();      // [N m] the last estimate
+  Mat<kDof, Scalar> Q_d_;                                // of this pose, if w is given
+  Vec<kDof, Scalar> p_hat_ = Vec<kDof, Scalar>::Zero();  // [N m s]
+  Vec<kDof, Scalar> nu_ = Vec<kDof, Scalar>::Zero();  // [N m s] innovation of the last correction
+  Vec<kDof, Scalar> d_ = Vec<kDof, Scalar>::Zero();   // [N m] the last estimate
   // blocks of P
-  Mat<kDof> P_pp_ = Mat<kDof>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;
+  Mat<kDof, Scalar> P_pp_ = Mat<kDof, Scalar>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;
 };
 
 }  // namespace tauext

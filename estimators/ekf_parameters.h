@@ -26,14 +26,14 @@ constexpr auto choices(Alignment) {
 
 /// All covariances are diagonals: [rad^2], [(rad/s)^2], [(N m)^2]. A larger Q_d or a smaller R is
 /// faster and noisier. P0, Q and R have no default that fits every arm.
-template <int N>
+template <int N, class Scalar = double>
 struct EkfParameters {
-  Vec<3 * N> P0 = Vec<3 * N>::Zero();  ///< of the state at the start, at least 0
-  Vec<3 * N> Q = Vec<3 * N>::Zero();   ///< of the process, per step, at least 0
-  Vec<2 * N> R = Vec<2 * N>::Zero();   ///< of the measured q and qd, positive
+  Vec<3 * N, Scalar> P0 = Vec<3 * N, Scalar>::Zero();  ///< of the state at the start, at least 0
+  Vec<3 * N, Scalar> Q = Vec<3 * N, Scalar>::Zero();   ///< of the process, per step, at least 0
+  Vec<2 * N, Scalar> R = Vec<2 * N, Scalar>::Zero();   ///< of the measured q and qd, positive
   /// [(rad/s^2)^2] per step: adds Q_load B B^T to Q_d in each pose, and ten times that to P0. So
   /// every joint of any arm is as fast, and no P0 and Q have to be found for it.
-  double Q_load = 0;
+  Scalar Q_load = 0;
   /// [s] 0: Q is added once per step and R belongs to every sample, whatever the step, as printed.
   /// Otherwise both are meant for steps of Ts, and a step of h takes Q h / Ts and R Ts / h, white
   /// noise of constant density, so that the answer does not depend on the sampling time.
@@ -43,7 +43,7 @@ struct EkfParameters {
   Start start = Start::kFirstMeasurement;               ///< what the first sample does to the state
   /// [1] standard deviations by which q may jump; the printed R knows no noise, so with it there is
   /// no gate
-  double gate = 1e12;
+  Scalar gate = 1e12;
   TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
   double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 

@@ -32,9 +32,13 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
  public:
   static constexpr const char* kName = Order == 2 ? "mo2" : "mo3";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = HigherOrderMomentumObserver<Other, Order>;  ///< the same over another model
 
   struct Parameters {
-    double bandwidth = 30;  ///< [rad/s] -3 dB, positive: larger is faster and noisier
+    Scalar bandwidth = 30;  ///< [rad/s] -3 dB, positive: larger is faster and noisier
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
@@ -59,17 +63,17 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
     x_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {x_.col(0), status, sampling_.joints()};
-    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
+    const MomentumStep<kDof, Scalar> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       x_.template rightCols<Order - 1>().setZero();
       return {x_.col(0), status, sampling_.joints()};
     }
-    const double h = sampling_.h();
-    if (new_step_(h)) Phi_ = transition(p_.bandwidth * h);
-    const Vec<kDof> u = step.n - step.dp / h;
+    const Scalar h = sampling_.h();
+    if (new_step_(h)) Phi_ = transition(p_.bandwidth * new_step_.h());
+    const Vec<kDof, Scalar> u = step.n - step.dp / h;
     x_.col(0) -= u;
     x_ = (x_ * Phi_.transpose()).eval();  // (ii), a joint a row
     x_.col(0) += u;
@@ -80,32 +84,39 @@ requires(Order == 2 || Order == 3) class HigherOrderMomentumObserver {
     return {x_.col(0), status, sampling_.joints()};
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(std::tie(sampling_, new_step_, Phi_, x_), momentum_.memory());
+  }
+
  private:
   // (iii)
-  static Mat<Order> transition(double a) noexcept {
-    const Mat<Order> I = Mat<Order>::Identity();
-    Mat<Order> A;
+  static Mat<Order, Scalar> transition(const Scalar& a) noexcept {
+    using std::cos, std::exp, std::sin;
+    const Mat<Order, Scalar> I = Mat<Order, Scalar>::Identity();
+    Mat<Order, Scalar> A;
     if constexpr (Order == 2) {
       constexpr double kRoot2 = 1.4142135623730951;
       A << 0, 1, -1, -kRoot2;
-      const double e = std::exp(-a / kRoot2), c = std::cos(a / kRoot2), s = std::sin(a / kRoot2);
+      const Scalar e = exp(-a / kRoot2), c = cos(a / kRoot2), s = sin(a / kRoot2);
       return e * (c - s) * I + kRoot2 * e * s * (A + kRoot2 * I);
     } else {
       // partial fractions of 1 / ((s + 1) (s^2 + s + 1)), whose roots are -1 and -1/2 +- i root
       constexpr double kRoot = 0.8660254037844386;
       A << 0, 1, 0, 0, 0, 1, -1, -2, -2;
-      const double e1 = std::exp(-a), e2 = std::exp(-a / 2);
-      const double c = e2 * std::cos(kRoot * a), s = e2 * std::sin(kRoot * a) / (2 * kRoot);
+      const Scalar e1 = exp(-a), e2 = exp(-a / 2);
+      const Scalar c = e2 * cos(kRoot * a), s = e2 * sin(kRoot * a) / (2 * kRoot);
       return (e1 - 2 * s) * I + (c + s - e1) * (A + 2 * I) + (e1 - c + s) * (A * A + 2 * A + 2 * I);
     }
   }
 
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Momentum<M> momentum_;
-  StepChange new_step_;
-  Mat<Order> Phi_ = Mat<Order>::Identity();
-  Eigen::Matrix<double, kDof, Order> x_ = x_.Zero();  // [N m] d, d'/w, d''/w^2; row: joint
+  StepChange<Scalar> new_step_;
+  Mat<Order, Scalar> Phi_ = Mat<Order, Scalar>::Identity();
+  Eigen::Matrix<Scalar, kDof, Order> x_ = x_.Zero();  // [N m] d, d'/w, d''/w^2; row: joint
 };
 
 /// mo2

@@ -23,9 +23,13 @@ class InverseDynamics {
  public:
   static constexpr const char* kName = "inverse_dynamics";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = InverseDynamics<Other>;  ///< the same over another model
 
   struct Parameters {
-    double bandwidth =
+    Scalar bandwidth =
         30;  ///< [rad/s] of the filter: larger is faster and noisier (ours; (4) has none)
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
@@ -51,17 +55,20 @@ class InverseDynamics {
     tau_ext_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
+    Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);
     now.bias += model_.friction(y.qd);
     if (status == Status::kOk) {
-      const double h = sampling_.h();
-      const Vec<kDof> qdd = (y.qd - qd_) / h;
-      const Vec<kDof> raw =
+      const Scalar h = sampling_.h();
+      const Vec<kDof, Scalar> qdd = (y.qd - qd_) / h;
+      const Vec<kDof, Scalar> raw =
           sampling_.torque(y) - 0.5 * ((now.B + before_.B) * qdd + now.bias + before_.bias);  // (4)
-      if (new_step_(h)) share_ = -std::expm1(-p_.bandwidth * h);
+      if (new_step_(h)) {
+        using std::expm1;
+        share_ = -expm1(-p_.bandwidth * new_step_.h());
+      }
       tau_ext_ += share_ * (raw - tau_ext_);
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
@@ -73,16 +80,22 @@ class InverseDynamics {
     return {tau_ext_, status, sampling_.joints()};
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tie(sampling_, new_step_, share_, before_.B, before_.bias, qd_, tau_ext_);
+  }
+
  private:
   M model_;
   Parameters p_;
-  Sampling<kDof> sampling_;
-  StepChange new_step_;
-  double share_ = 0;  // [1] 1 - a
+  Sampling<kDof, Scalar> sampling_;
+  StepChange<Scalar> new_step_;
+  Scalar share_ = 0;  // [1] 1 - a
   // at the last used sample, bias with friction
-  Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
-  Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  Dynamics<kDof, Scalar> before_{Mat<kDof, Scalar>::Zero(), Vec<kDof, Scalar>::Zero()};
+  Vec<kDof, Scalar> qd_ = Vec<kDof, Scalar>::Zero();       // [rad/s] there
+  Vec<kDof, Scalar> tau_ext_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

@@ -6,17 +6,19 @@
 /// terms of n are the mean of both ends.
 #pragma once
 
+#include <tuple>
+
 #include "estimators/concepts.h"
 
 namespace tauext {
 
 /// (i) over the step from k-1 to k.
-template <int N>
+template <int N, class Scalar = double>
 struct MomentumStep {
-  Mat<N> B;   ///< [kg m^2] at k
-  Vec<N> p;   ///< [N m s] at k
-  Vec<N> dp;  ///< [N m s] p_k - p_k-1
-  Vec<N> n;   ///< [N m] over the step
+  Mat<N, Scalar> B;   ///< [kg m^2] at k
+  Vec<N, Scalar> p;   ///< [N m s] at k
+  Vec<N, Scalar> dp;  ///< [N m s] p_k - p_k-1
+  Vec<N, Scalar> n;   ///< [N m] over the step
 };
 
 /// (i) from sample to sample over a robot model M.
@@ -24,17 +26,18 @@ template <RobotModel M>
 class Momentum {
  public:
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
 
   explicit Momentum(const M& model) : model_(model) {}  ///< of this robot
 
   /// Goes on to sample y, tau [N m] having acted meanwhile; of what is returned at the first sample
   /// only B and p mean anything.
-  [[gnu::always_inline]] MomentumStep<kDof> advance(const Measurement<kDof>& y,
-                                                    const Vec<kDof>& tau) noexcept {
-    MomentumStep<kDof> s;
-    Vec<kDof> rest;
+  [[gnu::always_inline]] MomentumStep<kDof, Scalar> advance(const Measurement<kDof, Scalar>& y,
+                                                            const Vec<kDof, Scalar>& tau) noexcept {
+    MomentumStep<kDof, Scalar> s;
+    Vec<kDof, Scalar> rest;
     if constexpr (requires { model_.momentum_dynamics(y.q, y.qd); }) {
-      const Dynamics<kDof> now = model_.momentum_dynamics(y.q, y.qd);
+      const Dynamics<kDof, Scalar> now = model_.momentum_dynamics(y.q, y.qd);
       s.B = now.B;
       s.p = s.B * y.qd;
       rest = now.bias - model_.friction(y.qd);
@@ -50,10 +53,12 @@ class Momentum {
     return s;
   }
 
+  auto memory() noexcept { return std::tie(p_, rest_); }  ///< see runs/runs.h
+
  private:
   M model_;
-  Vec<kDof> p_ = Vec<kDof>::Zero();     // [N m s] at the last sample
-  Vec<kDof> rest_ = Vec<kDof>::Zero();  // [N m] n without tau there
+  Vec<kDof, Scalar> p_ = Vec<kDof, Scalar>::Zero();     // [N m s] at the last sample
+  Vec<kDof, Scalar> rest_ = Vec<kDof, Scalar>::Zero();  // [N m] n without tau there
 };
 
 }  // namespace tauext

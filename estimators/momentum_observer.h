@@ -28,11 +28,15 @@ class MomentumObserver {
  public:
   static constexpr const char* kName = "mo1";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = MomentumObserver<Other>;  ///< the same over another model
 
   struct Parameters {
     /// [rad/s] bandwidth of every joint, positive: larger is faster and noisier; 90 % of a step
     /// after ln 10 / K, a ramp is followed slope / K behind
-    Vec<kDof> K = Vec<kDof>::Constant(30);
+    Vec<kDof, Scalar> K = Vec<kDof, Scalar>::Constant(30);
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
@@ -43,7 +47,9 @@ class MomentumObserver {
     }
 
     /// Bandwidth w [rad/s] on every joint, in every pose.
-    static Parameters for_bandwidth(const M&, double w) { return {.K = Vec<kDof>::Constant(w)}; }
+    static Parameters for_bandwidth(const M&, double w) {
+      return {.K = Vec<kDof, Scalar>::Constant(w)};
+    }
   };
 
   /// @throws std::invalid_argument for parameters out of range
@@ -58,13 +64,18 @@ class MomentumObserver {
     tau_ext_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
+    const MomentumStep<kDof, Scalar> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kOk) {
-      const double h = sampling_.h();
-      if (new_step_(h)) share_ = (-h * p_.K).unaryExpr([](double x) { return -std::expm1(x); });
+      const Scalar h = sampling_.h();
+      if (new_step_(h)) {
+        share_ = (-new_step_.h() * p_.K).unaryExpr([](const Scalar& x) {
+          using std::expm1;
+          return Scalar(-expm1(x));
+        });
+      }
       tau_ext_ += share_.cwiseProduct(step.n - step.dp / h - tau_ext_);  // (ii)
       if (!within(tau_ext_, kEstimateLimit)) {
         tau_ext_.setZero();
@@ -74,13 +85,19 @@ class MomentumObserver {
     return {tau_ext_, status, sampling_.joints()};
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(std::tie(sampling_, new_step_, share_, tau_ext_), momentum_.memory());
+  }
+
  private:
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Momentum<M> momentum_;
-  StepChange new_step_;
-  Vec<kDof> share_ = Vec<kDof>::Zero();    // [1] 1 - a of (ii)
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  StepChange<Scalar> new_step_;
+  Vec<kDof, Scalar> share_ = Vec<kDof, Scalar>::Zero();    // [1] 1 - a of (ii)
+  Vec<kDof, Scalar> tau_ext_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

@@ -32,11 +32,15 @@ class Ndob {
  public:
   static constexpr const char* kName = "ndob";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = Ndob<Other>;  ///< the same over another model
 
   struct Parameters {
     /// [N m s/rad] gain of (18), diagonal, positive: larger is faster and noisier; no default fits
     /// every arm
-    Vec<kDof> X = Vec<kDof>::Zero();
+    Vec<kDof, Scalar> X = Vec<kDof, Scalar>::Zero();
     Integration integration = Integration::kSecondOrder;  ///< (i), or (18) at k-1 alone
     Start start = Start::kFirstMeasurement;               ///< z_0 = X qd_0, or 0
     TorqueSampling torque = TorqueSampling::kHeld;        ///< when tau acted
@@ -55,7 +59,7 @@ class Ndob {
     /// Bandwidth w [rad/s] of every joint that moves alone at q = 0: X = w diag(B(0)). Joints
     /// coupled by B spread about it, and so does every other pose.
     static Parameters for_bandwidth(const M& model, double w) {
-      return {.X = w * Mat<kDof>(model.inertia(Vec<kDof>::Zero())).diagonal()};
+      return {.X = w * Mat<kDof, Scalar>(model.inertia(Vec<kDof, Scalar>::Zero())).diagonal()};
     }
   };
 
@@ -71,10 +75,10 @@ class Ndob {
     tau_ext_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    Dynamics<kDof> now = dynamics(model_, y.q, y.qd);
+    Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);
     now.bias += model_.friction(y.qd);
     if (status == Status::kStarted) {
       start(y);
@@ -94,47 +98,52 @@ class Ndob {
     return {tau_ext_, status, sampling_.joints()};
   }
 
- private:
-  using Column = detail::Column<kDof>;
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept { return std::tie(sampling_, z_, before_.B, before_.bias, qd_, tau_ext_); }
 
-  [[gnu::always_inline]] bool advance(double h, const Dynamics<kDof>& now,
-                                      const Measurement<kDof>& y) noexcept {
-    const Vec<kDof> tau = sampling_.torque(y);
+ private:
+  using Column = detail::Column<kDof, Scalar>;
+
+  [[gnu::always_inline]] bool advance(const Scalar& h, const Dynamics<kDof, Scalar>& now,
+                                      const Measurement<kDof, Scalar>& y) noexcept {
+    const Vec<kDof, Scalar> tau = sampling_.torque(y);
     if (p_.integration == Integration::kEuler) {
       return advance(h, before_.B, tau - before_.bias - tau_ext_);
     }
-    Mat<kDof> B;  // of (i), its lower triangle, element by element: see lanes.h
+    Mat<kDof, Scalar> B;  // of (i), its lower triangle, element by element: see lanes.h
 #pragma GCC unroll 8
     for (int j = 0; j < kDof; ++j) {
 #pragma GCC unroll 8
       for (int i = j; i < kDof; ++i) B(i, j) = 0.5 * (before_.B(i, j) + now.B(i, j));
       B(j, j) += 0.5 * h * p_.X[j];
     }
-    const Vec<kDof> change = p_.X.cwiseProduct(y.qd - qd_);
+    const Vec<kDof, Scalar> change = p_.X.cwiseProduct(y.qd - qd_);
     return advance(h, B, tau - tau_ext_ - 0.5 * (before_.bias + now.bias - change));
   }
 
   // false if B is not positive definite
-  [[gnu::always_inline]] bool advance(double h, const Mat<kDof>& B, const Vec<kDof>& b) noexcept {
-    const Ldlt<kDof> factor(B);
+  [[gnu::always_inline]] bool advance(const Scalar& h, const Mat<kDof, Scalar>& B,
+                                      const Vec<kDof, Scalar>& b) noexcept {
+    const Ldlt<kDof, Scalar> factor(B);
     const Column a = Column::template from<kDof>(factor.solve(b));  // [rad/s^2]
     z_ = z_ + h * X_ * a;                                           // (18)
     return factor.ok();
   }
 
-  void start(const Measurement<kDof>& y) noexcept {
+  void start(const Measurement<kDof, Scalar>& y) noexcept {
     if (p_.start == Start::kZero) tau_ext_ = -p_.X.cwiseProduct(y.qd);
     z_ = Column::template from<kDof>(tau_ext_ + p_.X.cwiseProduct(y.qd));
   }
 
   M model_;
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Column X_, z_ = Column::zero();  // [N m s/rad], [N m] padded
   // at the last used sample, bias with friction
-  Dynamics<kDof> before_{Mat<kDof>::Zero(), Vec<kDof>::Zero()};
-  Vec<kDof> qd_ = Vec<kDof>::Zero();       // [rad/s] there
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  Dynamics<kDof, Scalar> before_{Mat<kDof, Scalar>::Zero(), Vec<kDof, Scalar>::Zero()};
+  Vec<kDof, Scalar> qd_ = Vec<kDof, Scalar>::Zero();       // [rad/s] there
+  Vec<kDof, Scalar> tau_ext_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

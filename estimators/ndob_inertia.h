@@ -27,9 +27,13 @@ class NdobInertia {
  public:
   static constexpr const char* kName = "ndob_wb";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = NdobInertia<Other>;  ///< the same over another model
 
   struct Parameters {
-    double bandwidth = 30;  ///< [rad/s] w, positive: larger is faster and noisier
+    Scalar bandwidth = 30;  ///< [rad/s] w, positive: larger is faster and noisier
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
 
@@ -53,15 +57,15 @@ class NdobInertia {
     tau_ext_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
-    const double w = p_.bandwidth;
+    const MomentumStep<kDof, Scalar> step = momentum_.advance(y, sampling_.torque(y));
+    const Scalar w = p_.bandwidth;
     if (status == Status::kStarted) {
       z_ = tau_ext_ + w * step.p;
     } else {
-      const double hw = sampling_.h() * w;
+      const Scalar hw = sampling_.h() * w;
       z_ += hw / (1 + 0.5 * hw) * (step.n - tau_ext_ + 0.5 * w * step.dp);  // (i)
       tau_ext_ = z_ - w * step.p;                                           // (17)
       if (!within(tau_ext_, kEstimateLimit)) {
@@ -73,12 +77,18 @@ class NdobInertia {
     return {tau_ext_, status, sampling_.joints()};
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(std::tie(sampling_, z_, tau_ext_), momentum_.memory());
+  }
+
  private:
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Momentum<M> momentum_;
-  Vec<kDof> z_ = Vec<kDof>::Zero();        // [N m]
-  Vec<kDof> tau_ext_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  Vec<kDof, Scalar> z_ = Vec<kDof, Scalar>::Zero();        // [N m]
+  Vec<kDof, Scalar> tau_ext_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

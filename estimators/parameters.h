@@ -94,7 +94,10 @@ void check_field(const Field<P, T>& f, const P& p, const char* of) {
   };
   if constexpr (std::is_arithmetic_v<T>) {
     check(static_cast<double>(p.*f.at));
-  } else if constexpr (!std::is_enum_v<T>) {
+  } else if constexpr (requires(T x) {
+                         check(x[0]);
+                         x.size();
+                       }) {  // no choice, and no Pack
     for (Eigen::Index i = 0; i < (p.*f.at).size(); ++i) check((p.*f.at)[i]);
   }
 }

@@ -19,11 +19,14 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <tuple>
 
 #include "estimators/math/each.h"
+#include "estimators/math/lanes.h"
 #include "estimators/samples/clock.h"
 #include "estimators/samples/limits.h"
 #include "estimators/samples/options.h"
+#include "estimators/samples/plain.h"
 #include "estimators/samples/stillness.h"
 #include "estimators/types.h"
 
@@ -35,7 +38,14 @@ inline constexpr double kEstimateLimit = 1e9;
 /// |x| <= limit; false if an element is NaN or infinite.
 template <class Derived>
 bool within(const Eigen::MatrixBase<Derived>& x, double limit) noexcept {
-  return x.squaredNorm() <= limit * limit;
+  return all(x.squaredNorm() <= typename Derived::Scalar(limit * limit));
+}
+
+/// Whether all numbers are finite.
+template <class Derived>
+bool finite(const Eigen::MatrixBase<Derived>& x) noexcept {
+  using Scalar = typename Derived::Scalar;
+  return all((x - x).sum() == Scalar(0));
 }
 
 /// Parameters are checked when an estimator is built, which may throw; its steps never do.
@@ -44,8 +54,9 @@ inline void require(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(what);
 }
 
-/// The samples that an estimator of N joints has used, and its verdict on the next one.
-template <int N>
+/// The samples that an estimator of N joints has used, and its verdict on the next one. Of a Pack:
+/// runs/sampling_of_runs.h.
+template <int N, class Scalar = double>
 class Sampling {
  public:
   /// @param max_gap [s] longest step to integrate over
@@ -54,7 +65,7 @@ class Sampling {
   /// @throws std::invalid_argument if max_gap is not positive
   explicit Sampling(double max_gap, const ArmLimits<N>& limits = {},
                     TorqueSampling torque = TorqueSampling::kHeld)
-      : clock_(max_gap), limits_(padded(limits)), torque_(torque) {
+      : clock_(max_gap), rules_(padded(limits)), torque_(torque) {
     require(max_gap > 0, "max_gap [s] must be positive");
     reset();
   }
@@ -69,16 +80,16 @@ class Sampling {
     speed_.reset();
     doubted_ = wrapped_ = false;
     last_.q.setConstant(std::nan(""));  // which no reading repeats
-    usual_.setZero();
+    rules_.usual.setZero();
   }
 
   /// Whether y can be used: kOk to step by h(), kStarted to start at y, else what is wrong with it,
   /// and it has to be left out.
   [[gnu::always_inline]] Status accept(const Measurement<N>& sample) noexcept {
     const Sample y = padded(sample);
-    if (clock_.follows(y.t) && !watch_ && plain(y)) [[likely]] {
+    if (clock_.follows(y.t) && !watch_ && rules_.plain(last_, y, y.t - last_.t)) [[likely]] {
       clock_.accept(y.t);
-      learn(y, h());
+      learn(y);
       remember(y);
       return Status::kOk;
     }
@@ -110,6 +121,21 @@ class Sampling {
   /// [rad] by which it then has; a filter of q has to do the same.
   Vec<N> turns() const noexcept { return turns_.template head<N>(); }
 
+  /// All that plain samples change: what is remembered of the last one; see runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(clock_.memory(), std::tie(last_.t, last_.q, last_.qd, last_.tau, held_,
+                                                    rules_.usual, speed_.changes()));
+  }
+  /// Since plain samples followed the last one that accept() has judged, no other one waits.
+  void settle() noexcept {
+    clock_.settle(last_.t);
+    waiting_ = 0;
+    joints_ = 0;
+    wrapped_ = doubted_ = false;
+  }
+  /// Whether the next sample, plain or not, has to be judged.
+  bool watches() const noexcept { return watch_; }
+
   /// Which joints the last verdict is about, bit 0 for the first; 0 where it is about none.
   std::uint8_t joints() const noexcept { return joints_; }
 
@@ -133,59 +159,17 @@ class Sampling {
             padded(a.qdd),     padded(a.dtau),   a.turns};
   }
 
-  // (i)
-  [[gnu::always_inline]] static bool continuous(const Sample& a, const Sample& b, double h,
-                                                int j) noexcept {
-    return std::abs(b.q[j] - a.q[j] - 0.5 * h * (b.qd[j] + a.qd[j])) <=
-           0.005 + 8 * h * std::abs(a.qd[j]);
-  }
-  // (ii)
-  [[gnu::always_inline]] double most(double h, int j) const noexcept {
-    return 0.02 + h * limits_.qdd[j] + 6 * usual_[j];
-  }
-  // the mean of |qd_k - qd_k-1| over some 64 samples, to which an outlier adds little
-  [[gnu::always_inline]] void learn(const Sample& y, double h) noexcept {
-    for (int j = 0; j < P; ++j) {
-      const double change = std::abs(y.qd[j] - last_.qd[j]);
-      usual_[j] += 0x1p-6 * (std::min(change, most(h, j) - 4 * usual_[j]) - usual_[j]);
-    }
-    speed_.learn(last_, y);
-  }
-  [[gnu::always_inline]] bool calm(const Sample& y, double h, int j) const noexcept {
-    return std::abs(y.qd[j] - last_.qd[j]) <= most(h, j);
-  }
-  [[gnu::always_inline]] bool smooth(double a, double b, int j) const noexcept {
-    return std::abs(b - a) <= limits_.dtau[j];
-  }
-  [[gnu::always_inline]] bool inside(const Sample& y, int j) const noexcept {
-    return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
-           (std::abs(y.qd[j]) <= limits_.qd[j]) & (std::abs(y.tau[j]) <= limits_.tau[j]);
-  }
-  // whether a joint may stand still, by either rule
-  [[gnu::always_inline]] static bool stands(const Sample& a, const Sample& b, double h,
-                                            int j) noexcept {
-    const bool same = b.q[j] == a.q[j];
-    return ((b.qd[j] == a.qd[j]) & (!same | (b.qd[j] != 0))) |
-           (same & (h * std::abs(b.qd[j]) > Stillness<N, P>::kMotion));
-  }
-  // false where judge() has to look
-  [[gnu::always_inline]] bool plain(const Sample& y) const noexcept {
-    const double h = y.t - last_.t;
-    double others = 0;  // not an integer: a compiler takes four joints at once then
-    for (int j = 0; j < P; ++j) {
-      const bool ok = inside(y, j) & continuous(last_, y, h, j) & calm(y, h, j) &
-                      smooth(last_.tau[j], y.tau[j], j) & !stands(last_, y, h, j);
-      others += ok ? 0 : 1;
-    }
-    return others == 0;
-  }
-
   [[gnu::always_inline]] void remember(const Sample& y) noexcept {
     held_ = last_.tau;
     last_ = y;
     waiting_ = 0;
     joints_ = 0;
     wrapped_ = false;
+  }
+
+  [[gnu::always_inline]] void learn(const Sample& y) noexcept {
+    rules_.learn(last_, y, h());
+    speed_.learn(last_, y);
   }
 
   template <class Wrong>
@@ -206,9 +190,10 @@ class Sampling {
     joints_ = which(
         [&](int j) { return !readable(y.q[j]) || !readable(y.qd[j]) || !readable(y.tau[j]); });
     if (joints_ != 0) return Status::kBadMeasurement;
-    joints_ = which([&](int j) { return !inside(y, j); });
+    joints_ = which([&](int j) { return !rules_.inside(y, j); });
     if (joints_ != 0) return Status::kOutOfRange;
-    joints_ = stillness_.frozen(last_, y, [&](int j) { return calm(y, y.t - last_.t, j); });
+    joints_ =
+        stillness_.frozen(last_, y, [&](int j) { return rules_.calm(last_, y, y.t - last_.t, j); });
     joints_ |= speed_.frozen(last_, y);
     if (joints_ != 0) return Status::kFrozen;
     const Clock before = clock_;
@@ -231,18 +216,19 @@ class Sampling {
   Status judge_step(const Sample& y) noexcept {
     Sample from = last_;
     for (int j = 0; j < N; ++j)
-      turns_[j] = kTurn * (limits_.turns >> j & 1) * std::round((y.q[j] - last_.q[j]) / kTurn);
+      turns_[j] =
+          kTurn * (rules_.limits().turns >> j & 1) * std::round((y.q[j] - last_.q[j]) / kTurn);
     from.q += turns_;
-    const auto leaps = which([&](int j) { return !continuous(from, y, h(), j); });
-    const auto jumps = which([&](int j) { return !smooth(last_.tau[j], y.tau[j], j); });
-    auto jolts = which([&](int j) { return !calm(y, h(), j); });
+    const auto leaps = which([&](int j) { return !rules_.continuous(from, y, h(), j); });
+    const auto jumps = which([&](int j) { return !rules_.smooth(last_.tau[j], y.tau[j], j); });
+    auto jolts = which([&](int j) { return !rules_.calm(last_, y, h(), j); });
     if (torque_ == TorqueSampling::kInstant) jolts |= jumps;
-    learn(y, h());
+    learn(y);
     joints_ = leaps | jolts;
     if (jumped_ == kFresh && (joints_ | jumps) != 0) return start(y);
     if (joints_ == 0 || (leaps == 0 && borne_out(y))) return go_on(y, jumps);
     const double h = y.t - waits_.t;
-    const auto strays = which([&](int j) { return !continuous(waits_, y, h, j); });
+    const auto strays = which([&](int j) { return !rules_.continuous(waits_, y, h, j); });
     waiting_ = waiting_ > 0 && h > 0 && strays == 0 ? waiting_ + 1 : 1;
     waits_ = y;
     return waiting_ < kClockSamples ? Status::kJump : start(y);
@@ -254,18 +240,19 @@ class Sampling {
     const auto other = [](double last, double before, double now, double limit) {
       return std::abs(now - before) > limit + std::abs(before - last);
     };
-    return waiting_ > 0 && which([&](int j) {
-                             return other(last_.qd[j], waits_.qd[j], y.qd[j], most(h, j)) ||
-                                    (torque_ == TorqueSampling::kInstant &&
-                                     other(last_.tau[j], waits_.tau[j], y.tau[j], limits_.dtau[j]));
-                           }) == 0;
+    return waiting_ > 0 &&
+           which([&](int j) {
+             return other(last_.qd[j], waits_.qd[j], y.qd[j], rules_.most(h, j)) ||
+                    (torque_ == TorqueSampling::kInstant &&
+                     other(last_.tau[j], waits_.tau[j], y.tau[j], rules_.limits().dtau[j]));
+           }) == 0;
   }
   // y, whose tau has jumped at these joints
   Status go_on(const Sample& y, std::uint8_t jumps) noexcept {
-    stillness_.go_on(last_, y, [&](int j) { return calm(y, h(), j); });
+    stillness_.go_on(last_, y, [&](int j) { return rules_.calm(last_, y, h(), j); });
     speed_.go_on(last_, y, !turns_.isZero(0));
-    const auto back =
-        which([&](int j) { return (jumped_ & jumps) >> j & 1 && smooth(held_[j], y.tau[j], j); });
+    const auto back = which(
+        [&](int j) { return (jumped_ & jumps) >> j & 1 && rules_.smooth(held_[j], y.tau[j], j); });
     for (int j = 0; j < N; ++j) last_.tau[j] = back >> j & 1 ? held_[j] : last_.tau[j];
     remember(y);
     joints_ = back | which([&](int j) { return turns_[j] != 0; });
@@ -275,12 +262,11 @@ class Sampling {
   }
 
   Clock clock_;
-  ArmLimits<P> limits_;
+  detail::Rules<P> rules_;
+  Sample last_;  // that was used
   TorqueSampling torque_;
-  Sample last_;                   // that was used
   Vec<P> held_ = Vec<P>::Zero();  // [N m] tau of the one before
   Vec<P> turns_ = held_;          // [rad] by which q has wrapped, if it has
-  Vec<P> usual_ = held_;          // [rad/s] change of qd from sample to sample
   Sample waits_;                  // that jumped, waiting_ in a row
   int waiting_ = 0;
   Stillness<N, P> stillness_;

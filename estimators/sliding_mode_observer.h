@@ -31,17 +31,24 @@ class SlidingModeObserver {
  public:
   static constexpr const char* kName = "smo";
   static constexpr int kDof = M::kDof;
+  using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
+  using Model = M;             ///< of the arm
+  template <class Other>
+  using For = SlidingModeObserver<Other>;  ///< the same over another model
 
   /// S1, S2 have no default that fits every arm. In all of them larger is faster and noisier.
   struct Parameters {
-    Vec<kDof> S1 =
-        Vec<kDof>::Zero();  ///< [N m/s] at least 0: rate of tau_ext that is followed exactly;
-                            ///< noise moves d by up to h S1 a step
-    Vec<kDof> S2 = Vec<kDof>::Zero();  ///< [1/s^2] positive: of the linear part, w^2
-    Vec<kDof> T1 = Vec<kDof>::Zero();  ///< [sqrt(N m / s)] at least 0, about sqrt(2 S1): damps S1
-    Vec<kDof> T2 = Vec<kDof>::Zero();  ///< [1/s] at least 0: damps S2
-    TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
-    double max_gap = 0.05;                          ///< [s] a longer gap restarts the observer
+    Vec<kDof, Scalar> S1 =
+        Vec<kDof,
+            Scalar>::Zero();  ///< [N m/s] at least 0: rate of tau_ext that is followed exactly;
+                              ///< noise moves d by up to h S1 a step
+    Vec<kDof, Scalar> S2 =
+        Vec<kDof, Scalar>::Zero();  ///< [1/s^2] positive: of the linear part, w^2
+    Vec<kDof, Scalar> T1 =
+        Vec<kDof, Scalar>::Zero();  ///< [sqrt(N m / s)] at least 0, about sqrt(2 S1): damps S1
+    Vec<kDof, Scalar> T2 = Vec<kDof, Scalar>::Zero();  ///< [1/s] at least 0: damps S2
+    TorqueSampling torque = TorqueSampling::kHeld;     ///< when tau acted
+    double max_gap = 0.05;                             ///< [s] a longer gap restarts the observer
 
     static constexpr auto fields() {
       using P = Parameters;
@@ -57,7 +64,8 @@ class SlidingModeObserver {
     /// as large as the linear ones where the velocity is wrong by 1e-4 rad/s, a tenth of a usual
     /// sensor's noise, e_0 = 1e-4 diag(B(0)): smaller errors than that are the sliding mode's.
     static Parameters for_bandwidth(const M& model, double w) {
-      const Vec<kDof> e_0 = 1e-4 * Mat<kDof>(model.inertia(Vec<kDof>::Zero())).diagonal();
+      const Vec<kDof, Scalar> e_0 =
+          1e-4 * Mat<kDof, Scalar>(model.inertia(Vec<kDof, Scalar>::Zero())).diagonal();
       Parameters p;
       p.T2.setConstant(kRoot2 * w);
       p.S2.setConstant(w * w);
@@ -78,19 +86,19 @@ class SlidingModeObserver {
     d_.setZero();
   }
 
-  Estimate<kDof> update(const Measurement<kDof>& y) noexcept {
+  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {d_, status, sampling_.joints()};
-    const MomentumStep<kDof> step = momentum_.advance(y, sampling_.torque(y));
+    const MomentumStep<kDof, Scalar> step = momentum_.advance(y, sampling_.torque(y));
     if (status == Status::kStarted) {
       e_.setZero();
       return {d_, status, sampling_.joints()};
     }
-    const double h = sampling_.h();
-    const Vec<kDof> b = e_ - step.dp + h * (step.n - d_);
+    const Scalar h = sampling_.h();
+    const Vec<kDof, Scalar> b = e_ - step.dp + h * (step.n - d_);
 #pragma GCC unroll 8
     for (int i = 0; i < kDof; ++i) advance(i, h, b[i]);
-    if (!(e_.allFinite() && within(d_, kEstimateLimit))) {
+    if (!(finite(e_) && within(d_, kEstimateLimit))) {
       e_.setZero();
       d_.setZero();
       status = Status::kDiverged;
@@ -98,29 +106,39 @@ class SlidingModeObserver {
     return {d_, status, sampling_.joints()};
   }
 
+  const Parameters& parameters() const noexcept {
+    return p_;
+  }  ///< as constructed
+  /// What a run is at: all that changes from sample to sample. See runs/runs.h.
+  auto memory() noexcept {
+    return std::tuple_cat(std::tie(sampling_, e_, d_), momentum_.memory());
+  }
+
  private:
   static constexpr double kRoot2 = 1.4142135623730951;
 
   // (ii) for joint i
-  [[gnu::always_inline]] void advance(int i, double h, double b) noexcept {
-    const double slide = h * h * p_.S1[i];
-    const double beyond = std::abs(b) - slide;
-    double e = 0, sgn = slide > 0 ? b / slide : 0;
-    if (beyond > 0) {
-      const double linear = 1 + h * (p_.T2[i] + h * p_.S2[i]), half = 0.5 * h * p_.T1[i];
-      const double root = beyond / (half + std::sqrt(half * half + linear * beyond));
-      sgn = std::copysign(1, b);
-      e = sgn * root * root;
+  [[gnu::always_inline]] void advance(int i, const Scalar& h, const Scalar& b) noexcept {
+    using std::abs, std::copysign, std::sqrt;
+    const Scalar slide = h * h * p_.S1[i];
+    const Scalar beyond = abs(b) - slide;
+    Scalar e = 0, sgn = select(slide > Scalar(0), Scalar(b / slide), Scalar(0));
+    const auto is_beyond = beyond > Scalar(0);
+    if (any(is_beyond)) {
+      const Scalar linear = 1 + h * (p_.T2[i] + h * p_.S2[i]), half = 0.5 * h * p_.T1[i];
+      const Scalar root = beyond / (half + sqrt(half * half + linear * beyond));
+      sgn = select(is_beyond, Scalar(copysign(Scalar(1), b)), sgn);
+      e = select(is_beyond, Scalar(sgn * root * root), Scalar(0));
     }
     e_[i] = e;
     d_[i] += h * (p_.S1[i] * sgn + p_.S2[i] * e);
   }
 
   Parameters p_;
-  Sampling<kDof> sampling_;
+  Sampling<kDof, Scalar> sampling_;
   Momentum<M> momentum_;
-  Vec<kDof> e_ = Vec<kDof>::Zero();  // [N m s] p_hat - p
-  Vec<kDof> d_ = Vec<kDof>::Zero();  // [N m] the last estimate
+  Vec<kDof, Scalar> e_ = Vec<kDof, Scalar>::Zero();  // [N m s] p_hat - p
+  Vec<kDof, Scalar> d_ = Vec<kDof, Scalar>::Zero();  // [N m] the last estimate
 };
 
 }  // namespace tauext

@@ -25,13 +25,13 @@ using Mat = Eigen::Matrix<Scalar, N, N>;
 /// [m/s^2] gravity; the letter g is kept for the gravity torque of (3).
 inline constexpr double kGravity = 9.81;
 
-/// One sample of the sensors of an arm with N joints.
-template <int N>
+/// One sample of the sensors of an arm with N joints; with a Pack for Scalar, of several arms.
+template <int N, class Scalar = double>
 struct Measurement {
-  double t = 0;                 ///< [s] time stamp, increasing
-  Vec<N> q = Vec<N>::Zero();    ///< [rad] joint positions
-  Vec<N> qd = Vec<N>::Zero();   ///< [rad/s] joint velocities
-  Vec<N> tau = Vec<N>::Zero();  ///< [N m] link-side actuation, held over [t_k, t_k+1)
+  Scalar t = 0;                                 ///< [s] time stamp, increasing
+  Vec<N, Scalar> q = Vec<N, Scalar>::Zero();    ///< [rad] joint positions
+  Vec<N, Scalar> qd = Vec<N, Scalar>::Zero();   ///< [rad/s] joint velocities
+  Vec<N, Scalar> tau = Vec<N, Scalar>::Zero();  ///< [N m] link-side actuation, over [t_k, t_k+1)
 };
 
 /// What became of a sample. With all but kOk the estimate is the previous one (0 at first, and with
@@ -67,10 +67,10 @@ constexpr bool used(Status s) noexcept {
 }
 
 /// An estimate of tau_ext from the samples 0..k.
-template <int N>
+template <int N, class Scalar = double>
 struct Estimate {
-  Vec<N> tau_ext = Vec<N>::Zero();  ///< [N m] with the sign of (3); always finite
-  Status status = Status::kOk;      ///< whether tau_ext may be used
+  Vec<N, Scalar> tau_ext = Vec<N, Scalar>::Zero();  ///< [N m] with the sign of (3); always finite
+  Status status = Status::kOk;                      ///< whether tau_ext may be used
   /// The joints that the status is about, bit 0 for the first; with kOk those whose readings were
   /// put right: a torque of the sample before that was an outlier, a q that has wrapped by a turn.
   std::uint8_t joints = 0;

@@ -25,40 +25,43 @@
 
 namespace tauext {
 
+/// Tables I and II. I_zz is about the origin of its frame, the joint (about the centre of mass
+/// the printed values would exceed what a rod of that mass and length can have).
+struct WallMoBot3Parameters {
+  double a2 = 0.5;                         ///< [m] link 2, joint to joint
+  double a4 = 0.85;                        ///< [m] link 4, joint to joint
+  double m2 = 3.31, Izz2 = 0.309;          ///< [kg], [kg m^2]
+  double com2_x = 0.260, com2_y = 0;       ///< [m] in frame 2
+  double m3 = 10.42;                       ///< [kg]; where its COM lies drops out
+  double m4 = 6.21, Izz4 = 1.624;          ///< [kg], [kg m^2]
+  double com4_x = 0.440, com4_y = -0.008;  ///< [m] in frame 4
+  double m5 = 177, Izz5 = 69.79;           ///< [kg], [kg m^2] last link with the 150 kg panel
+  double com5_x = 0.089, com5_y = -0.317;  ///< [m] in frame 5
+  Vec<3> viscous = Vec<3>::Zero();         ///< [N m s/rad] of (3)'s F; the paper gives none
+  Vec<3> coulomb = Vec<3>::Zero();         ///< [N m] likewise, coulomb tanh(qd / v_s): friction.h
+  double v_s = 0.01;                       ///< [rad/s]
+
+  /// The arm with another panel [kg]: m5 changes and Izz5 with it, in proportion.
+  static WallMoBot3Parameters with_panel(double panel) {
+    WallMoBot3Parameters p;
+    const double m5 = p.m5 - 150 + panel;
+    p.Izz5 *= m5 / p.m5;
+    p.m5 = m5;
+    return p;
+  }
+};
+
 /// Dynamics of wallmobot3. Scalar is double in use; the tests put in complex and long numbers.
 /// kDry: with dry friction, which costs every step some 5 % even where it is 0.
 template <class Scalar = double, bool kDry = false>
 class BasicWallMoBot3 {
  public:
   static constexpr int kDof = 3;
+  using Number = Scalar;        ///< of what its numbers are
   using Vec3 = Vec<3, Scalar>;  ///< of q2, q3, q4
   using Mat3 = Mat<3, Scalar>;  ///< of q2, q3, q4
 
-  /// Tables I and II. I_zz is about the origin of its frame, the joint (about the centre of mass
-  /// the printed values would exceed what a rod of that mass and length can have).
-  struct Parameters {
-    double a2 = 0.5;                         ///< [m] link 2, joint to joint
-    double a4 = 0.85;                        ///< [m] link 4, joint to joint
-    double m2 = 3.31, Izz2 = 0.309;          ///< [kg], [kg m^2]
-    double com2_x = 0.260, com2_y = 0;       ///< [m] in frame 2
-    double m3 = 10.42;                       ///< [kg]; where its COM lies drops out
-    double m4 = 6.21, Izz4 = 1.624;          ///< [kg], [kg m^2]
-    double com4_x = 0.440, com4_y = -0.008;  ///< [m] in frame 4
-    double m5 = 177, Izz5 = 69.79;           ///< [kg], [kg m^2] last link with the 150 kg panel
-    double com5_x = 0.089, com5_y = -0.317;  ///< [m] in frame 5
-    Vec<3> viscous = Vec<3>::Zero();         ///< [N m s/rad] of (3)'s F; the paper gives none
-    Vec<3> coulomb = Vec<3>::Zero();         ///< [N m] likewise, coulomb tanh(qd / v_s): friction.h
-    double v_s = 0.01;                       ///< [rad/s]
-
-    /// The arm with another panel [kg]: m5 changes and Izz5 with it, in proportion.
-    static Parameters with_panel(double panel) {
-      Parameters p;
-      const double m5 = p.m5 - 150 + panel;
-      p.Izz5 *= m5 / p.m5;
-      p.m5 = m5;
-      return p;
-    }
-  };
+  using Parameters = WallMoBot3Parameters;
 
   /// The arm with these masses and lengths.
   /// @throws std::invalid_argument for dry friction without kDry
@@ -80,6 +83,11 @@ class BasicWallMoBot3 {
   }
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// The same arm, computed with S.
+  template <class S>
+  BasicWallMoBot3<S, kDry> with() const {
+    return BasicWallMoBot3<S, kDry>(p_);
+  }
 
   // inertia and momentum_bias are inlined so that a momentum observer takes the sines once for both
 

@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <random>
 #include <type_traits>
 #include <vector>
 
+#include "bench/kit/conformance_runs.h"
 #include "bench/kit/faults.h"
 #include "bench/kit/simulated_arm.h"
 #include "estimators/samples/limits.h"
@@ -29,7 +31,7 @@ class FaultClaims {
 
   /// On what make() builds for this arm.
   FaultClaims(const M& arm, Make make)
-      : make_(make), load_(0.1 * limits_of(arm).dtau), good_(readings(arm, load_)) {
+      : arm_(arm), make_(make), load_(0.1 * limits_of(arm).dtau), good_(readings(arm, load_)) {
     error_ = largest_error(run(good_));
   }
 
@@ -57,10 +59,25 @@ class FaultClaims {
     }
   }
 
+  /// Beside three other runs, of which one has this fault, too, 30 samples later, and one another
+  /// load, it says the same as alone.
+  void bears_in_company(const Fault<Measurement<N>>& fault) const requires ForRunsOf<E, M> {
+    SCOPED_TRACE(fault.name);
+    SamplesOfRuns<N, 4> samples = {good_, good_, good_, readings(arm_, -2 * load_)};
+    fault.apply(samples[1], kFault);
+    fault.apply(samples[2], kFault + 30);
+    std::array<typename E::Parameters, 4> p;
+    p.fill(made().parameters());
+    expect_runs_alike<E, 4>(arm_, p, samples);
+  }
+
   /// All of them.
   void check() const {
     SCOPED_TRACE("bears faults");
-    for (const auto& f : faults<Measurement<N>>(N / 2, 1e5)) bears(f);
+    for (const auto& f : faults<Measurement<N>>(N / 2, 1e5)) {
+      bears(f);
+      if constexpr (ForRunsOf<E, M>) bears_in_company(f);
+    }
   }
 
  private:
@@ -85,8 +102,9 @@ class FaultClaims {
   }
 
   // not inlined: a copy in each claim would take long to compile
+  [[gnu::noinline]] E made() const { return make_(); }
   [[gnu::noinline]] std::vector<Estimate<N>> run(const Samples& samples) const {
-    E e = make_();
+    E e = made();
     std::vector<Estimate<N>> out;
     for (const auto& y : samples) out.push_back(e.update(y));
     return out;
@@ -102,6 +120,7 @@ class FaultClaims {
     return worst;
   }
 
+  M arm_;
   Make make_;
   Vec<N> load_;  // [N m]
   Samples good_;

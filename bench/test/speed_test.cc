@@ -13,6 +13,9 @@
 #include "bench/peers/textbook_ekf.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/stages.h"
+#include "estimators/ekf.h"
+#include "estimators/ndob.h"
+#include "estimators/runs/runs.h"
 #include "mjcf/record.h"
 
 namespace tauext::test {
@@ -92,6 +95,42 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
     std::printf("ekf / %s: %.2f\n", name, r);
     EXPECT_GE(r, least) << name;
   }
+}
+
+// kRuns of an estimator at once over samples of one, each a little later than the last
+template <ForRuns E>
+class AtOnce final : public Runner {
+ public:
+  AtOnce(const typename E::Parameters& p, const Trace& trace) : runs_(WallMoBot3(), p) {
+    for (int k = 0; k < kBatch; ++k) {
+      for (int i = 0; i < kRuns; ++i) put(trace.measurement<3>(k + 10 * i), i, samples_[k]);
+    }
+  }
+  Output run() override { return {}; }
+  void batch() override {
+    runs_.reset();
+    for (const auto& y : samples_) sum_ += runs_.update(y).tau_ext[0][0];
+  }
+
+ private:
+  Runs<E> runs_;
+  std::vector<typename Runs<E>::Sample> samples_{kBatch};
+  double sum_ = 0;
+};
+
+TEST_F(Speed, RunsAtOnceTakeLessThanARunAlone) {
+#ifndef __AVX2__
+  GTEST_SKIP() << "built without AVX2 (TAUEXT_ARCH): a register holds two runs";
+#endif
+  const auto check = [&](Runner& alone, Runner& at_once, const char* name, double least) {
+    const double r = kRuns * ratio(alone, at_once, least / kRuns);
+    std::printf("%s / one of %d at once: %.2f\n", name, kRuns, r);
+    EXPECT_GE(r, least) << name;
+  };
+  AtOnce<Ekf<WallMoBot3>> ekf(EkfParameters<3>::paper(), trace_);
+  AtOnce<Ndob<WallMoBot3>> ndob(Ndob<WallMoBot3>::Parameters::paper(), trace_);
+  check(*runner("ekf"), ekf, "ekf", kRuns == 8 ? 3 : 1.6);
+  check(*runner("ndob"), ndob, "ndob", kRuns == 8 ? 3 : 1.8);
 }
 
 // pushes as a cycle with three estimators makes them, five times as often, while the other thread

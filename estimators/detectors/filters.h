@@ -28,7 +28,7 @@ class LowPass {
   }
 
   /// (i) at t [s], which is later than the last one.
-  const Vec<N>& operator()(double t, const Vec<N>& x) noexcept {
+  [[gnu::always_inline]] const Vec<N>& operator()(double t, const Vec<N>& x) noexcept {
     const double h = t - t_;
     if (new_step_(h)) decay_ = std::exp(-w_ * h);
     low_ = x_ + decay_ * (low_ - x_);
@@ -39,7 +39,7 @@ class LowPass {
 
  private:
   double w_;
-  StepChange new_step_;
+  StepChange<> new_step_;
   double decay_ = 0;
   double t_ = 0;
   Vec<N> x_ = Vec<N>::Zero();

@@ -13,7 +13,7 @@ namespace tauext::detail {
 
 /// A number of each of N joints, with zeros appended.
 template <int N, class Scalar = double>
-using Column = Each<kPadded<N>, Scalar>;
+using Column = Each<kPadded<N, Scalar>, Scalar>;
 
 /// N columns of N.
 template <int N, class Scalar = double>
@@ -154,6 +154,31 @@ template <Into kInto, std::size_t kTransposed, int kColumns, int N, std::size_t 
   }
 }
 
+/// The same of all columns, of other scalars than double.
+template <Into kInto, std::size_t kTransposed = 0, int N, class Scalar, std::size_t Terms>
+[[gnu::always_inline]] inline void products(const Block<N, Scalar>* const (&a)[Terms],
+                                            const Block<N, Scalar>* const (&b)[Terms],
+                                            Block<N, Scalar>& c) noexcept {
+#pragma GCC unroll 8
+  for (int j = 0; j < N; ++j) {
+#pragma GCC unroll 8
+    for (int i = kTransposed == 1 && Terms == 1 && a[0] == b[0] ? j : 0; i < N; ++i) {
+      Scalar sum = kInto == Into::kSet ? Scalar(0) : c.column[j].x[i];
+#pragma GCC unroll 3
+      for (std::size_t t = 0; t < Terms; ++t) {
+#pragma GCC unroll 8
+        for (int k = 0; k < N; ++k) {
+          const Scalar& times = t < kTransposed ? b[t]->column[k].x[j] : b[t]->column[j].x[k];
+          const Scalar product = a[t]->column[k].x[i] * times;
+          sum = kInto == Into::kSubtract ? sum - product : sum + product;
+        }
+      }
+      c.column[j].x[i] = sum;
+      if (kTransposed == 1 && Terms == 1 && a[0] == b[0] && i != j) c.column[i].x[j] = sum;
+    }
+  }
+}
+
 /// c becomes the sum of a_t b_t, or gets it, or loses it. The first kTransposed b are given as
 /// their transposes. Up to six columns of c at a time stay in registers.
 template <Into kInto, std::size_t kTransposed = 0, int N, std::size_t Terms>
@@ -178,8 +203,8 @@ struct LinearMotion {
   /// How qdd changes with (q; qd; tau_ext) = (b_0; b_1; d), a column for each change:
   /// -B^-1 (dr/dq b_0 + dr/dqd b_1 + d). The first kTransposed b are given as their transposes.
   template <std::size_t kTransposed>
-  [[gnu::always_inline]] Block<N> times(const Block<N>* const (&b)[2],
-                                        const Block<N>& d) const noexcept {
+  [[gnu::always_inline]] Block<N, Scalar> times(const Block<N, Scalar>* const (&b)[2],
+                                                const Block<N, Scalar>& d) const noexcept {
     if constexpr (N > 4) {  // in code that stands once: it must fit into the first cache
       return apart<kTransposed>(b, d);
     } else {
@@ -189,14 +214,14 @@ struct LinearMotion {
 
  private:
   template <std::size_t kTransposed>
-  [[gnu::noinline]] Block<N> apart(const Block<N>* const (&b)[2],
-                                   const Block<N>& d) const noexcept {
+  [[gnu::noinline]] Block<N, Scalar> apart(const Block<N, Scalar>* const (&b)[2],
+                                           const Block<N, Scalar>& d) const noexcept {
     return product<kTransposed>(b, d);
   }
   template <std::size_t kTransposed>
-  [[gnu::always_inline]] Block<N> product(const Block<N>* const (&b)[2],
-                                          const Block<N>& d) const noexcept {
-    Block<N> sum = d, out;
+  [[gnu::always_inline]] Block<N, Scalar> product(const Block<N, Scalar>* const (&b)[2],
+                                                  const Block<N, Scalar>& d) const noexcept {
+    Block<N, Scalar> sum = d, out;
     products<Into::kAdd, kTransposed>({&by_q, &by_qd}, b, sum);
     products<Into::kSet>({&minus_inverse}, {&sum}, out);
     return out;

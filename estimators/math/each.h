@@ -13,9 +13,9 @@
 
 namespace tauext::detail {
 
-/// N numbers with zeros appended, to whole Lanes; one needs none.
-template <int N>
-inline constexpr int kPadded = N == 1 ? 1 : (N + 3) / 4 * 4;
+/// N numbers with zeros appended, to whole Lanes; one needs none, nor do others than doubles.
+template <int N, class Scalar = double>
+inline constexpr int kPadded = N == 1 || !std::is_same_v<Scalar, double> ? N : (N + 3) / 4 * 4;
 
 /// Bodies of a piece: those of a register. Up to 4 bodies, and other scalars than double, are one
 /// piece; 5 to 8 are two, computed one after the other where no body needs the other piece.
@@ -27,51 +27,65 @@ template <int P, class Scalar>
 struct Each {
   Scalar x[P];  ///< by body
 
+  Each() noexcept = default;
+  [[gnu::always_inline]] Each(const Each& e) noexcept { *this = e; }
+  [[gnu::always_inline]] Each& operator=(const Each& e) noexcept {
+    written_out<P>([&](int i) __attribute__((always_inline)) { x[i] = e.x[i]; });
+    return *this;
+  }
   static Each zero() noexcept { return all(Scalar(0)); }  ///< 0 of each
-  static Each all(const Scalar& a) noexcept {             ///< the same of each
-    Each e;
-    for (Scalar& x : e.x) x = a;
-    return e;
+  /// The same of each.
+  [[gnu::always_inline]] static Each all(const Scalar& a) noexcept {
+    return made([&](int) __attribute__((always_inline)) { return a; });
   }
   /// Of three.
-  static Each of(const Scalar& a, const Scalar& b, const Scalar& c) noexcept {
+  [[gnu::always_inline]] static Each of(const Scalar& a, const Scalar& b,
+                                        const Scalar& c) noexcept {
     Each e = zero();
     e.x[0] = a, e.x[1] = b, e.x[2] = c;
     return e;
   }
   template <int N>
-  static Each from(const Vec<N, Scalar>& v) noexcept {  ///< with zeros appended
-    Each e = zero();
-    for (int i = 0; i < N; ++i) e.x[i] = v[i];
-    return e;
+  [[gnu::always_inline]] static Each from(const Vec<N, Scalar>& v) noexcept {  ///< zeros appended
+    return made([&](int i) __attribute__((always_inline)) { return i < N ? v[i] : Scalar(0); });
   }
   template <int N>
-  Vec<N, Scalar> to() const noexcept {  ///< the first N
+  [[gnu::always_inline]] Vec<N, Scalar> to() const noexcept {  ///< the first N
     Vec<N, Scalar> v;
-    for (int i = 0; i < N; ++i) v[i] = x[i];
+    written_out<N>([&](int i) __attribute__((always_inline)) { v[i] = x[i]; });
     return v;
   }
-  Scalar operator[](int i) const noexcept { return x[i]; }  ///< that of body i
-  void set(int i, const Scalar& a) noexcept { x[i] = a; }   ///< that of body i
-  const Each& piece(int) const noexcept { return *this; }   ///< the bodies of a piece: here, all
-  void put(int, const Each& e) noexcept { *this = e; }      ///< sets the bodies of a piece
+  [[gnu::always_inline]] const Scalar& operator[](int i) const noexcept {
+    return x[i];
+  }  ///< that of body i
+  [[gnu::always_inline]] void set(int i, const Scalar& a) noexcept {
+    x[i] = a;
+  }                                                        ///< that of body i
+  const Each& piece(int) const noexcept { return *this; }  ///< the bodies of a piece: here, all
+  void put(int, const Each& e) noexcept { *this = e; }     ///< sets the bodies of a piece
   /// The same, or, if that saves work, 0 of the bodies before `first`.
   Each since([[maybe_unused]] int first) const noexcept { return *this; }
   /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
   void add(const Each& a, const Scalar& times, int first, int last) noexcept {
     for (int i = first; i <= last; ++i) x[i] += times * a.x[i];
   }
-  friend Each operator+(Each a, const Each& b) noexcept {  ///< one by one, as all operators
-    for (int i = 0; i < P; ++i) a.x[i] += b.x[i];
-    return a;
+  /// One by one, as all operators.
+  [[gnu::always_inline]] friend Each operator+(const Each& a, const Each& b) noexcept {
+    return made([&](int i) __attribute__((always_inline)) { return Scalar(a.x[i] + b.x[i]); });
   }
-  friend Each operator-(Each a, const Each& b) noexcept {
-    for (int i = 0; i < P; ++i) a.x[i] -= b.x[i];
-    return a;
+  [[gnu::always_inline]] friend Each operator-(const Each& a, const Each& b) noexcept {
+    return made([&](int i) __attribute__((always_inline)) { return Scalar(a.x[i] - b.x[i]); });
   }
-  friend Each operator*(Each a, const Each& b) noexcept {
-    for (int i = 0; i < P; ++i) a.x[i] *= b.x[i];
-    return a;
+  [[gnu::always_inline]] friend Each operator*(const Each& a, const Each& b) noexcept {
+    return made([&](int i) __attribute__((always_inline)) { return Scalar(a.x[i] * b.x[i]); });
+  }
+
+ private:
+  template <class F>
+  [[gnu::always_inline]] static Each made(const F& f) noexcept {
+    Each e;
+    written_out<P>([&](int i) __attribute__((always_inline)) { e.x[i] = f(i); });
+    return e;
   }
 };
 
@@ -172,7 +186,7 @@ template <bool kLoop, int N, class F>
 #pragma GCC unroll 1
     for (int i = 0; i < N; ++i) f(i);
   } else {
-#pragma GCC unroll 4
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) f(i);
   }
 }

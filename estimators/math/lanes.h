@@ -9,6 +9,26 @@
 #include <cstring>
 #include <utility>
 
+namespace tauext {
+
+/// What a Pack says of all its runs, of one.
+template <class T>
+[[gnu::always_inline]] inline bool all(const T& a) noexcept {
+  return static_cast<bool>(a);
+}
+/// Whether it is so of one run at least.
+template <class T>
+[[gnu::always_inline]] inline bool any(const T& a) noexcept {
+  return !all(!a);
+}
+/// a where it is so, else b.
+template <class T>
+[[gnu::always_inline]] inline T select(bool is, const T& a, const T& b) noexcept {
+  return is ? a : b;
+}
+
+}  // namespace tauext
+
 namespace tauext::detail {
 
 /// Calls f(0) to f(N - 1), written out whatever a compiler does with loops: results then stay in
@@ -35,6 +55,11 @@ template <>
 struct Registers<2> {
   typedef double Register __attribute__((vector_size(16)));
   typedef std::uint64_t Bits __attribute__((vector_size(16)));
+};
+template <>
+struct Registers<8> {
+  typedef double Register __attribute__((vector_size(64)));
+  typedef std::uint64_t Bits __attribute__((vector_size(64)));
 };
 template <>
 struct Registers<4> {

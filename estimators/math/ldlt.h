@@ -23,7 +23,7 @@ class Ldlt {
     for (int j = 0; j < N; ++j) {
       Scalar d = B(j, j);
       for (int k = 0; k < j; ++k) d -= L_[k][j] * LD(j, k);
-      ok_ = ok_ && d > 0;  // false for NaN
+      ok_ = ok_ && all(d > 0);  // false for NaN
       d_inverse_[j] = Scalar(1) / d;
       for (int i = j + 1; i < N; ++i) {
         Scalar a = B(i, j);
@@ -114,7 +114,7 @@ class Ldlt {
     }
   }
 
-  Scalar L_[N][detail::kPadded<N>];  // by columns, its strictly lower triangle
+  Scalar L_[N][detail::kPadded<N, Scalar>];  // by columns, its strictly lower triangle
   Scalar d_inverse_[N];
   bool ok_ = true;
 };

@@ -14,6 +14,7 @@ namespace tauext {
 
 namespace detail {
 
+template <class Lanes>
 [[gnu::always_inline]] inline void sin_cos(const Lanes& x, Lanes& sin_x, Lanes& cos_x) noexcept {
   constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
   constexpr double kPart1 = 0x1.921fb544p+0, kPart2 = 0x1.0b4611a6p-34,

@@ -15,6 +15,7 @@ namespace tauext {
 
 namespace detail {
 
+template <class Lanes>
 [[gnu::always_inline]] inline void tanh(const Lanes& x, Lanes& tanh_x) noexcept {
   constexpr double kLog2E = 0x1.71547652b82fep+0;
   constexpr double kLn2Part1 = 0x1.62e42feep-1, kLn2Part2 = 0x1.a39ef35793c76p-33;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "estimators/types.h"
 
@@ -46,6 +47,14 @@ class Clock {
   bool follows(double t) const noexcept { return t - t_ > 0 && t - t_ <= limit_; }
 
   double h() const noexcept { return h_; }  ///< [s] from the last used sample to this one
+
+  /// What accept() changes where time goes on as before, but t: typical h and limit of h [s].
+  auto memory() noexcept { return std::tie(typical_, limit_); }
+  /// Time has gone on as before, to t [s].
+  void settle(double t) noexcept {
+    t_ = t;
+    waiting_ = 0;
+  }
 
  private:
   static constexpr double kLong = 8;  // typical steps; more than a lost packet or two
@@ -102,17 +111,23 @@ class Clock {
 
 /// Whether a step [s] needs anew what was made for the last one. Time stamps on a grid differ in
 /// their last bits, so steps alike to 1e-9 count as one.
+template <class Scalar = double>
 class StepChange {
  public:
-  /// Whether h [s] differs from the last one, which it becomes.
-  bool operator()(double h) noexcept {
-    if (std::abs(h - h_) <= 1e-9 * h_) return false;
-    h_ = h;
+  /// Whether h [s] differs from the last one, which it becomes; of one run at least.
+  bool operator()(const Scalar& h) noexcept {
+    using std::abs;
+    const auto same = abs(h - h_) <= 1e-9 * h_;
+    if (all(same)) return false;
+    h_ = select(same, h_, h);
     return true;
   }
+  const Scalar& h() const noexcept { return h_; }  ///< [s] the step that it was made for
+
+  auto memory() noexcept { return std::tie(h_); }  ///< see runs/runs.h
 
  private:
-  double h_ = 0;
+  Scalar h_ = 0;
 };
 
 }  // namespace tauext

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/math/ldlt.h"
@@ -48,7 +49,9 @@ bool sensible(const ArmLimits<N>& a) noexcept {
 template <RobotModel M>
 ArmLimits<M::kDof> limits_of(const M& model) {
   constexpr int N = M::kDof;
-  if constexpr (requires { model.limits(); }) {
+  if constexpr (!std::is_same_v<ScalarOf<M>, double>) {
+    return limits_of(model.template with<double>());
+  } else if constexpr (requires { model.limits(); }) {
     const ArmLimits<N> out = model.limits();
     if (!sensible(out)) throw std::invalid_argument("limits() want q_least <= q_most, others > 0");
     return out;

@@ -23,12 +23,12 @@
 
 namespace tauext {
 
+inline constexpr double kStillMotion = 1e-4;  ///< [rad] in a step, with another qd
+
 /// Which of the first N joints are frozen; samples have room for P.
 template <int N, int P>
 class Stillness {
  public:
-  static constexpr double kMotion = 1e-4;  ///< [rad] in a step, with another qd
-
   /// Of a sensor that nothing is known of.
   void reset() noexcept {
     still_ = stepped_ = 0;
@@ -39,7 +39,7 @@ class Stillness {
   [[gnu::always_inline]] static bool still(const Measurement<P>& a, const Measurement<P>& b,
                                            double h, int j) noexcept {
     return (b.q[j] == a.q[j]) & (b.qd[j] != 0) &
-           ((b.qd[j] == a.qd[j]) | (h * std::abs(b.qd[j]) > kMotion));
+           ((b.qd[j] == a.qd[j]) | (h * std::abs(b.qd[j]) > kStillMotion));
   }
 
   /// Whether joints stood still at the last sample.
@@ -116,6 +116,9 @@ class StillSpeed {
   [[gnu::always_inline]] void learn(const Measurement<P>& a, const Measurement<P>& b) noexcept {
     for (int j = 0; j < P; ++j) changes_[j] += b.qd[j] != a.qd[j] ? 1 : 0;
   }
+
+  /// How often each joint's qd has changed since it last repeated itself: all that learn() changes.
+  Vec<P>& changes() noexcept { return changes_; }
 
   /// The joints frozen at b, bit 0 for the first. One leap of q makes none.
   std::uint8_t frozen(const Measurement<P>& a, const Measurement<P>& b) noexcept {

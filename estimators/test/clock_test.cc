@@ -98,7 +98,7 @@ TEST(Clock, BearsJitterAndLostPackets) {
 }
 
 TEST(StepChange, TakesTheLastBitsOfTimeStampsForNoChange) {
-  StepChange changed;
+  StepChange<> changed;
   int changes = 0;
   for (int k = 1; k < 100000; ++k) changes += changed(k * 1e-3 - (k - 1) * 1e-3);
   EXPECT_EQ(changes, 1);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,15 @@ struct TreeJoint {
   double dry = 0;                        ///< [N m] Coulomb friction
   double offset = 0;                     ///< [N m] that tau is always too large by
   double v_s = 0.01;                     ///< [rad/s] of CoulombFriction
+};
+
+/// What a TreeModel is made of.
+template <int N, int M = N>
+struct TreeParameters {
+  std::array<TreeJoint, M> joints;                                ///< parents before children
+  Vec<3> gravity = {0, 0, -kGravity};                             ///< [m/s^2]
+  Eigen::Matrix<double, M, N> drho = decltype(drho)::Identity();  ///< of full rank
+  Vec<M> rho0 = Vec<M>::Zero();                                   ///< [rad] or [m] rho at q = 0
 };
 
 namespace detail {

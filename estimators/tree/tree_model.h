@@ -46,18 +46,13 @@ class TreeModel {
 
  public:
   static constexpr int kDof = N;
+  using Number = Scalar;                    ///< of what its numbers are
   static constexpr int kJoints = M;         ///< that the coordinates move
   using VecN = Vec<N, Scalar>;              ///< a number of each coordinate
   using MatN = Mat<N, Scalar>;              ///< over the coordinates
   using Square = detail::Block<N, Scalar>;  ///< the same in lanes
 
-  /// What it is made of.
-  struct Parameters {
-    std::array<TreeJoint, M> joints;                                ///< parents before children
-    Vec<3> gravity = {0, 0, -kGravity};                             ///< [m/s^2]
-    Eigen::Matrix<double, M, N> drho = decltype(drho)::Identity();  ///< of full rank
-    Vec<M> rho0 = Vec<M>::Zero();                                   ///< [rad] or [m] rho at q = 0
-  };
+  using Parameters = TreeParameters<N, M>;  ///< what it is made of
 
   /// @throws std::invalid_argument for a joint that is none, naming its number and what is wrong
   explicit TreeModel(const Parameters& p)
@@ -77,6 +72,11 @@ class TreeModel {
   }
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+  /// The same arm, computed with S.
+  template <class S>
+  TreeModel<N, S, M> with() const {
+    return TreeModel<N, S, M>(p_);
+  }
 
   // none of them is inlined: each is hundreds of instructions, and stands in every estimator
 
@@ -267,12 +267,12 @@ class TreeModel {
     for (int j = 0; j < N; ++j) {
       auto column = detail::Column<M, Scalar>::zero();
       for (int k = 0; k < M; ++k) {
-        if (drho_(k, j) != Scalar(0)) column = column + drho_(k, j) * of_rho.column[k];
+        if (p_.drho(k, j) != 0) column = column + drho_(k, j) * of_rho.column[k];
       }
       for (int i = 0; i < N; ++i) {
         Scalar sum(0);
         for (int k = 0; k < M; ++k) {
-          if (drho_(k, i) != Scalar(0)) sum += drho_(k, i) * column[k];
+          if (p_.drho(k, i) != 0) sum += drho_(k, i) * column[k];
         }
         out.column[j].set(i, sum);
       }

@@ -20,12 +20,12 @@ namespace tauext::detail {
 template <int N, class Scalar>
 class TreePasses {
  public:
-  static constexpr int P = kPadded<N>;  ///< lanes
-  using VecN = Vec<N, Scalar>;          ///< a number of each joint
-  using MatN = Mat<N, Scalar>;          ///< over the joints
-  using Square = Block<N, Scalar>;      ///< the same in lanes
-  using One = Each<P, Scalar>;          ///< the same in lanes
-  using Three = Each3<P, Scalar>;       ///< vectors
+  static constexpr int P = kPadded<N, Scalar>;  ///< lanes
+  using VecN = Vec<N, Scalar>;                  ///< a number of each joint
+  using MatN = Mat<N, Scalar>;                  ///< over the joints
+  using Square = Block<N, Scalar>;              ///< the same in lanes
+  using One = Each<P, Scalar>;                  ///< the same in lanes
+  using Three = Each3<P, Scalar>;               ///< vectors
   using Motion = EachMotion<P, Scalar>;
   using Force = EachForce<P, Scalar>;
   using Inertia = EachInertia<P, Scalar>;

@@ -11,9 +11,9 @@ namespace tauext::detail {
 template <int N, class Scalar>
 class TreeSums {
  public:
-  static constexpr int P = kPadded<N>;  ///< lanes
-  using One = Each<P, Scalar>;          ///< a number of each
-  using Three = Each3<P, Scalar>;       ///< vectors
+  static constexpr int P = kPadded<N, Scalar>;  ///< lanes
+  using One = Each<P, Scalar>;                  ///< a number of each
+  using Three = Each3<P, Scalar>;               ///< vectors
   using Motion = EachMotion<P, Scalar>;
   using Force = EachForce<P, Scalar>;
 
