@@ -185,15 +185,15 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
-      ->type_name("FILE");
+      ->type_name("FILE.json");
   app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
       ->capture_default_str();
-  app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE");
+  app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE.json");
   app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
       ->type_name("FILE");
   app.add_option("--format", f.format)->group("");
   app.add_option("--robot", f.study.robot,
-                 "robot to study, or its file of MJCF or URDF (with --lock REGEX)")
+                 "wallmobot3, another, or a file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock)->group("")->check(not_empty);
   add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
@@ -226,5 +226,6 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   Flags f;
   add_flags(app, f);
+  keep_freed_memory();
   return run_program(app, argc, argv, [&] { return run(app, f); });
 }

@@ -123,10 +123,14 @@ int record_set(const Flags& f) {
   Progress progress("recording");
   const auto record = [&](int i) {
     const std::uint64_t seed = seeds[static_cast<std::size_t>(i)];
-    for (const auto& [name, kind] : kKinds) {
-      const study::Job job{plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)};
-      const Trace trace = study::measured(study::simulated(runs, job, model), f.sensors, job);
-      write_npz(fmt::format("{}/{}_{:04}.npz", f.out, name, seed), thinned(trace, f.every));
+    std::vector<study::Job> jobs;
+    for (const auto& [name, kind] : kKinds)
+      jobs.push_back({plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)});
+    const std::vector<Trace> truths = study::simulated(runs, jobs, model);
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      const Trace trace = study::measured(truths[k], f.sensors, jobs[k]);
+      write_npz(fmt::format("{}/{}_{:04}.npz", f.out, kKinds[k].first, seed),
+                thinned(trace, f.every));
     }
   };
   parallel_for(static_cast<int>(seeds.size()), 0, record, progress.callback());

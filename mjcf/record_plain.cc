@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -12,17 +13,57 @@
 
 namespace tauext {
 
-Trace simulate_plain(const Model& model, const Scenario& scenario, int joints,
-                     MakeTreeMotion motion, const Recording& recording) {
-  std::optional<PlainArm> arm = plain_arm(model);
-  if (arm && arm->tree.dof() == joints && !scenario.load && scenario.scene.empty()) {
-    auto dynamics = motion(arm->tree);
-    TreePlant plant(*std::move(arm), std::move(dynamics));
-    std::optional<Trace> trace =
-        detail::Run<TreePlant>(std::move(plant), scenario, recording, {})(nullptr);
-    if (trace) return *std::move(trace);
+namespace {
+
+bool is_plain(const Scenario& s) {
+  return !s.load && s.scene.empty();
+}
+
+// nothing of a run that got lost
+std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant>> runs,
+                                               const Recording& r) {
+  const Supervisor nobody;
+  std::vector<bool> lost(runs.size());
+  std::vector<TreePlant*> going;
+  for (int k = 0; k < runs.front().size(); ++k) {
+    going.clear();
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      lost[i] = lost[i] || !runs[i].sample(k, nobody);
+      if (!lost[i]) going.push_back(&runs[i].plant());
+    }
+    for (int i = 0; i < r.substeps; ++i) TreePlant::step(going, r.Ts / r.substeps);
   }
-  return simulate(model, scenario, recording);
+  std::vector<std::optional<Trace>> traces(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!lost[i]) traces[i] = std::move(runs[i]).trace();
+  }
+  return traces;
+}
+
+}  // namespace
+
+std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> scenarios,
+                                  int joints, MakeTreeMotion motion, const Recording& recording) {
+  const std::optional<PlainArm> arm = plain_arm(model);
+  std::shared_ptr<const TreeMotion> dynamics;
+  if (arm && arm->tree.dof() == joints) dynamics = motion(arm->tree);
+  std::vector<Trace> traces;
+  for (std::size_t from = 0, n = 0; from < scenarios.size(); from += n) {
+    std::vector<detail::Run<TreePlant>> runs;
+    for (n = 0; from + n < scenarios.size(); ++n) {
+      const Scenario& s = scenarios[from + n];
+      if (!dynamics || !is_plain(s) || s.duration != scenarios[from].duration) break;
+      runs.emplace_back(TreePlant(*arm, dynamics), s, recording, Sensors());
+    }
+    std::vector<std::optional<Trace>> done;
+    if (!runs.empty()) done = run_together(std::move(runs), recording);
+    n = std::max<std::size_t>(n, 1);
+    done.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      traces.push_back(done[i] ? *std::move(done[i])
+                               : simulate(model, scenarios[from + i], recording));
+  }
+  return traces;
 }
 
 double difference(const Trace& a, const Trace& b) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,6 +15,7 @@
 
 #include "bench/kit/allocations.h"
 #include "estimators/concepts.h"
+#include "estimators/runs/detecting.h"
 
 namespace tauext::conformance {
 
@@ -74,6 +76,51 @@ class DetectorClaims {
       ASSERT_EQ(x.mark, first[k].mark) << k;
       ASSERT_EQ(x.score, first[k].score) << k;
     }
+  }
+
+  /// Of each of several runs at once it says what it says of that one alone.
+  void bears_company() const requires DetectsRuns<D> {
+    SCOPED_TRACE("bears company");
+    using Lanes = Pack<kRuns>;
+    typename D::template For<Lanes> all(made().parameters());
+    std::vector<D> alone;
+    for (int i = 0; i < kRuns; ++i) alone.push_back(made());
+    int marks = 0;
+    for (int k = 0; k < kSamples; ++k) {
+      if (k > 4000 && k < 4080) continue;             // a gap
+      const double t = (k == 4500 ? 3000 : k) * kTs;  // a time that is not the next one
+      Measurement<N, Lanes> y;
+      Vec<N, Lanes> tau_ext;
+      std::array<Detection, kRuns> said;
+      y.t = t;
+      for (int i = 0; i < kRuns; ++i) {
+        Measurement<N> mine;
+        Vec<N> load;
+        mine.t = t;
+        for (int j = 0; j < N; ++j) {
+          mine.qd[j] = 0.1 * i - 0.2 * j;
+          load[j] = (0.3 + 0.4 * i) * touch(t, t > 2.5) / (1 + j) + std::sin(t * (20 + i + j));
+          y.qd[j].set(i, mine.qd[j]);
+          tau_ext[j].set(i, load[j]);
+        }
+        said[static_cast<std::size_t>(i)] = detect(alone[static_cast<std::size_t>(i)], mine, load);
+      }
+      const RunsDetection<Lanes> at_once = detect_runs(all, y, tau_ext);
+      for (int i = 0; i < kRuns; ++i) {
+        const Detection& x = said[static_cast<std::size_t>(i)];
+        ASSERT_EQ(at_once.mark[i], x.mark) << "run " << i << ", sample " << k;
+        ASSERT_EQ(static_cast<Contact>(at_once.contact[i]), x.contact) << i << ", " << k;
+        ASSERT_NEAR(at_once.score[i], x.score, 1e-12 * (1 + x.score)) << i << ", " << k;
+        marks += x.mark;
+        if constexpr (CalibratableDetector<D>) {
+          for (int j = 0; j < N; ++j) {
+            const double own = Vec<N>(alone[static_cast<std::size_t>(i)].statistic())[j];
+            ASSERT_NEAR(all.statistic()[j][i], own, 1e-12 * (1 + own)) << i << ", " << k;
+          }
+        }
+      }
+    }
+    EXPECT_GE(marks, 2);
   }
 
   /// A time stamp that is no number or does not increase is ignored.
@@ -161,6 +208,7 @@ class DetectorClaims {
     marks_a_blow_or_a_clamping();
     marks_where_its_score_reaches_one();
     says_the_same_of_the_same();
+    if constexpr (DetectsRuns<D>) bears_company();
     ignores_bad_time_stamps();
     bears_a_speed_that_is_no_number();
     if constexpr (CalibratableDetector<D>) {

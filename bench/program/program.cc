@@ -18,6 +18,10 @@
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace tauext {
 
 namespace {
@@ -54,6 +58,13 @@ bool parse(CLI::App& app, int argc, char** argv) {
 }
 
 }  // namespace
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // bytes: the most that every version takes
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   remove_unfinished_files_on_signals();

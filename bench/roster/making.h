@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
@@ -14,6 +15,8 @@
 
 #include "bench/roster/robot.h"
 #include "bench/roster/roster.h"
+#include "bench/roster/stages.h"
+#include "estimators/math/pack.h"
 
 namespace tauext::detail {
 
@@ -99,19 +102,34 @@ D make_detector(const DetectorSettings& settings, const Specification& s,
   }
 }
 
-// what the keys change: the roster's own parameters, or those of a bandwidth, whose key is taken
-// out
-template <class E, bool tunable, class Make, class M>
-typename E::Parameters start_of(const Make& make, const M& model, Specification& s) {
+// whether it can be designed for a bandwidth
+template <class E, class M>
+constexpr bool is_tunable() {
+  return requires(const M& model) {
+    E::Parameters::for_bandwidth(model, 1.);
+  }
+  &&!requires {
+    E::kFixedTuning;
+  };
+}
+
+// the roster's own parameters, or those of a bandwidth, and what the other keys change
+template <class E, class Make, class M>
+typename E::Parameters parameters_of(const Make& make, const M& model, Specification s) {
   using P = typename E::Parameters;
-  if constexpr (tunable) {
-    if (const std::optional<double> w = take_bandwidth(s)) return P::for_bandwidth(model, *w);
-  }
-  if constexpr (requires { make.parameters; }) {
-    return make.parameters;
-  } else if constexpr (std::is_default_constructible_v<P>) {
-    return P();
-  }
+  const auto start = [&]() -> P {
+    if constexpr (is_tunable<E, M>()) {
+      if (const std::optional<double> w = take_bandwidth(s)) return P::for_bandwidth(model, *w);
+    }
+    if constexpr (requires { make.parameters; }) {
+      return make.parameters;
+    } else if constexpr (std::is_default_constructible_v<P>) {
+      return P();
+    }
+  };
+  P p = start();
+  set_parameters(s.keys, p);
+  return p;
 }
 
 // some estimators believe in a model of their own
@@ -160,6 +178,65 @@ std::vector<FieldHelp> fields_of_detector(const Vec<D::kDof>& torques) {
   } else {
     return {};
   }
+}
+
+// how a robot makes an estimator or a detector; make_runs makes one for several runs, and only
+// those of the roster have it, because it must be compiled with the flags of RobotOf
+
+template <int N>
+struct EstimatorEntry {
+  template <class Scalar>
+  using Make =
+      std::function<std::unique_ptr<EstimatorStage<N, Scalar>>(const Trace&, const Specification&)>;
+  std::string name;
+  Make<double> make;
+  Make<Pack<kRuns>> make_runs;
+  std::vector<FieldHelp> fields;
+  bool tunable = false;
+};
+
+template <int N>
+struct DetectorEntry {
+  template <class Scalar>
+  using Make = std::function<std::unique_ptr<DetectorStage<N, Scalar>>(const DetectorSettings&,
+                                                                       const Specification&)>;
+  std::string name;
+  Make<double> make;
+  Make<Pack<kRuns>> make_runs;
+  std::vector<FieldHelp> fields;
+  std::vector<std::string> trained_parts;
+  std::optional<Calibration> calibration;
+};
+
+// what `make` makes of an entry's specification; null where nothing makes it
+template <class Make, class Entry, class Behind>
+typename Make::result_type made(const Make& make, const Entry& e, std::string_view text,
+                                const Behind& behind) {
+  if (!make) return nullptr;
+  const Specification s = parse_specification(text);
+  if (s.keys.empty()) return make(behind, s);
+  return explaining_keys(text, e.fields, [&] { return make(behind, s); });
+}
+
+// the estimator as the trace's torques want it
+inline std::string at_instants(const std::vector<FieldHelp>& fields, std::string_view text,
+                               const Trace& trace) {
+  std::string as_it_is(text);
+  return trace.torque_at_instants ? with_key(as_it_is, "torque", "instant", fields) : as_it_is;
+}
+
+// what a detector says of these estimates of the trace
+template <int N>
+std::vector<Detection> said_by(DetectorStage<N>& detector, const Trace& trace,
+                               const Output& estimates) {
+  std::vector<Detection> said(trace.t.size());
+  for (int k = 0; k < trace.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Measurement<N> y = trace.measurement<N>(k);
+    const Estimate<N> e{estimates.tau_ext.col(k), estimates.status[at]};
+    detector.run({&y, 1}, {&e, 1}, {&said[at], 1});
+  }
+  return said;
 }
 
 }  // namespace tauext::detail

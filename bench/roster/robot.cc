@@ -192,12 +192,4 @@ Supervisor Robot::supervisor(std::string_view estimator, std::string_view detect
   };
 }
 
-std::vector<Detection> Robot::detect(std::string_view detector, const Trace& trace,
-                                     const Output& estimates,
-                                     const DetectorSettings& settings) const {
-  const std::unique_ptr<Session> s = session(trace);
-  s->use(estimates);
-  return s->detect(detector, settings);
-}
-
 }  // namespace tauext

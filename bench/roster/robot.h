@@ -6,12 +6,13 @@
 #include <Eigen/Core>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "bench/roster/session.h"
+#include "bench/roster/session/session.h"
 #include "bench/roster/specification.h"
 #include "bench/roster/stages.h"
 #include "bench/roster/thresholds.h"
@@ -96,9 +97,10 @@ class Robot {
   /// @throws std::invalid_argument for an error out of range, and as scenarios() does
   Model load_for(const Scenario& scenario, const ModelError& error = {}) const;
 
-  /// simulate_plain() (mjcf/record_plain.h): the truth of a run of this arm, or of one that is
+  /// simulate_plain() (mjcf/record_plain.h): the truth of runs of this arm, or of one that is
   /// changed from it.
-  virtual Trace simulate(const Model& arm, const Scenario& scenario) const = 0;
+  virtual std::vector<Trace> simulate(const Model& arm,
+                                      std::span<const Scenario> scenarios) const = 0;
 
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
   virtual std::vector<std::string> detectors() const = 0;   ///< by name
@@ -137,12 +139,16 @@ class Robot {
   Supervisor supervisor(std::string_view estimator, std::string_view detector,
                         const DetectorSettings& settings = {}) const;
 
-  /// The trace, which must outlive it, for many estimators, and many detectors behind each.
-  virtual std::unique_ptr<Session> session(const Trace& trace) const = 0;
+  /// Traces, which must outlive it, for many estimators, and many detectors behind each.
+  virtual std::unique_ptr<Session> session(std::span<const Trace> traces) const = 0;
+  /// So many traces of one session take the least time each, if they have the same time stamps and
+  /// no sample is left out. A session of more does them one by one.
+  virtual int runs_at_once() const = 0;
 
   /// What a detector says of estimates that an estimator made of the trace, sample by sample.
-  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                const Output& estimates, const DetectorSettings& settings) const;
+  virtual std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                        const Output& estimates,
+                                        const DetectorSettings& settings) const = 0;
 
   /// How a calibratable detector's thresholds are set.
   virtual const Calibration& calibration(std::string_view detector) const = 0;

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -16,6 +17,9 @@
 #include <vector>
 
 #include "bench/roster/making.h"
+#include "bench/roster/session/session_of.h"
+#include "estimators/runs/detecting.h"
+#include "estimators/runs/runs.h"
 #include "mjcf/record_plain.h"
 #include "mjcf/trace/known.h"
 
@@ -42,7 +46,11 @@ class RobotOf final : public Robot {
   template <RobotModel M>
   RobotOf(const std::string& name, const M& model, const Model& file)
       : Robot(name, N, file), torques_(torques_of<N>(usual_torque())) {
-    for_each_estimator(model, [&](auto make) { add_estimator(model, make); });
+    for_each_estimator(model, [&](auto make) {
+      add_estimator(model, make);
+      // on other arms they do one run after the other: each would take a second more to compile
+      if constexpr (std::is_same_v<M, WallMoBot3>) add_runs(model, make);
+    });
     add_roster_detectors();
     for (const auto& add : registered_estimators<M>()) add(model, *this);
     for (const auto& add : registered_detectors<N>()) add(*this);
@@ -58,28 +66,17 @@ class RobotOf final : public Robot {
     using E = std::decay_t<decltype(make(std::declval<const Trace&>()))>;
     using Stage = EstimatorStageOf<E>;
     refuse_taken(estimators_, "estimator", E::kName);
-    EstimatorEntry entry{E::kName, {}, {}, false};
+    EstimatorEntry<N> entry{.name = E::kName};
     entry.make = [make](const Trace& trace, const Specification& s) -> EstimatorPtr {
       refuse_keys(s);
       return std::make_unique<Stage>(make(trace));
     };
     if constexpr (requires { E(model, std::declval<typename E::Parameters>()); }) {
-      using P = typename E::Parameters;
-      constexpr bool kTunable = requires {
-        P::for_bandwidth(model, 1.);
-      }
-      &&!requires {
-        E::kFixedTuning;
-      };
-      entry.tunable = kTunable;
-      Specification no_keys;
-      entry.fields = fields_of(start_of<E, kTunable>(make, model, no_keys), kTunable);
+      entry.tunable = is_tunable<E, M>();
+      entry.fields = fields_of(parameters_of<E>(make, model, {}), entry.tunable);
       entry.make = [make, model](const Trace& trace, const Specification& s) -> EstimatorPtr {
         if (s.keys.empty()) return std::make_unique<Stage>(make(trace));
-        Specification rest = s;
-        P p = start_of<E, kTunable>(make, model, rest);
-        set_parameters(rest.keys, p);
-        return std::make_unique<Stage>(E(model_of(make, model), p));
+        return std::make_unique<Stage>(E(model_of(make, model), parameters_of<E>(make, model, s)));
       };
     }
     estimators_.push_back(std::move(entry));
@@ -89,12 +86,14 @@ class RobotOf final : public Robot {
   template <CollisionDetector D>
   void add_detector() {
     refuse_taken(detectors_, "detector", D::kName);
-    const auto make = [torques = torques_](const DetectorSettings& s,
-                                           const Specification& spec) -> DetectorPtr {
+    DetectorEntry<N> entry{.name = D::kName,
+                           .fields = fields_of_detector<D>(torques_),
+                           .trained_parts = trained_parts_of<D>(),
+                           .calibration = calibration_of<D>(torques_)};
+    entry.make = [torques = torques_](const DetectorSettings& s, const Specification& spec) {
       return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec, torques));
     };
-    detectors_.push_back({D::kName, make, fields_of_detector<D>(torques_), trained_parts_of<D>(),
-                          calibration_of<D>(torques_)});
+    detectors_.push_back(std::move(entry));
   }
 
   void add_roster_detectors();
@@ -109,8 +108,9 @@ class RobotOf final : public Robot {
     specifications_.push_back(text);
   }
 
-  Trace simulate(const Model& arm, const Scenario& scenario) const override {
-    return simulate_plain<N>(arm, scenario);
+  std::vector<Trace> simulate(const Model& arm,
+                              std::span<const Scenario> scenarios) const override {
+    return simulate_plain<N>(arm, scenarios);
   }
 
   std::vector<std::string> estimators() const override {
@@ -122,10 +122,10 @@ class RobotOf final : public Robot {
     return names(detectors_, [](const auto&) { return true; });
   }
   std::vector<std::string> tunable() const override {
-    return names(estimators_, [](const EstimatorEntry& e) { return e.tunable; });
+    return names(estimators_, [](const auto& e) { return e.tunable; });
   }
   std::vector<std::string> calibratable() const override {
-    return names(detectors_, [](const DetectorEntry& d) { return d.calibration.has_value(); });
+    return names(detectors_, [](const auto& d) { return d.calibration.has_value(); });
   }
   std::vector<std::string> trained_parts(std::string_view detector) const override {
     return find(detectors_, "detector", detector).trained_parts;
@@ -150,36 +150,35 @@ class RobotOf final : public Robot {
     return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
   }
 
-  std::unique_ptr<Session> session(const Trace& trace) const override {
+  std::unique_ptr<Session> session(std::span<const Trace> traces) const override {
+    for (const Trace& t : traces) require_joints(t.dof());
+    Makers<N, kRuns> make;
+    make.estimator = [this](std::string_view e, const Trace& t) { return estimator_of(e, t); };
+    make.detector = [this](const Asked& d) { return detector_of(d.detector, d.settings); };
+    make.estimator_of_runs = [this](std::string_view e, const Trace& t) {
+      return estimator_of_runs(e, t);
+    };
+    make.detector_of_runs = [this](const Asked& d) { return detector_of_runs(d); };
+    return std::make_unique<SessionOf<N>>(traces, std::move(make));
+  }
+  int runs_at_once() const override { return kRuns; }
+
+  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                const Output& estimates, const DetectorSettings& s) const override {
     require_joints(trace.dof());
-    return std::make_unique<SessionOf<N>>(
-        trace, [this, &trace](std::string_view e) { return estimator_of(e, trace); },
-        [this](std::string_view d, const DetectorSettings& s) { return detector_of(d, s); });
+    return said_by(*detector_of(detector, s), trace, estimates);
   }
 
   const Calibration& calibration(std::string_view detector) const override {
-    const DetectorEntry& d = find(detectors_, "detector", detector);
+    const auto& d = find(detectors_, "detector", detector);
     if (d.calibration) return *d.calibration;
     throw unknown("calibratable detector", detector, calibratable());
   }
 
  private:
+  using Lanes = Pack<kRuns>;
   using EstimatorPtr = std::unique_ptr<EstimatorStage<N>>;
   using DetectorPtr = std::unique_ptr<DetectorStage<N>>;
-
-  struct EstimatorEntry {
-    std::string name;
-    std::function<EstimatorPtr(const Trace&, const Specification&)> make;
-    std::vector<FieldHelp> fields;
-    bool tunable;
-  };
-  struct DetectorEntry {
-    std::string name;
-    std::function<DetectorPtr(const DetectorSettings&, const Specification&)> make;
-    std::vector<FieldHelp> fields;
-    std::vector<std::string> trained_parts;
-    std::optional<Calibration> calibration;
-  };
 
   template <class List>
   static const auto& find(const List& list, const char* what, std::string_view specification) {
@@ -204,32 +203,59 @@ class RobotOf final : public Robot {
   }
 
   DetectorPtr detector_of(std::string_view text, const DetectorSettings& s) const {
-    return text.empty() ? nullptr : made(find(detectors_, "detector", text), text, s);
+    if (text.empty()) return nullptr;
+    const auto& d = find(detectors_, "detector", text);
+    return made(d.make, d, text, s);
+  }
+  auto detector_of_runs(const Asked& asked) const {
+    const auto& d = find(detectors_, "detector", asked.detector);
+    return made(d.make_runs, d, asked.detector, asked.settings);
   }
 
   EstimatorPtr estimator_of(std::string_view text, const Trace& trace) const {
-    const EstimatorEntry& e = find(estimators_, "estimator", text);
+    const auto& e = find(estimators_, "estimator", text);
     if (needs_truth(text) && !trace.has_truth()) fail_truth(e.name);
-    if (!trace.torque_at_instants) return made(e, text, trace);
-    return made(e, with_key(std::string(text), "torque", "instant", e.fields), trace);
+    return made(e.make, e, at_instants(e.fields, text, trace), trace);
+  }
+  auto estimator_of_runs(std::string_view text, const Trace& trace) const {
+    const auto& e = find(estimators_, "estimator", text);
+    return made(e.make_runs, e, at_instants(e.fields, text, trace), trace);
   }
 
-  template <class Entry, class Behind>
-  static auto made(const Entry& e, std::string_view text, const Behind& behind) {
-    const Specification s = parse_specification(text);
-    if (s.keys.empty()) return e.make(behind, s);
-    return explaining_keys(text, e.fields, [&] { return e.make(behind, s); });
+  // lets the estimator that was added last do several runs at once, if it can
+  template <class Make>
+  void add_runs(const WallMoBot3& model, const Make& make) {
+    using E = std::decay_t<decltype(make(std::declval<const Trace&>()))>;
+    using Same = typename ComputesAs<E>::type;
+    if constexpr (ForRuns<Same>) {
+      using Stage = EstimatorStageOf<Runs<Same>, Lanes>;
+      estimators_.back().make_runs = [make, model](const Trace&, const Specification& s) {
+        return std::make_unique<Stage>(
+            Runs<Same>(model_of(make, model), parameters_of<E>(make, model, s)));
+      };
+    }
   }
 
   Vec<N> torques_;  // of torques_of()
-  std::vector<EstimatorEntry> estimators_;
-  std::vector<DetectorEntry> detectors_;
+  std::vector<EstimatorEntry<N>> estimators_;
+  std::vector<DetectorEntry<N>> detectors_;
   std::vector<std::string> specifications_;  // that are listed beside the estimators
 };
 
 template <int N>
 void RobotOf<N>::add_roster_detectors() {
-  for_each_detector<N>([&](auto make) { add_detector<decltype(make())>(); });
+  for_each_detector<N>([&](auto make) {
+    using D = decltype(make());
+    add_detector<D>();
+    if constexpr (DetectsRuns<D>) {
+      using OfRuns = typename D::template For<Lanes>;
+      detectors_.back().make_runs = [torques = torques_](const DetectorSettings& s,
+                                                         const Specification& spec) {
+        const D one = make_detector<D>(s, spec, torques);
+        return std::make_unique<DetectorStageOf<OfRuns, Lanes>>(OfRuns(one.parameters()));
+      };
+    }
+  });
 }
 
 // compiled in the library, from kernels/file_robot_of.cc.in

@@ -80,6 +80,17 @@ struct EkfHonest : Ekf<WallMoBot3> {
   using Ekf::Ekf;
 };
 
+/// The class that an estimator of the roster only gives other parameters.
+template <class E>
+struct ComputesAs {
+  using type = E;  ///< itself, unless it says so here
+};
+/// That of ekf_honest, which has other covariances.
+template <>
+struct ComputesAs<EkfHonest> {
+  using type = Ekf<WallMoBot3>;  ///< the EKF
+};
+
 /// Builds an estimator of the roster; a specification changes its parameters.
 template <class E, RobotModel M>
 struct Make {

@@ -9,48 +9,69 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "estimators/concepts.h"
+#include "estimators/detectors/marking.h"
 #include "estimators/samples/status_counts.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
 
-/// An estimator of N joints, type-erased.
+namespace detail {
+
+// with a Pack: session/seen_runs.h
+template <int N, class Scalar>
+struct EstimateOf;
 template <int N>
-class EstimatorStage {
- public:
-  virtual ~EstimatorStage() = default;
-  virtual void reset() = 0;  ///< forgets all samples
-  virtual void run(std::span<const Measurement<N>> in,
-                   std::span<Estimate<N>> out) = 0;  ///< an estimate for each sample
+struct EstimateOf<N, double> {
+  using type = Estimate<N>;
 };
 
-/// A detector of N joints, type-erased.
-template <int N>
+}  // namespace detail
+
+/// An estimator of N joints, type-erased; with a Pack for Scalar, of several runs.
+template <int N, class Scalar = double>
+class EstimatorStage {
+ public:
+  using Estimates = typename detail::EstimateOf<N, Scalar>::type;  ///< of a sample
+
+  virtual ~EstimatorStage() = default;
+  virtual void reset() = 0;  ///< forgets all samples
+  virtual void run(std::span<const Measurement<N, Scalar>> in,
+                   std::span<Estimates> out) = 0;  ///< an estimate for each sample
+};
+
+/// A detector of N joints, type-erased; with a Pack for Scalar, of several runs of one clock, of
+/// whose estimates all are used().
+template <int N, class Scalar = double>
 class DetectorStage {
  public:
+  using Estimates = typename detail::EstimateOf<N, Scalar>::type;  ///< of a sample
+
   virtual ~DetectorStage() = default;
   virtual void reset() = 0;  ///< forgets all samples
   /// What is detected at each sample.
-  virtual void run(std::span<const Measurement<N>> at, std::span<const Estimate<N>> in,
-                   std::span<Detection> out) = 0;
+  virtual void run(std::span<const Measurement<N, Scalar>> at, std::span<const Estimates> in,
+                   std::span<DetectionOf<Scalar>> out) = 0;
   /// Of the last sample; zero for a detector that cannot be calibrated.
-  virtual Vec<N> statistic() const = 0;
+  virtual Vec<N, Scalar> statistic() const = 0;
   /// What its metric weighs; zero for a detector without one.
-  virtual Vec<N> change() const = 0;
+  virtual Vec<N, Scalar> change() const = 0;
 };
 
-/// The stage of this estimator.
-template <TorqueEstimator E>
-class EstimatorStageOf final : public EstimatorStage<E::kDof> {
+/// The stage of this estimator; of Runs of one, with their Scalar.
+template <class E, class Scalar = double>
+class EstimatorStageOf final : public EstimatorStage<E::kDof, Scalar> {
  public:
+  using typename EstimatorStage<E::kDof, Scalar>::Estimates;
+
   explicit EstimatorStageOf(E e) : e_(std::move(e)) {}  ///< takes it over
   void reset() override { e_.reset(); }
   /// As EstimatorStage says.
-  void run(std::span<const Measurement<E::kDof>> in, std::span<Estimate<E::kDof>> out) override {
+  void run(std::span<const Measurement<E::kDof, Scalar>> in, std::span<Estimates> out) override {
     for (std::size_t k = 0; k < in.size(); ++k) out[k] = e_.update(in[k]);
   }
 
@@ -58,29 +79,37 @@ class EstimatorStageOf final : public EstimatorStage<E::kDof> {
   E e_;
 };
 
-/// The stage of this detector.
-template <CollisionDetector D>
-class DetectorStageOf final : public DetectorStage<D::kDof> {
+/// The stage of this detector, which computes with Scalar.
+template <class D, class Scalar = double>
+class DetectorStageOf final : public DetectorStage<D::kDof, Scalar> {
  public:
+  using typename DetectorStage<D::kDof, Scalar>::Estimates;
+
   explicit DetectorStageOf(D d) : d_(std::move(d)) {}  ///< takes it over
   void reset() override { d_.reset(); }
   /// As DetectorStage says.
-  void run(std::span<const Measurement<D::kDof>> at, std::span<const Estimate<D::kDof>> in,
-           std::span<Detection> out) override {
-    for (std::size_t k = 0; k < in.size(); ++k) out[k] = detect(d_, at[k], in[k]);
-  }
-  Vec<D::kDof> statistic() const override {
-    if constexpr (CalibratableDetector<D>) {
-      return d_.statistic();
-    } else {
-      return Vec<D::kDof>::Zero();
+  void run(std::span<const Measurement<D::kDof, Scalar>> at, std::span<const Estimates> in,
+           std::span<DetectionOf<Scalar>> out) override {
+    for (std::size_t k = 0; k < in.size(); ++k) {
+      if constexpr (std::is_same_v<Scalar, double>) {
+        out[k] = detect(d_, at[k], in[k]);
+      } else {
+        out[k] = detect_runs(d_, at[k], in[k].tau_ext);
+      }
     }
   }
-  Vec<D::kDof> change() const override {
+  Vec<D::kDof, Scalar> statistic() const override {
+    if constexpr (requires { d_.statistic(); }) {
+      return d_.statistic();
+    } else {
+      return Vec<D::kDof, Scalar>::Zero();
+    }
+  }
+  Vec<D::kDof, Scalar> change() const override {
     if constexpr (requires { d_.change(); }) {
       return d_.change();
     } else {
-      return Vec<D::kDof>::Zero();
+      return Vec<D::kDof, Scalar>::Zero();
     }
   }
 

@@ -100,9 +100,12 @@ void add_seeds(const std::string& part, std::vector<std::uint64_t>& to) {
           fmt::format("--seeds: '{}' is no seed, nor a range like 1-30", part));
   }
   const std::uint64_t from = std::stoull(first), until = std::stoull(last);
-  if (until < from || until - from >= kMost || to.size() + (until - from) >= kMost)
+  if (until < from)
+    throw std::invalid_argument(fmt::format(
+        "--seeds: '{}' ends before it begins; {}-{} has these seeds", part, last, first));
+  if (until - from >= kMost || to.size() + (until - from) >= kMost)
     throw std::invalid_argument(
-        fmt::format("--seeds: '{}' is not a range of at most {} seeds", part, kMost));
+        fmt::format("--seeds: with '{}' they are more than {}; take fewer", part, kMost));
   for (std::uint64_t n = 0; n <= until - from; ++n) to.push_back(from + n);
 }
 

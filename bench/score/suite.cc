@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/kit/allocations.h"
+#include "bench/roster/session/soundness.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
@@ -36,15 +37,10 @@ Eigen::VectorXd slack(const Robot& r) {
 }  // namespace
 
 std::string bad_status(const Trace& trace, const Output& out) {
-  for (int k = 0; k < trace.size(); ++k) {
-    if (!out.tau_ext.col(k).allFinite()) return fmt::format("not finite at t = {} s", trace.t[k]);
-    const Status s = out.status[k];
-    if (s != Status::kSingularInertia && s != Status::kDiverged) continue;
-    return fmt::format("{} at t = {} s", name_of(s), trace.t[k]);
-  }
-  if (2 * out.counts.left_out() <= trace.size()) return "";
-  return fmt::format("{} of {} samples left out: {}", out.counts.left_out(), trace.size(),
-                     out.counts.text());
+  Soundness of(out.counts);
+  for (int k = 0; k < trace.size(); ++k)
+    of.look(trace.t[k], out.status[k], out.tau_ext.col(k).allFinite());
+  return of.why(trace.size());
 }
 
 std::string failure(const Trace& ideal, const Output& out, double from,

@@ -10,12 +10,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "bench/roster/robots.h"
 #include "bench/score/parallel.h"
-#include "bench/score/suite.h"
 #include "bench/study/study_runs.h"
 
 namespace tauext::study {
@@ -50,19 +50,20 @@ Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances,
   return (metric + metric.transpose()) / 2;
 }
 
-// a run as sensors of one quality see it
+// runs as sensors of one quality see them, for one session
 struct Seen {
   std::size_t set;  // of thresholds
   const Robot& robot;
-  const Trace& trace;
-  const std::string& name;  // of a recording
+  std::span<const Trace> traces;  // of one clock
+  std::vector<int> runs;          // which ones these are
+  const std::string& name;        // of a recording
 };
 using Look = std::function<void(const Seen&)>;
 
-// where training runs come from
+// where training runs come from, batch by batch
 struct Source {
-  int runs;
-  std::function<void(int run, const Look& look)> show;
+  int runs, batches;
+  std::function<void(int batch, const Look& look)> show;
 };
 
 // two passes over the training runs: what the metrics have to undo, then what is the largest
@@ -114,11 +115,12 @@ class Training {
 
   void find_metrics() {
     ByRun<Eigen::MatrixXd> covariances;
-    pass(0, [&](int i, const Seen& s, const std::string& d, Session& run, const Trained& to) {
+    pass(0, [&](const Seen& s, const std::string& d, Session& runs, const Trained& to) {
       if (!s.robot.calibration(d).has_metric) return;
-      const Eigen::MatrixXd C = run.covariance(d, {.start_up = kStartUp}, begin_of(s.trace));
+      const std::vector<Eigen::MatrixXd> of_runs =
+          runs.covariance({d, {{}, kStartUp}}, begin_of(s));
       const std::lock_guard lock(mutex_);
-      covariances[&to][i] = C;
+      for (std::size_t i = 0; i < of_runs.size(); ++i) covariances[&to][s.runs[i]] = of_runs[i];
     });
     for_each(result_, [&](const std::string&, const std::string&, Trained& to) {
       const auto found = covariances.find(&to);
@@ -127,21 +129,23 @@ class Training {
   }
 
   void find_thresholds() {
-    pass(1, [&](int i, const Seen& s, const std::string& d, Session& run, const Trained& to) {
+    pass(1, [&](const Seen& s, const std::string& d, Session& runs, const Trained& to) {
       // thresholds that nothing reaches, so that nothing saturates at them
       const Trained none{Eigen::VectorXd::Constant(s.robot.dof(), 1e12), to.metric};
-      const DetectorSettings settings{{{name_of(d), none}}, kStartUp};
-      const Eigen::VectorXd largest = run.largest_statistic(d, settings, begin_of(s.trace));
+      const std::vector<Eigen::VectorXd> of_runs =
+          runs.largest_statistic({d, {{{name_of(d), none}}, kStartUp}}, begin_of(s));
       const std::lock_guard lock(mutex_);
-      Eigen::VectorXd& known = largest_[&to][i];
-      known = known.size() == 0 ? largest : Eigen::VectorXd(known.cwiseMax(largest));
+      for (std::size_t i = 0; i < of_runs.size(); ++i) {
+        Eigen::VectorXd& known = largest_[&to][s.runs[i]];
+        known = known.size() == 0 ? of_runs[i] : Eigen::VectorXd(known.cwiseMax(of_runs[i]));
+      }
     });
     for_each(result_, [&](const std::string&, const std::string& d, Trained& to) {
       to.threshold = threshold_of(d, to, -1);
     });
   }
 
-  static double begin_of(const Trace& t) { return t.t.front() + kScoreFrom; }
+  static double begin_of(const Seen& s) { return s.traces.front().t.front() + kScoreFrom; }
 
   // from all runs but that one
   Eigen::VectorXd threshold_of(const std::string& detector, const Trained& trained,
@@ -155,28 +159,28 @@ class Training {
     return (largest * std::pow(o_.margin, c.degree)).cwiseMax(kFloor * c.threshold);
   }
 
-  // calls look(number of the run, what is seen, detector, estimates, what is known) for all runs,
-  // estimators, detectors
+  // calls visit(what is seen, detector, estimates, what is known) for all runs, estimators,
+  // detectors
   template <class Visit>
   void pass(int number, Visit&& visit) {
-    const auto work = [&](int i) {
-      source_.show(i, [&](const Seen& s) {
-        const std::unique_ptr<Session> session = s.robot.session(s.trace);
+    const auto work = [&](int batch) {
+      source_.show(batch, [&](const Seen& s) {
+        const std::unique_ptr<Session> session = s.robot.session(s.traces);
         for (auto& [e, by_detector] : result_.sets[s.set].by_estimator) {
           require_estimates(s, e, session->estimate(e));
-          for (auto& [d, trained] : by_detector) visit(i, s, d, *session, trained);
+          for (auto& [d, trained] : by_detector) visit(s, d, *session, trained);
         }
       });
     };
-    parallel_for(source_.runs, o_.threads, work, [&](double share) {
+    parallel_for(source_.batches, o_.threads, work, [&](double share) {
       if (o_.progress) o_.progress((number + share) / 2);
     });
   }
 
-  static void require_estimates(const Seen& s, const std::string& estimator, const Output& out) {
-    if (s.name.empty()) return;
-    if (const std::string why = bad_status(s.trace, out); !why.empty())
-      throw std::invalid_argument(fmt::format("{}: {}: {}", s.name, estimator, why));
+  static void require_estimates(const Seen& s, const std::string& estimator,
+                                const std::vector<std::string>& why) {
+    if (s.name.empty() || why.front().empty()) return;
+    throw std::invalid_argument(fmt::format("{}: {}: {}", s.name, estimator, why.front()));
   }
 
   template <class All, class Visit>
@@ -228,20 +232,30 @@ Thresholds calibrate(const CalibrationOptions& o) {
     const double believed = condition(runs, name).believed;
     if (!believers.contains(believed)) believers[believed] = runs.believer(believed);
   }
-  const int count = static_cast<int>(names.size());
-  const auto show = [&](int i, const Look& look) {
-    const Condition& c = condition(runs, names[static_cast<std::size_t>(i % count)]);
-    const Job job{plant_of(c), TouchKind::kSlowPush,
-                  kTrainingSeed + static_cast<std::uint64_t>(i / count)};
-    const Trace truth = simulated(runs, job, runs.model(job.plant));
+  // a batch has runs of one condition
+  const int count = static_cast<int>(names.size()), most = r.runs_at_once();
+  const int batches_of_one = (o.runs + most - 1) / most;
+  const auto show = [&](int batch, const Look& look) {
+    const int which_name = batch % count, from = batch / count * most;
+    const Condition& c = condition(runs, names[static_cast<std::size_t>(which_name)]);
+    const PlantKey plant = plant_of(c);
+    const Model model = runs.model(plant);
+    std::vector<Job> jobs;
+    std::vector<int> which;
+    for (int i = from; i < std::min(from + most, o.runs); ++i) {
+      which.push_back(i * count + which_name);
+      jobs.push_back({plant, TouchKind::kSlowPush, kTrainingSeed + static_cast<std::uint64_t>(i)});
+    }
+    Views views(simulated(runs, jobs, model), jobs);
     for (std::size_t set = 0; set < velocity_noises.size(); ++set) {
       Sensors sensors = c.degradation.sensors;
       sensors.velocity_noise = velocity_noises[set];
-      look({set, *believers.at(c.believed), measured(truth, sensors, job), ""});
+      const std::vector<Trace> seen = views.by(sensors);
+      look({set, *believers.at(c.believed), seen, which, ""});
     }
   };
   return Training(
-             o, r, {count * o.runs, show}, velocity_noises,
+             o, r, {count * o.runs, count * batches_of_one, show}, velocity_noises,
              fmt::format("{}, {}: {} runs each of free motion and slow pushes, seeds from {} on",
                          runs.robot, fmt::join(names, ", "), o.runs, kTrainingSeed))
       .run();
@@ -259,9 +273,10 @@ Thresholds calibrate_on(const Robot& r, const std::vector<FreeRecording>& record
   }
   const auto show = [&](int i, const Look& look) {
     const FreeRecording& x = recordings[static_cast<std::size_t>(i)];
-    look({0, r, x.trace, x.name});
+    look({0, r, {&x.trace, 1}, {i}, x.name});
   };
-  Training training(o, r, {static_cast<int>(recordings.size()), show}, {0},
+  const int count = static_cast<int>(recordings.size());
+  Training training(o, r, {count, count, show}, {0},
                     fmt::format("{}, {:.0f} s of {}", r.name(), seconds, fmt::join(names, ", ")));
   Thresholds thresholds = training.run();
   held_out = training.held_out();

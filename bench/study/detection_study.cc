@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/parallel.h"
-#include "bench/score/suite.h"
 #include "bench/study/calibration.h"
 #include "bench/study/study_runs.h"
 
@@ -39,7 +41,7 @@ std::vector<Job> jobs_of(const StudyRuns& study, const PlantKey& plant, const St
   return jobs;
 }
 
-// the study's tables, and the work on one run
+// the study's tables, and the work on its runs
 class Study {
  public:
   Study(const StudyOptions& o, const Thresholds& thresholds)
@@ -58,19 +60,21 @@ class Study {
       const std::vector<Job> jobs = jobs_of(runs_, plant, o);
       jobs_.insert(jobs_.end(), jobs.begin(), jobs.end());
     }
+    make_batches();
   }
 
-  int size() const { return static_cast<int>(jobs_.size()); }
+  // of runs that a session does at once
+  int batches() const { return static_cast<int>(batches_.size()); }
 
-  void run(int i) {
-    const Job& job = jobs_[static_cast<std::size_t>(i)];
-    if (i == 0 || jobs_[static_cast<std::size_t>(i) - 1].plant != job.plant)
-      require_mujoco_agrees(runs_, job, models_.at(job.plant));
-    const Trace truth = simulated(runs_, job, models_.at(job.plant));
-    const std::vector<Touch> touches = runs_.touches(job.kind, job.seed);
+  void run(int batch) {
+    const std::span<const Job> jobs = batches_[static_cast<std::size_t>(batch)];
+    const Model& model = models_.at(jobs.front().plant);
+    std::vector<Trace> truths = simulated(runs_, jobs, model);
+    if (is_first_of_plant(jobs)) require_mujoco_agrees(runs_, jobs.front(), model, truths.front());
+    Views views(std::move(truths), jobs);
     for (std::size_t c = 0; c < conditions_.size(); ++c) {
-      if (plant_of(*conditions_[c]) != job.plant) continue;
-      run(job, c, measured(truth, conditions_[c]->degradation.sensors, job), touches);
+      const Condition& of = *conditions_[c];
+      if (plant_of(of) == jobs.front().plant) run(jobs, c, views.by(of.degradation.sensors));
     }
   }
 
@@ -91,24 +95,46 @@ class Study {
     }
   }
 
-  void run(const Job& job, std::size_t c, const Trace& t, const std::vector<Touch>& touches) {
-    const Robot& r = *believers_.at(conditions_[c]->believed);
-    const std::unique_ptr<Session> session = r.session(t);
+  // batches of jobs of one plant and kind
+  void make_batches() {
+    const auto most = static_cast<std::size_t>(robot(runs_.robot).runs_at_once());
+    for (std::size_t from = 0, n = 0; from < jobs_.size(); from += n) {
+      for (n = 1; n < most && from + n < jobs_.size(); ++n) {
+        const Job &a = jobs_[from], &b = jobs_[from + n];
+        if (a.plant != b.plant || a.kind != b.kind) break;
+      }
+      batches_.emplace_back(&jobs_[from], n);
+    }
+  }
+
+  bool is_first_of_plant(std::span<const Job> jobs) const {
+    const Job* const first = &jobs.front();
+    return first == &jobs_.front() || (first - 1)->plant != first->plant;
+  }
+
+  void run(std::span<const Job> jobs, std::size_t c, const std::vector<Trace>& seen) {
+    const std::unique_ptr<Session> session = believers_.at(conditions_[c]->believed)->session(seen);
+    std::vector<std::vector<Touch>> touches;
+    for (const Job& job : jobs) touches.push_back(runs_.touches(job.kind, job.seed));
+    const double noise = conditions_[c]->degradation.sensors.velocity_noise;
     std::vector<Cell> adds;
     for (const std::string& e : estimators_) {
-      const bool failed = !bad_status(t, session->estimate(e)).empty();
+      const std::vector<std::string> why = session->estimate(e);
+      std::vector<Asked> asked;
       for (const std::string& d : detectors_) {
-        Cell cell{.runs = 1, .failed_runs = failed};
-        const DetectorSettings settings{
-            trained_for(thresholds_, runs_.robot,
-                        conditions_[c]->degradation.sensors.velocity_noise, e, d),
-            kStartUp};
-        count(job.kind, t, session->detect(d, settings), touches, cell);
-        adds.push_back(std::move(cell));
+        asked.push_back({d, {trained_for(thresholds_, runs_.robot, noise, e, d), kStartUp}});
+      }
+      for (const std::vector<Answers>& of_runs : session->answers(asked, kLevels, kScoreFrom)) {
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+          Cell cell{.runs = 1, .failed_runs = !why[i].empty()};
+          count(jobs[i].kind, of_runs[i], touches[i], cell);
+          adds.push_back(std::move(cell));
+        }
       }
     }
     const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < adds.size(); ++i) add(adds[i], cells_[c * adds.size() + i]);
+    const std::size_t pairs = adds.size() / jobs.size();
+    for (std::size_t i = 0; i < adds.size(); ++i) add(adds[i], cells_[c * pairs + i / jobs.size()]);
   }
 
   const Thresholds& thresholds_;
@@ -118,6 +144,7 @@ class Study {
   std::map<double, std::shared_ptr<const Robot>> believers_;  // by the panel that they believe in
   std::map<PlantKey, Model> models_;
   std::vector<Job> jobs_;
+  std::vector<std::span<const Job>> batches_;
   std::vector<Cell> cells_;
   std::mutex mutex_;  // of cells_
 };
@@ -125,9 +152,13 @@ class Study {
 }  // namespace
 
 void check_study(const StudyOptions& o) {
-  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || !(o.hours >= 0 && o.hours <= 1000)) {
-    throw std::invalid_argument("a study has 0 or more touches of each kind, and 0 to 1000 hours");
-  }
+  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0)
+    throw std::invalid_argument(
+        fmt::format("a study has 0 or more touches of each kind, not {} collisions, {} pushes and "
+                    "{} clampings",
+                    o.blows, o.brisk_pushes, o.clampings));
+  if (!(o.hours >= 0 && o.hours <= 1000))
+    throw std::invalid_argument(fmt::format("a study has 0 to 1000 hours, not {}", o.hours));
   if (o.blows + o.brisk_pushes + o.clampings == 0 && o.hours == 0) {
     throw std::invalid_argument("nothing to try: 0 collisions, pushes, clampings and hours");
   }
@@ -146,7 +177,7 @@ std::vector<Cell> detection_study(const StudyOptions& o, const Thresholds& thres
   check_study(o);
   Study study(o, thresholds);
   parallel_for(
-      study.size(), o.threads, [&](int i) { study.run(i); }, o.progress);
+      study.batches(), o.threads, [&](int i) { study.run(i); }, o.progress);
   return std::move(study).cells();
 }
 

@@ -9,38 +9,7 @@
 namespace tauext::study {
 namespace {
 
-constexpr double kRefractory = 0.2;  // [s] between two crossings of a level
-
-struct Mark {
-  double t;
-  Contact contact;
-};
-
-// what a detector said of samples that count
-struct Answers {
-  std::vector<Mark> marks;
-  std::array<std::vector<double>, kLevels.size()> rises;  // [s] where the score rose through each
-  long samples = 0, alarmed = 0;                          // all; with a score of at least 1
-};
-
-Answers answers_of(const Trace& t, const std::vector<Detection>& d) {
-  Answers all;
-  std::size_t below = kLevels.size();  // the first level above the score; nothing rises at first
-  for (std::size_t k = 0; k < d.size(); ++k) {
-    const double now = t.t[k], score = d[k].score;
-    const bool counts = now >= kScoreFrom;
-    for (; below < kLevels.size() && score >= kLevels[below]; ++below) {
-      std::vector<double>& at = all.rises[below];
-      if (counts && (at.empty() || now - at.back() >= kRefractory)) at.push_back(now);
-    }
-    while (below > 0 && !(score >= kLevels[below - 1])) --below;
-    if (!counts) continue;
-    ++all.samples;
-    all.alarmed += score >= 1;
-    if (d[k].mark) all.marks.push_back({now, d[k].contact});
-  }
-  return all;
-}
+using Mark = Answers::Mark;
 
 bool belongs_to(double mark, const Touch& touch) {
   return mark >= touch.begin && mark <= touch.end() + metrics::kGrace;
@@ -105,9 +74,7 @@ void count_clampings(const Answers& answers, const std::vector<Touch>& touches, 
 
 }  // namespace
 
-void count(TouchKind kind, const Trace& t, const std::vector<Detection>& d,
-           const std::vector<Touch>& touches, Cell& cell) {
-  const Answers answers = answers_of(t, d);
+void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& touches, Cell& cell) {
   switch (kind) {
     case TouchKind::kBlow:
       return count_blows(answers, touches, cell);

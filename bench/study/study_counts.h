@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "estimators/types.h"
+#include "bench/roster/session/session.h"
 #include "mjcf/scenarios/touch.h"
-#include "mjcf/trace/trace.h"
 
 namespace tauext::study {
 
@@ -39,9 +38,9 @@ struct Cell {
   double recall() const { return blows == 0 ? 0 : static_cast<double>(detected) / blows; }
 };
 
-/// Counts a run of that kind: what a detector said of it, against the touches that were there.
-void count(TouchKind kind, const Trace& t, const std::vector<Detection>& d,
-           const std::vector<Touch>& touches, Cell& cell);
+/// Counts a run of that kind: what a detector said of it, against the touches that were there. Its
+/// rises are through kLevels.
+void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& touches, Cell& cell);
 
 /// Adds a run to the sum; the names in `sum` stay.
 void add(const Cell& run, Cell& sum);

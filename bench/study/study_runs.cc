@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
@@ -145,6 +146,10 @@ std::vector<std::string> competitors(const Robot& r) {
   return names;
 }
 
+std::uint64_t sensors_seed(const Job& job) {
+  return 4 * job.seed + static_cast<std::uint64_t>(job.kind);
+}
+
 }  // namespace
 
 PlantKey plant_of(const Condition& c) {
@@ -163,13 +168,15 @@ const Condition& condition(const StudyRuns& runs, const std::string& name) {
   return find_known(runs.conditions, "condition", name, [](const auto& c) { return c.name; });
 }
 
-Trace simulated(const StudyRuns& runs, const Job& job, const Model& model) {
-  return robot(runs.robot).simulate(model, runs.touched(job.kind, job.seed));
+std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model) {
+  std::vector<Scenario> scenarios;
+  for (const Job& job : jobs) scenarios.push_back(runs.touched(job.kind, job.seed));
+  return robot(runs.robot).simulate(model, scenarios);
 }
 
-void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model) {
-  const double off =
-      difference(simulate(model, runs.touched(job.kind, job.seed)), simulated(runs, job, model));
+void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
+                           const Trace& truth) {
+  const double off = difference(simulate(model, runs.touched(job.kind, job.seed)), truth);
   if (off < 1e-9) return;
   throw std::runtime_error(
       fmt::format("{}: the run of seed {} differs by {:.2g} from MuJoCo's, and 1e-9 is allowed",
@@ -177,8 +184,32 @@ void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& m
 }
 
 Trace measured(const Trace& truth, Sensors sensors, const Job& job) {
-  sensors.seed = 4 * job.seed + static_cast<std::uint64_t>(job.kind);
+  sensors.seed = sensors_seed(job);
   return measure(truth, sensors);
+}
+
+Views::Views(std::vector<Trace> truths, std::span<const Job> jobs) {
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    Trace& t = truths[i];
+    seeds_.push_back(sensors_seed(jobs[i]));
+    drawn_.push_back(velocity_noise(t.dof(), seeds_.back()));
+    readings_.push_back({.t = std::move(t.t),
+                         .q = std::move(t.q),
+                         .qd = std::move(t.qd),
+                         .tau = std::move(t.tau),
+                         .torque_at_instants = t.torque_at_instants,
+                         .screws = std::move(t.screws)});
+  }
+}
+
+std::vector<Trace> Views::by(const Sensors& sensors) {
+  std::vector<Trace> seen;
+  Sensors mine = sensors;
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    mine.seed = seeds_[i];
+    seen.push_back(measure(readings_[i], mine, drawn_[i]));
+  }
+  return seen;
 }
 
 std::vector<std::string> condition_names(const StudyRuns& runs) {
@@ -190,6 +221,7 @@ std::vector<std::string> condition_names(const StudyRuns& runs) {
 std::vector<std::string> chosen_conditions(const StudyRuns& runs,
                                            const std::vector<std::string>& asked,
                                            const std::vector<std::string>& otherwise) {
+  refuse_twice("condition", asked);
   for (const std::string& name : asked) condition(runs, name);
   return asked.empty() ? otherwise : asked;
 }

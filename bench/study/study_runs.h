@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,15 +78,32 @@ struct Job {
   std::uint64_t seed;  ///< of the touches
 };
 
-/// The true trace of a run.
-Trace simulated(const StudyRuns& runs, const Job& job, const Model& model);
+/// The true traces of runs of one robot.
+std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model);
 
 /// That MuJoCo simulates that run likewise, to 1e-9 of its largest values.
+/// @param truth our simulation of that job
 /// @throws std::runtime_error if it does not
-void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model);
+void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
+                           const Trace& truth);
 
 /// What the sensors make of a run, with a seed of their own.
 Trace measured(const Trace& truth, Sensors sensors, const Job& job);
+
+/// Runs as any sensors see them: measured(), with noise that is drawn once for all sensors.
+class Views {
+ public:
+  /// Of true traces of these jobs.
+  Views(std::vector<Trace> truths, std::span<const Job> jobs);
+
+  /// What they see of each run, without its truth.
+  std::vector<Trace> by(const Sensors& sensors);
+
+ private:
+  std::vector<Trace> readings_;       // what can be measured
+  std::vector<std::uint64_t> seeds_;  // of the sensors
+  std::vector<std::vector<Normals>> drawn_;
+};
 
 /// The names asked for, or those that stand for none.
 /// @throws std::invalid_argument for an unknown name, listing the known ones

@@ -13,15 +13,17 @@ function(tauext_precompile target position_independent)
   target_precompile_headers(${target} PRIVATE ${precompiled} ${ARGN})
 endfunction()
 
-# tauext_headers(h...): installed below the folder's own path; ci/check_docs and ci/check_headers look at those of
-# the tree
+# tauext_headers(h...): installed below the folder's own path, as they lie there; ci/check_docs and ci/check_headers look at
+# those of the tree
 function(tauext_headers)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  install(FILES ${ARGN} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tauext/${folder})
   foreach(header IN LISTS ARGN)
+    set(below "")
     if(NOT IS_ABSOLUTE ${header})
+      cmake_path(GET header PARENT_PATH below)
       set_property(GLOBAL APPEND_STRING PROPERTY TAUEXT_HEADERS "${folder}/${header}\n")
     endif()
+    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tauext/${folder}/${below})
   endforeach()
 endfunction()
 

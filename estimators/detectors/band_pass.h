@@ -13,34 +13,39 @@
 
 namespace tauext {
 
-/// Band-pass and limit over N joints.
+/// What can be chosen of a BandPass.
 template <int N>
+struct BandPassParameters {
+  /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the
+  /// origin
+  Vec<N> threshold = Vec<N>::Constant(45);
+  double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
+  double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    using P = BandPassParameters;
+    return std::tuple_cat(
+        std::tuple(threshold_field<P>("N m"),
+                   Field{"w_low", &P::w_low, "rad/s", kLeastBandwidth, kMostBandwidth,
+                         "larger lets less pass, of a blow too"},
+                   Field{"w_high", &P::w_high, "rad/s", kLeastBandwidth, kMostBandwidth,
+                         "larger lets more noise pass, marks sooner"}),
+        marking_fields<P>());
+  }
+};
+
+/// Band-pass and limit over N joints.
+template <int N, class Scalar = double>
 class BandPass {
  public:
   static constexpr const char* kName = "band_pass";
   static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-
-  struct Parameters {
-    /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the
-    /// origin
-    Vec<N> threshold = Vec<N>::Constant(45);
-    double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
-    double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
-    double refractory = 0.2;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple_cat(
-          std::tuple(threshold_field<P>("N m"),
-                     Field{"w_low", &P::w_low, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "larger lets less pass, of a blow too"},
-                     Field{"w_high", &P::w_high, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "larger lets more noise pass, marks sooner"}),
-          marking_fields<P>());
-    }
-  };
+  using Parameters = BandPassParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = BandPass<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit BandPass(const Parameters& p = {})
@@ -51,34 +56,37 @@ class BandPass {
     require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+
   void reset() noexcept {
     marking_.reset();
     forget();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       slow_.start(t, tau_ext);
-      quick_.start(t, Vec<N>::Zero());
+      quick_.start(t, Vec<N, Scalar>::Zero());
     } else {
-      const Vec<N> high = tau_ext - slow_(t, tau_ext);
+      const Vec<N, Scalar> high = tau_ext - slow_(t, tau_ext);
       statistic_ = quick_(t, high).cwiseAbs();  // (i)
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);
   }
 
   /// [N m] |z|.
-  const Vec<N>& statistic() const noexcept { return statistic_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
 
   Parameters p_;
-  LowPass<N> slow_, quick_;
-  Marking marking_;
-  Vec<N> statistic_ = Vec<N>::Zero();
+  LowPass<N, Scalar> slow_, quick_;
+  BasicMarking<Scalar> marking_;
+  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
 };
 
 static_assert(CalibratableDetector<BandPass<3>>);

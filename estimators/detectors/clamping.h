@@ -29,47 +29,53 @@
 
 namespace tauext {
 
-/// Limit on slow, lasting changes over N joints.
+/// What can be chosen of a Clamping.
 template <int N>
+struct ClampingParameters {
+  /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger
+  /// misses more and alarms less; by default beyond a push of 100 N at 1.5 m
+  Vec<N> threshold = Vec<N>::Constant(150);
+  Mat<N> metric = Mat<N>::Identity();  ///< [1] of (ii), symmetric positive definite
+  /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a
+  /// clamping that rises slowly
+  double w_baseline = 0.5;
+  double w_smooth = 100;    ///< [rad/s] smaller lets less noise pass, and marks later
+  double duration = 0.1;    ///< [s] larger lets longer blows pass, and marks later
+  double refractory = 0.5;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  /// The metric comes from training, and cannot be set by name.
+  static constexpr auto fields() {
+    using P = ClampingParameters;
+    return std::tuple_cat(
+        std::tuple(threshold_field<P>("N m"),
+                   Field{"w_baseline", &P::w_baseline, "rad/s", kLeastBandwidth, kMostBandwidth,
+                         "larger forgets payloads sooner, clampings too"},
+                   Field{"w_smooth", &P::w_smooth, "rad/s", kLeastBandwidth, kMostBandwidth,
+                         "larger lets more noise pass, marks sooner"},
+                   Field{"duration", &P::duration, "s", 1e-6, 1e3,
+                         "larger ignores longer blows, marks later"}),
+        marking_fields<P>());
+  }
+};
+
+/// Limit on slow, lasting changes over N joints.
+template <int N, class Scalar = double>
 class Clamping {
  public:
   static constexpr const char* kName = "clamping";
   static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-
-  struct Parameters {
-    /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger
-    /// misses more and alarms less; by default beyond a push of 100 N at 1.5 m
-    Vec<N> threshold = Vec<N>::Constant(150);
-    Mat<N> metric = Mat<N>::Identity();  ///< [1] of (ii), symmetric positive definite
-    /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a
-    /// clamping that rises slowly
-    double w_baseline = 0.5;
-    double w_smooth = 100;    ///< [rad/s] smaller lets less noise pass, and marks later
-    double duration = 0.1;    ///< [s] larger lets longer blows pass, and marks later
-    double refractory = 0.5;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    /// The metric comes from training, and cannot be set by name.
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple_cat(
-          std::tuple(threshold_field<P>("N m"),
-                     Field{"w_baseline", &P::w_baseline, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "larger forgets payloads sooner, clampings too"},
-                     Field{"w_smooth", &P::w_smooth, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "larger lets more noise pass, marks sooner"},
-                     Field{"duration", &P::duration, "s", 1e-6, 1e3,
-                           "larger ignores longer blows, marks later"}),
-          marking_fields<P>());
-    }
-  };
+  using Parameters = ClampingParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = Clamping<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Clamping(const Parameters& p = {})
       : p_(check_parameters(p, kName)),
         baseline_(p.w_baseline),
         smooth_(p.w_smooth),
+        metric_(p.metric.template cast<Scalar>()),
         marking_(p.refractory, p.start_up),
         least_threshold_(p.threshold.minCoeff()) {
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
@@ -78,31 +84,34 @@ class Clamping {
     reset();
   }
 
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+
   void reset() noexcept {
     marking_.reset();
     forget();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       baseline_.start(t, tau_ext);
-      smooth_.start(t, Vec<N>::Zero());
+      smooth_.start(t, Vec<N, Scalar>::Zero());
       block_began_ = t;
     } else {
-      const Vec<N> changed = tau_ext - baseline_(t, tau_ext);
-      z_ = smooth_(t, changed);                    // (i)
-      keep(t, std::sqrt(z_.dot(p_.metric * z_)));  // (ii)
+      using std::sqrt;
+      const Vec<N, Scalar> changed = tau_ext - baseline_(t, tau_ext);
+      z_ = smooth_(t, changed);                        // (i)
+      keep(t, sqrt(z_.dot(metric_.lazyProduct(z_))));  // (ii)
     }
     return marking_(t, statistic_[0] / least_threshold_, Contact::kClamping);
   }
 
   /// [N m] `lasting`, the same for every joint.
-  const Vec<N>& statistic() const noexcept { return statistic_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
   /// [N m] z of (i): how far tau_ext is from its baseline.
-  const Vec<N>& change() const noexcept { return z_; }
+  const Vec<N, Scalar>& change() const noexcept { return z_; }
 
  private:
   void forget() noexcept {
@@ -115,28 +124,30 @@ class Clamping {
   static constexpr int kBlocks = 8;
 
   // (iii)
-  void keep(double t, double size) noexcept {
+  void keep(double t, const Scalar& size) noexcept {
+    using std::min;
     if (t - block_began_ >= p_.duration / kBlocks) {
       block_began_ = t;
       newest_ = (newest_ + 1) % kBlocks;
       blocks_[newest_] = std::numeric_limits<double>::infinity();
-      older_ = *std::min_element(blocks_.begin(), blocks_.end());
+      older_ = blocks_[0];
+      for (const Scalar& least : blocks_) older_ = min(older_, least);
       blocks_[newest_] = size;
     }
-    blocks_[newest_] = std::min(blocks_[newest_], size);
-    statistic_.setConstant(std::min(older_, blocks_[newest_]));
+    blocks_[newest_] = min(blocks_[newest_], size);
+    statistic_.setConstant(min(older_, blocks_[newest_]));
   }
 
   Parameters p_;
-  LowPass<N> baseline_, smooth_;
-  Marking marking_;
-  double least_threshold_;                // [N m]
-  std::array<double, kBlocks> blocks_{};  // [N m]
-  double older_ = 0;                      // [N m] least of all but the newest
+  LowPass<N, Scalar> baseline_, smooth_;
+  Mat<N, Scalar> metric_;
+  BasicMarking<Scalar> marking_;
+  double least_threshold_;              // [N m]
+  std::array<Scalar, kBlocks> blocks_;  // [N m]
+  Scalar older_ = 0;                    // [N m] least of all but the newest
   int newest_ = 0;
   double block_began_ = 0;  // [s]
-  Vec<N> z_ = Vec<N>::Zero();
-  Vec<N> statistic_ = Vec<N>::Zero();
+  Vec<N, Scalar> z_ = Vec<N, Scalar>::Zero(), statistic_ = z_;
 };
 
 static_assert(CalibratableDetector<Clamping<3>>);

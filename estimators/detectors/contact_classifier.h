@@ -21,33 +21,40 @@
 
 namespace tauext {
 
-/// Classifier over N joints.
+/// What can be chosen of a ContactClassifier.
 template <int N>
+struct ContactClassifierParameters {
+  typename PanTompkins<N>::Parameters collision{};  ///< of what finds a blow
+  typename Clamping<N>::Parameters clamping{};      ///< of what finds a clamping
+  /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
+  /// default 15 N at 1 m
+  Vec<N> intentional = Vec<N>::Constant(15);
+  double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
+
+  static constexpr auto fields() {
+    using P = ContactClassifierParameters;
+    return std::tuple(
+        Nested{"collision", &P::collision}, Nested{"clamping", &P::clamping},
+        Field{"intentional", &P::intentional, "N m", 1e-12, 1e15, "larger overlooks light hands"},
+        Field{"hold", &P::hold, "s", 0, 1e3, "how long a collision is one"});
+  }
+};
+
+/// Classifier over N joints.
+template <int N, class Scalar = double>
 class ContactClassifier {
  public:
   static constexpr const char* kName = "contact_classifier";
   static constexpr int kDof = N;
-
-  struct Parameters {
-    typename PanTompkins<N>::Parameters collision{};  ///< of what finds a blow
-    typename Clamping<N>::Parameters clamping{};      ///< of what finds a clamping
-    /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
-    /// default 15 N at 1 m
-    Vec<N> intentional = Vec<N>::Constant(15);
-    double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
-
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple(
-          Nested{"collision", &P::collision}, Nested{"clamping", &P::clamping},
-          Field{"intentional", &P::intentional, "N m", 1e-12, 1e15, "larger overlooks light hands"},
-          Field{"hold", &P::hold, "s", 0, 1e3, "how long a collision is one"});
-    }
-  };
+  using Parameters = ContactClassifierParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = ContactClassifier<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit ContactClassifier(const Parameters& p = {})
       : p_(check_parameters(p, kName)), collision_(p.collision), clamping_(p.clamping) {}
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   void reset() noexcept {
     clock_.reset();
@@ -56,9 +63,9 @@ class ContactClassifier {
     forget();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     const Status status = clock_.accept(t);
-    if (!used(status)) return {false, last_.score, last_.contact};
+    if (!used(status)) return {no<Scalar>(), last_.score, last_.contact};
     if (status == Status::kStarted) forget();
     last_ = classified(t, tau_ext);
     return last_;
@@ -66,43 +73,41 @@ class ContactClassifier {
 
  private:
   void forget() noexcept {
-    hit_ = clamped_ = clamp_marked_ = false;
-    last_ = {};
+    hit_at_ = clamp_marked_at_ = kNever;
+    clamped_ = no<Scalar>();
+    last_ = {no<Scalar>(), 0, contact_as<Scalar>(Contact::kNone)};
   }
 
-  Detection classified(double t, const Vec<N>& tau_ext) noexcept {
-    const Detection hit = collision_.update(t, tau_ext);
-    const Detection clamp = clamping_.update(t, tau_ext);
-    const double score = std::max(hit.score, clamp.score);
-    if (hit.mark) {
-      hit_ = true;
-      hit_at_ = t;
-    }
-    if (hit_ && t - hit_at_ < p_.hold) {
-      clamped_ = false;
-      return {hit.mark, score, Contact::kCollision};
-    }
-    const bool clamped = clamp.score >= 1;
-    const bool rested = !clamp_marked_ || t - clamp_marked_at_ >= p_.clamping.refractory;
-    const bool mark = clamped && !clamped_ && rested;
+  DetectionOf<Scalar> classified(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+    using std::max;
+    const DetectionOf<Scalar> hit = collision_.update(t, tau_ext);
+    const DetectionOf<Scalar> clamp = clamping_.update(t, tau_ext);
+    hit_at_ = select(hit.mark, Scalar(t), hit_at_);
+    const MaskOf<Scalar> collides = t - hit_at_ < p_.hold;
+    const MaskOf<Scalar> clamped = (clamp.score >= 1) & !collides;
+    const MaskOf<Scalar> rested = t - clamp_marked_at_ >= p_.clamping.refractory;
+    const MaskOf<Scalar> clamp_mark = clamped & !clamped_ & rested;
     clamped_ = clamped;
-    if (mark) {
-      clamp_marked_ = true;
-      clamp_marked_at_ = t;
-    }
-    if (clamped) return {mark, score, Contact::kClamping};
-    const bool touched =
-        clamping_.change().cwiseAbs().cwiseQuotient(p_.intentional).maxCoeff() >= 1;
-    return {false, score, touched ? Contact::kIntentional : Contact::kNone};
+    clamp_marked_at_ = select(clamp_mark, Scalar(t), clamp_marked_at_);
+    const MaskOf<Scalar> touched = clamping_.change()
+                                       .cwiseAbs()
+                                       .cwiseQuotient(p_.intentional.template cast<Scalar>())
+                                       .maxCoeff() >= 1;
+    const MaskOf<Scalar> mark = (hit.mark & collides) | clamp_mark;
+    const auto as = [](Contact c) { return contact_as<Scalar>(c); };
+    return {mark, max(hit.score, clamp.score),
+            select(collides, as(Contact::kCollision),
+                   select(clamped, as(Contact::kClamping),
+                          select(touched, as(Contact::kIntentional), as(Contact::kNone))))};
   }
 
   Parameters p_;
-  PanTompkins<N> collision_;
-  Clamping<N> clamping_;
-  Clock clock_{Marking::kMaxGap};  // says what those of both stages say
-  bool hit_ = false, clamped_ = false, clamp_marked_ = false;
-  double hit_at_ = 0, clamp_marked_at_ = 0;  // [s]
-  Detection last_;
+  PanTompkins<N, Scalar> collision_;
+  Clamping<N, Scalar> clamping_;
+  Clock clock_{Marking::kMaxGap};                      // says what those of both stages say
+  Scalar hit_at_ = kNever, clamp_marked_at_ = kNever;  // [s]
+  MaskOf<Scalar> clamped_ = no<Scalar>();
+  DetectionOf<Scalar> last_ = {no<Scalar>(), 0, contact_as<Scalar>(Contact::kNone)};
 };
 
 static_assert(CollisionDetector<ContactClassifier<3>>);

@@ -18,64 +18,74 @@
 
 namespace tauext {
 
-/// CUSUM over N joints.
+/// What can be chosen of a Cusum.
 template <int N>
+struct CusumParameters {
+  /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
+  /// of 100 N and 10 ms at 1.2 m
+  Vec<N> threshold = Vec<N>::Constant(0.4);
+  /// [N m] per joint, what z may have for ever: larger forgets quicker; by default above what a
+  /// push of 80 N in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s,
+  /// over w)
+  Vec<N> drift = Vec<N>::Constant(12);
+  double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    using P = CusumParameters;
+    return std::tuple_cat(
+        std::tuple(threshold_field<P>("N m s"),
+                   Field{"drift", &P::drift, "N m", 0, 1e12, "larger forgets sooner"},
+                   Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
+                         "larger lets less of a push pass"}),
+        marking_fields<P>());
+  }
+};
+
+/// CUSUM over N joints.
+template <int N, class Scalar = double>
 class Cusum {
  public:
   static constexpr const char* kName = "cusum";
   static constexpr int kDof = N;
-  static constexpr int kDegree = 1;  ///< at least: the drift does not grow
-
-  struct Parameters {
-    /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
-    /// of 100 N and 10 ms at 1.2 m
-    Vec<N> threshold = Vec<N>::Constant(0.4);
-    /// [N m] per joint, what z may have for ever: larger forgets quicker; by default above what a
-    /// push of 80 N in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s,
-    /// over w)
-    Vec<N> drift = Vec<N>::Constant(12);
-    double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
-    double refractory = 0.2;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple_cat(
-          std::tuple(threshold_field<P>("N m s"),
-                     Field{"drift", &P::drift, "N m", 0, 1e12, "larger forgets sooner"},
-                     Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
-                           "larger lets less of a push pass"}),
-          marking_fields<P>());
-    }
-  };
+  static constexpr int kDegree = 1;       ///< at least: the drift does not grow
+  using Parameters = CusumParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = Cusum<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Cusum(const Parameters& p = {})
       : p_(check_parameters(p, kName)), mean_(p.w), marking_(p.refractory, p.start_up) {}
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   void reset() noexcept {
     marking_.reset();
     forget();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
-      const double h = t - t_;
-      const Vec<N> z = tau_ext - mean_(t, tau_ext), most = 2 * p_.threshold;
-      up_ = (up_ + h * (z - p_.drift)).cwiseMax(0).cwiseMin(most);  // (i)
-      down_ = (down_ - h * (z + p_.drift)).cwiseMax(0).cwiseMin(most);
+      const Scalar h = t - t_;
+      const Vec<N, Scalar> drift = p_.drift.template cast<Scalar>();
+      const Vec<N, Scalar> most = (2 * p_.threshold).template cast<Scalar>();
+      const Vec<N, Scalar> z = tau_ext - mean_(t, tau_ext);
+      up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
+      down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
       statistic_ = up_.cwiseMax(down_);
     }
     t_ = t;
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);
   }
 
   /// [N m s] the larger sum.
-  const Vec<N>& statistic() const noexcept { return statistic_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept {
@@ -87,11 +97,11 @@ class Cusum {
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   Parameters p_;
-  LowPass<N> mean_;
-  Marking marking_;
+  LowPass<N, Scalar> mean_;
+  BasicMarking<Scalar> marking_;
   double t_ = 0;
-  Vec<N> up_ = Vec<N>::Zero(), down_ = Vec<N>::Zero();
-  Vec<N> statistic_ = Vec<N>::Zero();
+  Vec<N, Scalar> up_ = Vec<N, Scalar>::Zero(), down_ = up_;
+  Vec<N, Scalar> statistic_ = up_;
 };
 
 static_assert(CalibratableDetector<Cusum<3>>);

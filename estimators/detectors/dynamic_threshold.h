@@ -7,60 +7,77 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 
 namespace tauext {
 
-/// Speed-dependent threshold over N joints.
+/// What can be chosen of a DynamicThreshold.
 template <int N>
+struct DynamicThresholdParameters {
+  /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at
+  /// 1.2 m
+  Vec<N> threshold = Vec<N>::Constant(100);
+  double speed = 0.5;       ///< [rad/s] at which the limit has doubled: smaller trusts motion less
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    using P = DynamicThresholdParameters;
+    return std::tuple_cat(
+        std::tuple(threshold_field<P>("N m"),
+                   Field{"speed", &P::speed, "rad/s", 1e-6, 1e6, "where the limit has doubled"}),
+        marking_fields<P>());
+  }
+};
+
+/// Speed-dependent threshold over N joints.
+template <int N, class Scalar = double>
 class DynamicThreshold {
  public:
   static constexpr const char* kName = "dynamic_threshold";
   static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-
-  struct Parameters {
-    /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at
-    /// 1.2 m
-    Vec<N> threshold = Vec<N>::Constant(100);
-    double speed = 0.5;  ///< [rad/s] at which the limit has doubled: smaller trusts motion less
-    double refractory = 0.2;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple_cat(
-          std::tuple(threshold_field<P>("N m"),
-                     Field{"speed", &P::speed, "rad/s", 1e-6, 1e6, "where the limit has doubled"}),
-          marking_fields<P>());
-    }
-  };
+  using Parameters = DynamicThresholdParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = DynamicThreshold<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit DynamicThreshold(const Parameters& p = {})
       : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   void reset() noexcept {
     marking_.reset();
     statistic_.setZero();
   }
 
-  Detection update(const Measurement<N>& y, const Vec<N>& tau_ext) noexcept {
-    if (!within(y.qd, kMeasurementLimit) || !marking_.accept(y.t)) return marking_.held();
-    const Vec<N> growth = (1 + y.qd.array().abs() / p_.speed).matrix();
+  DetectionOf<Scalar> update(
+      const Measurement<N, Scalar>& y,
+      const Vec<N, Scalar>& tau_ext) noexcept requires std::is_same_v<Scalar, double> {
+    if (!within(y.qd, kMeasurementLimit)) return marking_.held();
+    return update(y.t, y.qd, tau_ext);
+  }
+  /// The same of qd [rad/s] at t [s] that is measured.
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd,
+                             const Vec<N, Scalar>& tau_ext) noexcept {
+    if (!marking_.accept(t)) return marking_.held();
+    const Vec<N, Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
     statistic_ = tau_ext.cwiseAbs().cwiseQuotient(growth);
-    return marking_(y.t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);
   }
 
   /// [N m] |tau_ext| as it would count at rest.
-  const Vec<N>& statistic() const noexcept { return statistic_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
-  Marking marking_;
-  Vec<N> statistic_ = Vec<N>::Zero();
+  BasicMarking<Scalar> marking_;
+  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
 };
 
 static_assert(CalibratableDetector<DynamicThreshold<3>>);

@@ -13,8 +13,9 @@
 
 namespace tauext {
 
-/// Low-pass of N signals; the high-pass is what it leaves.
-template <int N>
+/// Low-pass of N signals, or with a Pack for Scalar of several runs; the high-pass is what it
+/// leaves.
+template <int N, class Scalar = double>
 class LowPass {
  public:
   /// @param w [rad/s] cut-off
@@ -22,16 +23,17 @@ class LowPass {
   explicit LowPass(double w) : w_(w) { require(w > 0, "w [rad/s] of a filter must be positive"); }
 
   /// As if x had been there for ever.
-  void start(double t, const Vec<N>& x) noexcept {
+  void start(double t, const Vec<N, Scalar>& x) noexcept {
     t_ = t;
     x_ = low_ = x;
   }
 
   /// (i) at t [s], which is later than the last one.
-  [[gnu::always_inline]] const Vec<N>& operator()(double t, const Vec<N>& x) noexcept {
+  [[gnu::always_inline]] const Vec<N, Scalar>& operator()(double t,
+                                                          const Vec<N, Scalar>& x) noexcept {
     const double h = t - t_;
     if (new_step_(h)) decay_ = std::exp(-w_ * h);
-    low_ = x_ + decay_ * (low_ - x_);
+    low_ = x_ + Scalar(decay_) * (low_ - x_);
     t_ = t;
     x_ = x;
     return low_;
@@ -42,8 +44,7 @@ class LowPass {
   StepChange<> new_step_;
   double decay_ = 0;
   double t_ = 0;
-  Vec<N> x_ = Vec<N>::Zero();
-  Vec<N> low_ = Vec<N>::Zero();
+  Vec<N, Scalar> x_ = Vec<N, Scalar>::Zero(), low_ = x_;
 };
 
 }  // namespace tauext

@@ -8,11 +8,46 @@
 /// does all of this.
 #pragma once
 
+#include <limits>
 #include <tuple>
+#include <type_traits>
 
+#include "estimators/math/lanes.h"
 #include "estimators/sampling.h"
 
 namespace tauext {
+
+/// The result of comparing two such numbers: bool for doubles, a mask for Packs.
+template <class Scalar>
+using MaskOf = decltype(Scalar() < Scalar());
+/// The mask that is false for every run.
+template <class Scalar>
+MaskOf<Scalar> no() noexcept {
+  return Scalar(0) < Scalar(0);
+}
+
+/// As Detection, of several runs of one clock: Scalar is a Pack.
+template <class Scalar>
+struct RunsDetection {
+  MaskOf<Scalar> mark;  ///< of each run
+  Scalar score;         ///< [1] of each run
+  Scalar contact;       ///< the number of the Contact of each run
+};
+
+/// What a detector answers that computes with Scalar.
+template <class Scalar>
+using DetectionOf =
+    std::conditional_t<std::is_same_v<Scalar, double>, Detection, RunsDetection<Scalar>>;
+
+/// A contact as DetectionOf<Scalar> says it, of all runs.
+template <class Scalar>
+auto contact_as(Contact c) noexcept {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    return c;
+  } else {
+    return Scalar(static_cast<double>(c));
+  }
+}
 
 /// The parameters of the marks of a detector, as its Parameters list them.
 template <class P>
@@ -28,15 +63,19 @@ constexpr auto threshold_field(const char* unit) {
   return Field{"threshold", &P::threshold, unit, 1e-12, 1e15, "larger misses more, alarms less"};
 }
 
-/// Marks of one detector.
-class Marking {
+/// [s] the time of what has never been.
+inline constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+/// Marks of one detector; with a Pack for Scalar, of several runs of one clock.
+template <class Scalar = double>
+class BasicMarking {
  public:
   static constexpr double kMaxGap = 1;  ///< [s] between samples; a longer one starts anew
 
   /// @param refractory [s] after a mark without another
   /// @param start_up [s] after the first sample without any
   /// @throws std::invalid_argument if one of them is negative
-  Marking(double refractory, double start_up) : refractory_(refractory), start_up_(start_up) {
+  BasicMarking(double refractory, double start_up) : refractory_(refractory), start_up_(start_up) {
     require(refractory >= 0, "refractory [s] of a detector must not be negative");
     require(start_up >= 0, "start_up [s] of a detector must not be negative");
   }
@@ -57,7 +96,9 @@ class Marking {
   }
 
   /// The answer to a sample that cannot.
-  Detection held() const noexcept { return {false, score_, Contact::kNone}; }
+  DetectionOf<Scalar> held() const noexcept {
+    return {no<Scalar>(), score_, contact_as<Scalar>(Contact::kNone)};
+  }
 
   /// Whether t is the first sample, of a stream or of a new clock.
   bool starts() const noexcept { return !started_; }
@@ -66,33 +107,39 @@ class Marking {
   bool silent(double t) const noexcept { return !started_ || t - started_at_ < start_up_; }
 
   /// One sample: whether it is marked, and what for.
-  Detection operator()(double t, double score, Contact contact) noexcept {
+  [[gnu::always_inline]] DetectionOf<Scalar> operator()(double t, const Scalar& score,
+                                                        Contact contact) noexcept {
+    const auto none = contact_as<Scalar>(Contact::kNone);
     if (!started_) {
       started_ = true;
       started_at_ = t;
     }
-    if (silent(t)) return {false, score, Contact::kNone};
-    const bool rises = score >= 1 && score_ < 1;
-    const bool mark = rises && (!marked_ || t - marked_at_ >= refractory_);
-    if (mark) {
-      marked_ = true;
-      marked_at_ = t;
-    }
+    if (silent(t)) return {no<Scalar>(), score, none};
+    MaskOf<Scalar> mark = (score >= 1) & (score_ < 1);
     score_ = score;
-    return {mark, score, mark ? contact : Contact::kNone};
+    if (!any(mark)) [[likely]]
+      return {mark, score, none};
+    mark = mark & (t - marked_at_ >= refractory_);
+    marked_at_ = select(mark, Scalar(t), marked_at_);
+    return {mark, score, select(mark, contact_as<Scalar>(contact), none)};
   }
 
  private:
   void forget() noexcept {
-    started_ = marked_ = false;
+    started_ = false;
+    marked_at_ = kNever;
     score_ = 0;
   }
 
   double refractory_, start_up_;
   Clock clock_{kMaxGap};
-  double started_at_ = 0, marked_at_ = 0;  // [s]
-  double score_ = 0;                       // the last one outside the silence
-  bool started_ = false, marked_ = false;
+  double started_at_ = 0;      // [s]
+  Scalar marked_at_ = kNever;  // [s]
+  Scalar score_ = 0;           // the last one outside the silence
+  bool started_ = false;
 };
+
+/// Of one run.
+using Marking = BasicMarking<>;
 
 }  // namespace tauext

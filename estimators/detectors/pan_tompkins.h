@@ -15,54 +15,63 @@
 
 #include <array>
 #include <tuple>
+#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 
 namespace tauext {
 
-/// The paper's detector over N joints.
+/// What can be chosen of a PanTompkins.
 template <int N>
+struct PanTompkinsParameters {
+  static constexpr int kMaxStride = 16;  ///< samples between the two that a difference takes
+
+  /// samples from point to point of (i), 1 to kMaxStride: larger is later but less noisy
+  int stride = 5;
+  /// [(N m/s)^2] of (iii) per joint; the default is 40 times the squared slope of a human's
+  /// minimum-jerk push of 50 N m in 1 s (94 N m/s), and belongs to stride 5 at 1 kHz
+  Vec<N> threshold = Vec<N>::Constant(3.6e5);
+  double hold = 0.02;       ///< [s] how long an energy is kept
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    using P = PanTompkinsParameters;
+    return std::tuple_cat(
+        std::tuple(
+            Field{"stride", &P::stride, "samples", 1, kMaxStride, "larger is later, less noisy"},
+            threshold_field<P>("(N m/s)^2"),
+            Field{"hold", &P::hold, "s", 0, 1e3, "how long an energy is kept"}),
+        marking_fields<P>());
+  }
+};
+
+/// The paper's detector over N joints.
+template <int N, class Scalar = double>
 class PanTompkins {
  public:
   static constexpr const char* kName = "pan_tompkins";
   static constexpr int kDof = N;
-  static constexpr int kDegree = 2;      ///< the energy is a square
-  static constexpr int kMaxStride = 16;  ///< samples between the two that a difference takes
-
-  struct Parameters {
-    /// samples from point to point of (i), 1 to kMaxStride: larger is later but less noisy
-    int stride = 5;
-    /// [(N m/s)^2] of (iii) per joint; the default is 40 times the squared slope of a human's
-    /// minimum-jerk push of 50 N m in 1 s (94 N m/s), and belongs to stride 5 at 1 kHz
-    Vec<N> threshold = Vec<N>::Constant(3.6e5);
-    double hold = 0.02;       ///< [s] how long an energy is kept
-    double refractory = 0.2;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    static constexpr auto fields() {
-      using P = Parameters;
-      return std::tuple_cat(
-          std::tuple(
-              Field{"stride", &P::stride, "samples", 1, kMaxStride, "larger is later, less noisy"},
-              threshold_field<P>("(N m/s)^2"),
-              Field{"hold", &P::hold, "s", 0, 1e3, "how long an energy is kept"}),
-          marking_fields<P>());
-    }
-  };
+  static constexpr int kDegree = 2;             ///< the energy is a square
+  using Parameters = PanTompkinsParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = PanTompkins<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit PanTompkins(const Parameters& p = {})
       : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {
-    tau_ext_.fill(Vec<N>::Zero());
+    tau_ext_.fill(Vec<N, Scalar>::Zero());
   }
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   void reset() noexcept {
     marking_.reset();
     forget();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
@@ -70,21 +79,24 @@ class PanTompkins {
     tau_ext_[newest_] = tau_ext;
     if (++count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
-    const Vec<N> energy = slope(newest_).cwiseAbs2();
+    const Vec<N, Scalar> energy = slope(newest_).cwiseAbs2();
     for (int i = 0; i < N; ++i) {  // (ii)
-      if (energy[i] >= held_[i] || t - held_at_[i] > p_.hold) {
-        held_[i] = energy[i];
-        held_at_[i] = t;
+      const MaskOf<Scalar> is_new = (energy[i] >= held_[i]) | (t - held_at_[i] > p_.hold);
+      if constexpr (std::is_same_v<Scalar, double>) {
+        if (!is_new) continue;  // for one run the processor predicts this branch
       }
+      held_[i] = select(is_new, energy[i], held_[i]);
+      held_at_[i] = select(is_new, Scalar(t), held_at_[i]);
     }
-    return marking_(t, held_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);  // (iii)
+    return marking_(t, held_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);  // (iii)
   }
 
   /// [(N m/s)^2] held energy of each joint.
-  const Vec<N>& statistic() const noexcept { return held_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return held_; }
 
  private:
-  static constexpr int kHistory = 4 * kMaxStride + 1;
+  static constexpr int kHistory = 4 * Parameters::kMaxStride + 1;
 
   void forget() noexcept {
     count_ = 0;
@@ -93,7 +105,7 @@ class PanTompkins {
   }
 
   // (i), [N m/s]
-  Vec<N> slope(int newest) const noexcept {
+  Vec<N, Scalar> slope(int newest) const noexcept {
     std::array<int, 5> at;
     double sum_t = 0;
     for (int& place : at) {
@@ -103,23 +115,23 @@ class PanTompkins {
       if (newest < 0) newest += kHistory;
     }
     const double mean_t = 0.2 * sum_t;
-    Vec<N> numerator = Vec<N>::Zero();
+    Vec<N, Scalar> numerator = Vec<N, Scalar>::Zero();
     double denominator = 0;
     for (const int j : at) {
-      numerator += (t_[j] - mean_t) * tau_ext_[j];
-      denominator += (t_[j] - mean_t) * (t_[j] - mean_t);
+      const double from_mean = t_[j] - mean_t;
+      numerator += Scalar(from_mean) * tau_ext_[j];
+      denominator += from_mean * from_mean;
     }
-    return numerator * (1 / denominator);
+    return numerator * Scalar(1 / denominator);
   }
 
   Parameters p_;
-  Marking marking_;
+  BasicMarking<Scalar> marking_;
   std::array<double, kHistory> t_{};
-  std::array<Vec<N>, kHistory> tau_ext_;
+  std::array<Vec<N, Scalar>, kHistory> tau_ext_;
   long count_ = 0;
   int newest_ = 0;  // of the history
-  Vec<N> held_ = Vec<N>::Zero();
-  Vec<N> held_at_ = Vec<N>::Zero();
+  Vec<N, Scalar> held_ = Vec<N, Scalar>::Zero(), held_at_ = held_;
 };
 
 static_assert(CalibratableDetector<PanTompkins<3>>);

@@ -14,49 +14,57 @@
 
 namespace tauext {
 
-/// Static threshold over N joints.
+/// What can be chosen of a Threshold.
 template <int N>
+struct ThresholdParameters {
+  /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at
+  /// 1.2 m
+  Vec<N> threshold = Vec<N>::Constant(120);
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    return std::tuple_cat(std::tuple(threshold_field<ThresholdParameters>("N m")),
+                          marking_fields<ThresholdParameters>());
+  }
+};
+
+/// Static threshold over N joints.
+template <int N, class Scalar = double>
 class Threshold {
  public:
   static constexpr const char* kName = "threshold";
   static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-
-  struct Parameters {
-    /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at
-    /// 1.2 m
-    Vec<N> threshold = Vec<N>::Constant(120);
-    double refractory = 0.2;  ///< [s] after a mark without another
-    double start_up = 0;      ///< [s] after the first sample without a mark
-
-    static constexpr auto fields() {
-      return std::tuple_cat(std::tuple(threshold_field<Parameters>("N m")),
-                            marking_fields<Parameters>());
-    }
-  };
+  using Parameters = ThresholdParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = Threshold<N, Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
   explicit Threshold(const Parameters& p = {})
       : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
   void reset() noexcept {
     marking_.reset();
     statistic_.setZero();
   }
 
-  Detection update(double t, const Vec<N>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     statistic_ = tau_ext.cwiseAbs();
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold).maxCoeff(), Contact::kCollision);
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);
   }
 
   /// [N m] |tau_ext|.
-  const Vec<N>& statistic() const noexcept { return statistic_; }
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
-  Marking marking_;
-  Vec<N> statistic_ = Vec<N>::Zero();
+  BasicMarking<Scalar> marking_;
+  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
 };
 
 static_assert(CalibratableDetector<Threshold<3>>);

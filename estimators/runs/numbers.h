@@ -6,7 +6,10 @@
 
 #include <array>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "estimators/math/block.h"
@@ -74,20 +77,23 @@ std::tuple<T...> values(const std::tuple<T&...>& t) noexcept {
   return t;
 }
 
+// false if it must be that of the first run, and is not
 template <int W, class T>
-void pack_field(const T& one, int i, T& all) {
-  require(i == 0 || one == all,
-          "runs at once may differ in numbers: not in a choice, max_gap or Ts");
+bool pack_field(const T& one, int i, T& all) {
+  if (i > 0) return one == all;
   all = one;
+  return true;
 }
 template <int W>
-void pack_field(const double& one, int i, Pack<W>& all) {
+bool pack_field(const double& one, int i, Pack<W>& all) {
   all.set(i, one);
+  return true;
 }
 template <int W, int Rows, int Columns>
-void pack_field(const Eigen::Matrix<double, Rows, Columns>& one, int i,
+bool pack_field(const Eigen::Matrix<double, Rows, Columns>& one, int i,
                 Eigen::Matrix<Pack<W>, Rows, Columns>& all) {
   for (Eigen::Index k = 0; k < one.size(); ++k) all.data()[k].set(i, one.data()[k]);
+  return true;
 }
 
 // the members of all Parameters P: those of fields(), and those that it leaves out
@@ -101,6 +107,14 @@ constexpr auto members_of() {
   }
 }
 
+// what a specification calls the member of that number
+template <class P>
+std::string key_of_member(std::size_t number) {
+  const auto keys = std::apply([](const auto&... f) { return std::array{f.key...}; }, P::fields());
+  return number < keys.size() ? keys[number] : "a parameter without a key";
+}
+
+/// @throws std::invalid_argument where runs differ in what must be the same
 template <class All, class P, std::size_t W>
 All packed(const std::array<P, W>& p) {
   constexpr auto one = members_of<P>();
@@ -108,8 +122,15 @@ All packed(const std::array<P, W>& p) {
   All out;
   for (std::size_t i = 0; i < W; ++i) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (pack_field<static_cast<int>(W)>(p[i].*std::get<I>(one), static_cast<int>(i),
-                                       out.*std::get<I>(all)),
+      const auto pack = [&](auto number, const auto& mine, auto& of_all) {
+        if (pack_field<static_cast<int>(W)>(mine, static_cast<int>(i), of_all)) return;
+        throw std::invalid_argument("run " + std::to_string(i) + " has another " +
+                                    key_of_member<P>(number) +
+                                    " than run 0; runs at once may differ in numbers, but not in "
+                                    "max_gap, Ts or a choice");
+      };
+      (pack(std::integral_constant<std::size_t, I>(), p[i].*std::get<I>(one),
+            out.*std::get<I>(all)),
        ...);
     }
     (std::make_index_sequence<std::tuple_size_v<decltype(one)>>());

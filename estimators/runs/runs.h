@@ -37,8 +37,9 @@ concept ForRuns = TorqueEstimator<E> && requires(E& e, const typename E::Model& 
   { e.parameters() } -> std::convertible_to<typename E::Parameters>;
   e.memory();
   E(model, e.parameters());
-  // no class that derives from one, and would be that one
+  // no class that derives from one, and would be that one; nor a model that does
   requires std::same_as<typename E::template For<typename E::Model>, E>;
+  requires std::same_as<decltype(model.template with<double>()), typename E::Model>;
 };
 
 /// The estimates of W runs of N joints.
@@ -60,9 +61,9 @@ void put(const Measurement<N>& y, int i, Measurement<N, Pack<W>>& all) noexcept 
   }
 }
 
-/// W runs of an estimator E.
+/// W runs of an estimator E: 4 or 8.
 template <ForRuns E, int W = kRuns>
-class Runs {
+requires(W == 4 || W == 8) class Runs {
  public:
   static constexpr int kDof = E::kDof;
   using Model = typename E::Model;            ///< of doubles

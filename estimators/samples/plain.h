@@ -51,8 +51,9 @@ class Rules {
   /// Whether joint j is inside its limits.
   [[gnu::always_inline]] Truth inside(const Sample& y, int j) const noexcept {
     using std::abs;
-    return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) &
-           (abs(y.qd[j]) <= limits_.qd[j]) & (abs(y.tau[j]) <= limits_.tau[j]);
+    const Scalar qd = abs(y.qd[j]), tau = abs(y.tau[j]);
+    return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) & (qd <= limits_.qd[j]) &
+           (tau <= limits_.tau[j]);
   }
 
   /// Whether all joints of all arms are so at b, h [s] after a.
@@ -88,8 +89,11 @@ class Rules {
  private:
   [[gnu::always_inline]] Truth plain(const Sample& a, const Sample& b, const Scalar& h,
                                      int j) const noexcept {
-    return inside(b, j) & continuous(a, b, h, j) & calm(a, b, h, j) &
-           smooth(a.tau[j], b.tau[j], j) & !stands(a, b, h, j);
+    // names: with calls, clang takes & of two bools for a mistake
+    const Truth is_inside = inside(b, j), goes_on = continuous(a, b, h, j);
+    const Truth is_calm = calm(a, b, h, j), is_smooth = smooth(a.tau[j], b.tau[j], j);
+    const Truth moves = !stands(a, b, h, j);
+    return is_inside & goes_on & is_calm & is_smooth & moves;
   }
   // whether a joint may stand still, by either rule
   [[gnu::always_inline]] static Truth stands(const Sample& a, const Sample& b, const Scalar& h,

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "bench/kit/conformance_runs.h"
@@ -199,7 +201,12 @@ TEST(Runs, MayDifferInNumbersAlone) {
   using E = MomentumObserver2<WallMoBot3>;
   std::array<E::Parameters, 4> p;
   p[1].torque = TorqueSampling::kInstant;
-  EXPECT_THROW((Runs<E, 4>(arm, p)), std::invalid_argument);
+  try {
+    Runs<E, 4>(arm, p);
+    ADD_FAILURE() << "no error";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_EQ(std::string(e.what()).find("run 1 has another torque than run 0; "), 0u) << e.what();
+  }
   p[1] = {.bandwidth = -1};
   EXPECT_THROW((Runs<E, 4>(arm, p)), std::invalid_argument);
 }

@@ -236,19 +236,19 @@ class TreeModel {
     if constexpr (M == N) {
       if (direct_) return q;
     }
-    return drho_ * q + p_.rho0.template cast<Scalar>();
+    return drho_.lazyProduct(q) + p_.rho0.template cast<Scalar>();
   }
   VecM to_rate(const VecN& qd) const noexcept {
     if constexpr (M == N) {
       if (direct_) return qd;
     }
-    return drho_ * qd;
+    return drho_.lazyProduct(qd);
   }
   VecN forces(const VecM& of_rho) const noexcept {
     if constexpr (M == N) {
       if (direct_) return of_rho;
     }
-    return drho_.transpose() * of_rho;
+    return drho_.transpose().lazyProduct(of_rho);
   }
 
   // what is over the joints, over the coordinates; in place where these are as many

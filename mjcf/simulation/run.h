@@ -101,16 +101,31 @@ class Run {
 
   // nothing if the plant got lost
   std::optional<Trace> operator()(const Supervisor& supervisor) {
-    for (int k = 0; k < trace_.size(); ++k) {
-      if constexpr (requires { plant_.is_lost(); }) {
-        if (plant_.is_lost()) return std::nullopt;
-      }
-      trace_.t[k] = k * r_.Ts;
-      apply_input(trace_.t[k]);
-      take_sample(k);
-      if (supervisor && !stopped_) ask(supervisor, k);
+    for (int k = 0; k < size(); ++k) {
+      if (!sample(k, supervisor)) return std::nullopt;
       step();
     }
+    return std::move(*this).trace();
+  }
+
+  // the same, sample by sample
+
+  int size() const { return trace_.size(); }
+  P& plant() { return plant_; }
+
+  // false if the plant got lost
+  bool sample(int k, const Supervisor& supervisor) {
+    if constexpr (requires { plant_.is_lost(); }) {
+      if (plant_.is_lost()) return false;
+    }
+    trace_.t[k] = k * r_.Ts;
+    apply_input(trace_.t[k]);
+    take_sample(k);
+    if (supervisor && !stopped_) ask(supervisor, k);
+    return true;
+  }
+
+  Trace trace() && {
     if (!only_force_ || trace_.force.isZero(0)) trace_.force.resize(3, 0);
     return std::move(trace_);
   }

@@ -5,9 +5,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <span>
 
 #include "estimators/math/ldlt.h"
+#include "estimators/math/pack.h"
 #include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/plant.h"
 
@@ -39,45 +43,48 @@ struct TreeState {
 class TreeMotion {
  public:
   virtual ~TreeMotion() = default;
-  virtual void look(TreeState& s) const = 0;            ///< sets what follows
-  virtual void accelerate(TreeState& s) const = 0;      ///< sets qdd, where only torques are new
-  virtual void step(TreeState& s, double h) const = 0;  ///< h [s] on, with these torques; looks
+  virtual void look(TreeState& s) const = 0;        ///< sets what follows
+  virtual void accelerate(TreeState& s) const = 0;  ///< sets qdd, where only torques are new
+  /// h [s] on, with these torques, of as many runs as there are; looks.
+  virtual void step(std::span<TreeState* const> runs, double h) const = 0;
   virtual Point end_effector(const TreeState& s) const = 0;  ///< in the axes of the tree
   /// -J^T f [N m] of a force f [N] on the arm at its end effector.
   virtual TreeState::Vector tau_ext_of(const TreeState& s, const Vec<3>& f) const = 0;
 };
 
-/// Of N joints, of which none follows another.
-template <int N>
+/// Of N joints, of which none follows another; W runs at once, in the lanes of a SIMD register. (W
+/// is in its name, because code with other flags has another one.)
+template <int N, int W = kRuns>
 class TreeMotionOf final : public TreeMotion {
  public:
   /// @throws std::invalid_argument for another number of joints
   explicit TreeMotionOf(const ArmTree& tree)
-      : arm_(model_of(tree)), end_(tree.point(kEndEffector)) {}
+      : arm_(model_of(tree)),
+        arms_(arm_.template with<Pack<W>>()),
+        end_(tree.point(kEndEffector)) {}
 
   void look(TreeState& s) const override {
-    const Vec<N> q = fixed(s.q), qd = fixed(s.qd);
-    const Dynamics<N> d = arm_.dynamics(q, qd);
-    fixed(s.bias) = d.bias;
-    fixed(s.friction) = arm_.friction(qd);
-    Mat<N>::Map(s.B.data()) = d.B;
-    accelerate(s);
+    Moving<double> x{fixed(s.q), fixed(s.qd)};
+    look_at(arm_, x, Vec<N>(fixed(s.tau) - fixed(s.tau_ext)));
+    put(x, s);
   }
 
   void accelerate(TreeState& s) const override {
-    fixed(s.qdd) = solved(Mat<N>::Map(s.B.data()),
-                          fixed(s.tau) - fixed(s.tau_ext) - fixed(s.bias) - fixed(s.friction));
+    const Vec<N> rest = fixed(s.tau) - fixed(s.tau_ext) - fixed(s.bias) - fixed(s.friction);
+    fixed(s.qdd) = Ldlt<N>(Mat<N>::Map(s.B.data())).solve(rest);
   }
 
-  void step(TreeState& s, double h) const override {
-    const Vec<N> u = fixed(s.tau) - fixed(s.tau_ext), q = fixed(s.q), qd = fixed(s.qd);
-    const Vec<N> v1 = qd, a1 = fixed(s.qdd);
-    const Vec<N> v2 = qd + h / 2 * a1, a2 = acceleration(q + h / 2 * v1, v2, u);
-    const Vec<N> v3 = qd + h / 2 * a2, a3 = acceleration(q + h / 2 * v2, v3, u);
-    const Vec<N> v4 = qd + h * a3, a4 = acceleration(q + h * v3, v4, u);
-    fixed(s.q) = q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
-    fixed(s.qd) = qd + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    look(s);
+  void step(std::span<TreeState* const> runs, double h) const override {
+    while (runs.size() > 1) {
+      const std::size_t n = std::min<std::size_t>(runs.size(), W);
+      step_at_once(runs.first(n), h);
+      runs = runs.subspan(n);
+    }
+    if (runs.empty()) return;
+    TreeState& s = *runs.front();
+    Moving<double> x{fixed(s.q), fixed(s.qd), fixed(s.qdd)};
+    integrate(arm_, x, Vec<N>(fixed(s.tau) - fixed(s.tau_ext)), h);
+    put(x, s);
   }
 
   Point end_effector(const TreeState& s) const override {
@@ -99,16 +106,80 @@ class TreeMotionOf final : public TreeMotion {
     return Eigen::Map<const Vec<N>>(v.data());
   }
 
-  static Vec<N> solved(const Mat<N>& B, const Vec<N>& torque) { return Ldlt<N>(B).solve(torque); }
-  Vec<N> acceleration(const Vec<N>& q, const Vec<N>& qd, const Vec<N>& u) const {
-    const Dynamics<N> d = arm_.dynamics(q, qd);
-    return solved(d.B, u - d.bias - arm_.friction(qd));
+  // where a run is, or W of them are, and what follows from that
+  template <class Scalar>
+  struct Moving {
+    Vec<N, Scalar> q, qd, qdd, bias, friction;
+    Mat<N, Scalar> B;
+  };
+
+  // under torques u
+  template <class M, class Scalar>
+  static void look_at(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u) {
+    const Dynamics<N, Scalar> d = arm.dynamics(x.q, x.qd);
+    x.B = d.B;
+    x.bias = d.bias;
+    x.friction = arm.friction(x.qd);
+    x.qdd = Ldlt<N, Scalar>(x.B).solve(Vec<N, Scalar>(u - x.bias - x.friction));
   }
+
+  // RK4
+  template <class M, class Scalar>
+  static void integrate(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u, const Scalar& h) {
+    const Scalar half = h / 2, sixth = h / 6;
+    const Vec<N, Scalar> q = x.q, v1 = x.qd, a1 = x.qdd;
+    const auto at = [&](const Vec<N, Scalar>& v, const Vec<N, Scalar>& a, const Scalar& ahead) {
+      x.q = q + ahead * v;
+      x.qd = v1 + ahead * a;
+      look_at(arm, x, u);
+    };
+    at(v1, a1, half);
+    const Vec<N, Scalar> v2 = x.qd, a2 = x.qdd;
+    at(v2, a2, half);
+    const Vec<N, Scalar> v3 = x.qd, a3 = x.qdd;
+    at(v3, a3, h);
+    x.q = q + sixth * (v1 + Scalar(2) * v2 + Scalar(2) * v3 + x.qd);
+    x.qd = v1 + sixth * (a1 + Scalar(2) * a2 + Scalar(2) * a3 + x.qdd);
+    look_at(arm, x, u);
+  }
+
+  static void put(const Moving<double>& x, TreeState& s) {
+    fixed(s.q) = x.q, fixed(s.qd) = x.qd, fixed(s.qdd) = x.qdd;
+    fixed(s.bias) = x.bias, fixed(s.friction) = x.friction;
+    Mat<N>::Map(s.B.data()) = x.B;
+  }
+
+  // lanes without a run repeat the first one
+  void step_at_once(std::span<TreeState* const> runs, double h) const {
+    Moving<Pack<W>> x;
+    Vec<N, Pack<W>> u;
+    for (int i = 0; i < W; ++i) {
+      const auto run = static_cast<std::size_t>(i);
+      const TreeState& s = *runs[run < runs.size() ? run : 0];
+      for (int j = 0; j < N; ++j) {
+        x.q[j].set(i, s.q[j]), x.qd[j].set(i, s.qd[j]), x.qdd[j].set(i, s.qdd[j]);
+        u[j].set(i, s.tau[j] - s.tau_ext[j]);
+      }
+    }
+    integrate(arms_, x, u, Pack<W>(h));
+    const auto of_lane = []<int Columns>(const Eigen::Matrix<Pack<W>, N, Columns>& all, int i) {
+      Eigen::Matrix<double, N, Columns> one;
+      for (Eigen::Index k = 0; k < all.size(); ++k) one.data()[k] = all.data()[k][i];
+      return one;
+    };
+    for (int i = 0; i < static_cast<int>(runs.size()); ++i) {
+      put({of_lane(x.q, i), of_lane(x.qd, i), of_lane(x.qdd, i), of_lane(x.bias, i),
+           of_lane(x.friction, i), of_lane(x.B, i)},
+          *runs[static_cast<std::size_t>(i)]);
+    }
+  }
+
   Eigen::Matrix<double, 3, N> jacobian(const Vec<N>& q) const {
     return arm_.jacobian(q, end_.joint, end_.place).template topRows<3>();
   }
 
   TreeModel<N> arm_;
+  TreeModel<N, Pack<W>> arms_;  // the same of W runs
   ArmPoint end_;
 };
 

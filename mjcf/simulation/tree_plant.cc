@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/simulation/tree_plant.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <utility>
 
 namespace tauext {
 
-TreePlant::TreePlant(PlainArm arm, std::unique_ptr<const TreeMotion> motion)
+TreePlant::TreePlant(PlainArm arm, std::shared_ptr<const TreeMotion> motion)
     : arm_(std::move(arm)),
       motion_(std::move(motion)),
       s_(arm_.tree.dof()),
@@ -25,6 +28,16 @@ void TreePlant::set_input(const Vector& tau, const Vector& tau_ext) {
   s_.tau = tau.cwiseMax(least_).cwiseMin(most_);
   s_.tau_ext = tau_ext;
   motion_->accelerate(s_);
+}
+
+void TreePlant::step(std::span<TreePlant* const> all, double h) {
+  std::array<TreeState*, 16> runs;
+  while (!all.empty()) {
+    const std::size_t n = std::min(all.size(), runs.size());
+    for (std::size_t i = 0; i < n; ++i) runs[i] = &all[i]->s_;
+    all.front()->motion_->step({runs.data(), n}, h);
+    all = all.subspan(n);
+  }
 }
 
 Point TreePlant::end_effector() const {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "mjcf/plant/plant.h"
@@ -21,7 +22,7 @@ class TreePlant {
   using Vector = TreeState::Vector;  ///< a number of each joint
 
   /// The motion is that of the arm.
-  TreePlant(PlainArm arm, std::unique_ptr<const TreeMotion> motion);
+  TreePlant(PlainArm arm, std::shared_ptr<const TreeMotion> motion);
 
   int dof() const { return arm_.tree.dof(); }  ///< joints
   /// Empty if the robot has none.
@@ -50,11 +51,17 @@ class TreePlant {
   /// Whether MuJoCo has to take over: near a limit of a joint, or far from anywhere.
   bool is_lost() const;
 
-  void step(double h) { motion_->step(s_, h); }  ///< integrates over h [s] by RK4, input held
+  /// Integrates over h [s] by RK4, input held.
+  void step(double h) {
+    TreeState* const run = &s_;
+    motion_->step({&run, 1}, h);
+  }
+  /// The same of several of one arm, in less time.
+  static void step(std::span<TreePlant* const> all, double h);
 
  private:
   PlainArm arm_;
-  std::unique_ptr<const TreeMotion> motion_;
+  std::shared_ptr<const TreeMotion> motion_;
   TreeState s_;
   Vector least_, most_;      // [N m] what the motors can do
   TreeState::Matrix drho_;   // of the tree

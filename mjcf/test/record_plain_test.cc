@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "mjcf/plant/simulated.h"
 #include "mjcf/scenarios/generic.h"
@@ -76,6 +77,21 @@ TEST(RecordPlain, StudiesSimulateWithoutMuJoCo) {
   }
 }
 
+TEST(RecordPlain, SeveralRunsAtOnceAreMuJoCosTruthEach) {
+  const Model arm = wallmobot3_with_panel(50);
+  std::vector<Scenario> runs;
+  for (int i = 0; i < 7; ++i) {
+    runs.push_back(touched_wallmobot3(static_cast<TouchKind>(i % 4), 20 + i));
+    runs.back().duration = i < 5 ? 6 : 5;  // those of one length go together
+  }
+  const std::vector<Trace> all = simulate_plain<3>(arm, runs);
+  ASSERT_EQ(all.size(), runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    SCOPED_TRACE(i);
+    expect_same(simulate(arm, runs[i]), all[i]);
+  }
+}
+
 TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
   EXPECT_FALSE(plain_arm(load_robot("testbed1")).has_value()) << "its tip may touch the ground";
   const Model arm = wallmobot3_with_panel(0);
@@ -84,8 +100,11 @@ TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
   const Model six = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
   Scenario far = quiet();
   far.reference = [](double t, int joint) { return Reference{joint == 0 ? 4 * t : 0, 0, 0}; };
-  EXPECT_NE(error_of([&] { simulate_plain<6>(six, far); }).find("reaches its limit"),
-            std::string::npos);
+  Scenario near = quiet();
+  near.duration = far.duration;
+  for (const std::vector<Scenario>& runs : {std::vector{far}, std::vector{near, far}})
+    EXPECT_NE(error_of([&] { simulate_plain<6>(six, runs); }).find("reaches its limit"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace tauext {
 
@@ -35,6 +37,23 @@ class Random {
 
  private:
   std::mt19937_64 generator_;
+};
+
+/// The normal numbers of a Random, each drawn once, whoever asks for it.
+class Normals {
+ public:
+  /// Those of Random(seed, channel).
+  explicit Normals(std::uint64_t seed, std::uint64_t channel = 0) : random_(seed, channel) {}
+
+  /// The k-th, from 0.
+  double operator[](std::size_t k) {
+    while (k >= drawn_.size()) drawn_.push_back(random_.normal());
+    return drawn_[k];
+  }
+
+ private:
+  Random random_;
+  std::vector<double> drawn_;
 };
 
 }  // namespace tauext

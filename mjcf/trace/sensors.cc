@@ -11,7 +11,8 @@
 namespace tauext {
 namespace {
 
-constexpr double kSameTime = 1e-9;  // [s] what a sum of steps may be off
+constexpr std::uint64_t kVelocity = 100;  // channel of the first joint's
+constexpr double kSameTime = 1e-9;        // [s] what a sum of steps may be off
 
 void check(const char* name, double value, double largest) {
   if (value >= 0 && value <= largest) return;
@@ -50,10 +51,16 @@ std::vector<Random> generators(int dof, std::uint64_t seed, std::uint64_t channe
 
 }  // namespace
 
+std::vector<Normals> velocity_noise(int dof, std::uint64_t seed) {
+  std::vector<Normals> all;
+  for (int j = 0; j < dof; ++j) all.emplace_back(seed, kVelocity + j);
+  return all;
+}
+
 SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws)
     : s_(s),
       screws_(screws),
-      velocity_(generators(dof, s.seed, 100)),
+      velocity_(generators(dof, s.seed, kVelocity)),
       torque_(generators(dof, s.seed, 200)),
       force_(generators(dof, s.seed, 300)),
       clock_(s.seed, 400),
@@ -71,6 +78,12 @@ SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& 
   check("repeated [1]", s.repeated, 0.99);
   check(s.loadcell);
   if (s_.loadcell.full_scale == 0) s_.loadcell.full_scale = screws.empty() ? 3000 : 1000;
+}
+
+SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws,
+                           std::vector<Normals>& drawn)
+    : SensorStream(s, dof, screws) {
+  drawn_ = &drawn;
 }
 
 double SensorStream::lever(int j, double q) const {
@@ -114,7 +127,10 @@ void SensorStream::take_values(const Sample& truth) {
   for (int j = 0; j < y.q.size(); ++j) {
     y.tau[j] = late.tau[j];
     y.q[j] = rounded(y.q[j], s_.encoder_step);
-    if (s_.velocity_noise > 0) y.qd[j] += s_.velocity_noise * velocity_[j].normal();
+    if (s_.velocity_noise > 0) {
+      const double x = drawn_ == nullptr ? velocity_[j].normal() : (*drawn_)[j][samples_];
+      y.qd[j] += s_.velocity_noise * x;
+    }
     if (!(s_.loadcell.ideal() && s_.encoder_step == 0)) {
       y.tau[j] = force(j, y.tau[j] / lever(j, late.q[j])) * lever(j, y.q[j]);
     }
@@ -124,6 +140,7 @@ void SensorStream::take_values(const Sample& truth) {
 
 const Sample* SensorStream::read(const Sample& truth) {
   take_values(truth);
+  ++samples_;
   Sample& y = reading_;
   y.t = truth.t;
   if (s_.jitter > 0) {
@@ -139,8 +156,9 @@ const Sample* SensorStream::read(const Sample& truth) {
   return &y;
 }
 
-Trace measure(const Trace& truth, const Sensors& s) {
-  SensorStream stream(s, truth.dof(), truth.screws);
+namespace {
+
+Trace measure(const Trace& truth, SensorStream stream) {
   Trace m = truth;
   std::vector<int> kept;
   Sample now;
@@ -156,6 +174,16 @@ Trace measure(const Trace& truth, const Sensors& s) {
     kept.push_back(k);
   }
   return static_cast<int>(kept.size()) == truth.size() ? m : select_samples(m, kept);
+}
+
+}  // namespace
+
+Trace measure(const Trace& truth, const Sensors& s) {
+  return measure(truth, SensorStream(s, truth.dof(), truth.screws));
+}
+
+Trace measure(const Trace& truth, const Sensors& s, std::vector<Normals>& drawn) {
+  return measure(truth, SensorStream(s, truth.dof(), truth.screws, drawn));
 }
 
 }  // namespace tauext

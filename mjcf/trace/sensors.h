@@ -60,11 +60,19 @@ struct Sensors {
   }
 };
 
+/// The velocities' noise of one seed, for sensors of that seed that see one run: what takes most of
+/// their time is done once.
+std::vector<Normals> velocity_noise(int dof, std::uint64_t seed);
+
 /// Sensors at work, sample by sample.
 class SensorStream {
  public:
   /// @throws std::invalid_argument for an imperfection out of range
   SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws);
+  /// The same, with noise that was drawn before, velocity_noise(dof, sensors.seed), which must
+  /// outlive it.
+  SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws,
+               std::vector<Normals>& drawn);
 
   /// What they read of the next true sample, until the next one is read; null if it is lost.
   const Sample* read(const Sample& truth);
@@ -79,6 +87,8 @@ class SensorStream {
   Sensors s_;
   std::vector<Screw> screws_;
   std::vector<Random> velocity_, torque_, force_;
+  std::vector<Normals>* drawn_ = nullptr;  // instead of velocity_
+  std::size_t samples_ = 0;                // that were read
   Random clock_, line_;
   std::vector<double> play_;  // [N] of each loadcell's hysteresis
   std::deque<Sample> past_;   // as far back as the latencies reach, the newest last
@@ -90,5 +100,7 @@ class SensorStream {
 /// sample: a dropped sample is missing in both.
 /// @throws std::invalid_argument as SensorStream does
 Trace measure(const Trace& truth, const Sensors& sensors);
+/// The same, with noise that was drawn before: velocity_noise(truth.dof(), sensors.seed).
+Trace measure(const Trace& truth, const Sensors& sensors, std::vector<Normals>& drawn);
 
 }  // namespace tauext

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "bench/kit/conformance.h"
+#include "estimators/detectors/threshold.h"
 #include "estimators/momentum_observer.h"
 #include "estimators/wallmobot3.h"
 
@@ -103,6 +105,37 @@ struct Nervous {
     return {mark, mark ? 0.5 : 0, Contact::kCollision};
   }
 };
+
+// of several runs it takes the first for all
+template <class Scalar = double>
+struct LooksAtOneRun {
+  static constexpr const char* kName = "looks_at_one_run";
+  static constexpr int kDof = 3;
+  using Parameters = ThresholdParameters<3>;
+  template <class Other>
+  using For = LooksAtOneRun<Other>;
+  explicit LooksAtOneRun(const Parameters& p = {}) : one_(p) {}
+  const Parameters& parameters() const noexcept { return one_.parameters(); }
+  void reset() noexcept { one_.reset(); }
+  DetectionOf<Scalar> update(double t, const Vec<3, Scalar>& tau_ext) noexcept {
+    if constexpr (std::is_same_v<Scalar, double>) {
+      return one_.update(t, tau_ext);
+    } else {
+      const Vec<3, Scalar> first = tau_ext.unaryExpr([](const Scalar& x) { return Scalar(x[0]); });
+      return one_.update(t, first);
+    }
+  }
+  Threshold<3, Scalar> one_;
+};
+
+TEST(Conformance, FindsADetectorThatMixesItsRuns) {
+  const auto right = [] { return Threshold<3>(); };
+  const auto wrong = [] { return LooksAtOneRun<>(); };
+  using Right = conformance::DetectorClaims<decltype(right)>;
+  using Wrong = conformance::DetectorClaims<decltype(wrong)>;
+  EXPECT_EQ(failures([&] { Right(right).bears_company(); }), 0);
+  EXPECT_GT(failures([&] { Wrong(wrong).bears_company(); }), 0);
+}
 
 TEST(Conformance, FindsWhatIsWrongWithADetector) {
   const auto make = [] { return Nervous(); };

@@ -35,6 +35,22 @@ class LcmTrace : public testing::Test {
   void put(LogBuffer& log) const {
     std::ofstream(path_, std::ios::binary) << std::string(log.bytes());
   }
+  // the first `count` readings, each as change(k, reading) leaves it
+  template <class Change>
+  void put_changed(const std::vector<Reading>& all, int count, const Change& change) const {
+    LogBuffer log;
+    for (int k = 0; k < count; ++k) {
+      Reading r = all[k];
+      change(k, r);
+      log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
+    }
+    put(log);
+  }
+  // far ahead, by as many microseconds more
+  static void put_ahead(int more, Reading& r) {
+    r.utime = (std::int64_t{1} << 52) + more;
+    r.t = static_cast<double>(r.utime) * 1e-6;
+  }
   Trace get(const std::string& channel = "") { return read_lcm(path_.string(), channel, &report_); }
   std::string error(const std::string& channel = "") {
     try {
@@ -116,17 +132,10 @@ TEST_F(LcmTrace, WhatIsWrongInALogIsCounted) {
 
 TEST_F(LcmTrace, OneBadMessageDoesNotSpoilALog) {
   const std::vector<Reading> all = readings_of(truth());
-  LogBuffer log;
-  for (int k = 0; k < 200; ++k) {
-    Reading r = all[k];
+  put_changed(all, 200, [](int k, Reading& r) {
     if (k == 0) r.n = 2;  // the first is another arm's
-    if (k == 100) {       // one is far ahead
-      r.utime = std::int64_t{1} << 52;
-      r.t = static_cast<double>(r.utime) * 1e-6;
-    }
-    log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
-  }
-  put(log);
+    if (k == 100) put_ahead(0, r);
+  });
   const Trace back = get();
   EXPECT_EQ(back.size(), 198);
   EXPECT_EQ(back.t[100], all[102].t);
@@ -136,16 +145,9 @@ TEST_F(LcmTrace, OneBadMessageDoesNotSpoilALog) {
 
 TEST_F(LcmTrace, FalseTimesAreBorneAtTheBeginAndInARow) {
   const std::vector<Reading> all = readings_of(truth());
-  LogBuffer log;
-  for (int k = 0; k < 300; ++k) {
-    Reading r = all[k];
-    if (k == 0 || k == 100 || k == 150) {  // far ahead, each farther
-      r.utime = (std::int64_t{1} << 52) + k;
-      r.t = static_cast<double>(r.utime) * 1e-6;
-    }
-    log.append("TAUEXT_SAMPLE", r.utime, write(r, MessageType::kTauext));
-  }
-  put(log);
+  put_changed(all, 300, [](int k, Reading& r) {
+    if (k == 0 || k == 100 || k == 150) put_ahead(k, r);  // each farther
+  });
   const Trace back = get();
   EXPECT_EQ(back.size(), 297);
   EXPECT_EQ(back.t[0], all[1].t);

@@ -55,6 +55,15 @@ TEST(Sensors, TheSeedAndNothingElseDecides) {
             measure(t, {.velocity_noise = 1e-3, .loadcell_noise = 1, .seed = 9}).qd);
 }
 
+TEST(Sensors, OfOneSeedShareTheNumbersThatWereDrawn) {
+  const Trace t = still(1000);
+  std::vector<Normals> drawn = velocity_noise(t.dof(), 9);
+  for (const Sensors& s :
+       {Sensors{.velocity_noise = 1e-3, .seed = 9},
+        Sensors{.velocity_noise = 1e-4, .latency = 3e-3, .dropped = 0.1, .seed = 9}})
+    EXPECT_EQ(measure(t, s, drawn).qd, measure(t, s).qd);
+}
+
 TEST(Sensors, AnEncoderRoundsToWholeSteps) {
   const Trace m = measure(still(10), {.encoder_step = 0.01});
   EXPECT_DOUBLE_EQ(m.q(0, 0), 0.12);
