@@ -37,10 +37,10 @@ Eigen::VectorXd slack(const Robot& r) {
 }  // namespace
 
 std::string bad_status(const Trace& trace, const Output& out) {
-  Soundness of(out.counts);
+  Soundness soundness(out.counts);
   for (int k = 0; k < trace.size(); ++k)
-    of.look(trace.t[k], out.status[k], out.tau_ext.col(k).allFinite());
-  return of.why(trace.size());
+    soundness.look(trace.t[k], out.status[k], out.tau_ext.col(k).allFinite());
+  return soundness.why(trace.size());
 }
 
 std::string failure(const Trace& ideal, const Output& out, double from,

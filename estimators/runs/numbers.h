@@ -114,7 +114,7 @@ std::string key_of_member(std::size_t number) {
   return number < keys.size() ? keys[number] : "a parameter without a key";
 }
 
-/// @throws std::invalid_argument where runs differ in what must be the same
+// @throws std::invalid_argument where runs differ in what must be the same
 template <class All, class P, std::size_t W>
 All packed(const std::array<P, W>& p) {
   constexpr auto one = members_of<P>();

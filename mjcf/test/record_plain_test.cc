@@ -92,6 +92,23 @@ TEST(RecordPlain, SeveralRunsAtOnceAreMuJoCosTruthEach) {
   }
 }
 
+TEST(RecordPlain, ARunThatComesNearALimitGoesOnInMuJoCoAndTheOthersWithoutIt) {
+  const Model arm = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
+  Scenario near = quiet(), free = quiet();
+  near.duration = free.duration = 4;
+  near.reference = [](double t, int joint) {  // of the first joint to 6.274 rad of 6.28
+    const double half = joint == 0 ? 6.274 / 2 : 0;
+    return Reference{half * (1 - std::cos(t)), half * std::sin(t), half * std::cos(t)};
+  };
+  const std::vector<Scenario> runs = {free, near, free};
+  const std::vector<Trace> all = simulate_plain<6>(arm, runs);
+  EXPECT_GT(all[1].q.row(0).maxCoeff(), plain_arm(arm)->highest[0]);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    SCOPED_TRACE(i);
+    expect_same(simulate(arm, runs[i]), all[i]);
+  }
+}
+
 TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
   EXPECT_FALSE(plain_arm(load_robot("testbed1")).has_value()) << "its tip may touch the ground";
   const Model arm = wallmobot3_with_panel(0);

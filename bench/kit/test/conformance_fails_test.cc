@@ -95,6 +95,12 @@ TEST(Conformance, FindsWhatIsWrongWithAnEstimator) {
   EXPECT_GT(failures([] { claims<SharesItsState>().repeats_itself_alone_and_in_company(); }), 0);
 }
 
+// runs at once would be made of the arm that it derives from, and do without its friction
+struct RubsMore : WallMoBot3 {
+  Vec<3> friction(const Vec<3>& qd) const noexcept { return 50 * qd; }
+};
+static_assert(ForRuns<Mo1> && !ForRuns<MomentumObserver<RubsMore>>);
+
 // marks every tenth of a second, whatever happens
 struct Nervous {
   static constexpr const char* kName = "nervous";

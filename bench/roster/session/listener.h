@@ -64,7 +64,7 @@ class Listener {
 
  private:
   static constexpr int kWidth = width_of<Scalar>();
-  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   Answers& at(int i) { return answers_[static_cast<std::size_t>(i)]; }
 
@@ -88,8 +88,8 @@ class Listener {
   }
 
   void bound(int i, std::size_t above) {
-    const double low = above == 0 ? -kNone : levels_[above - 1];
-    const double high = above == levels_.size() ? kNone : levels_[above];
+    const double low = above == 0 ? -kInfinity : levels_[above - 1];
+    const double high = above == levels_.size() ? kInfinity : levels_[above];
     if constexpr (kWidth == 1) {
       low_ = low, high_ = high;
     } else {
@@ -101,7 +101,8 @@ class Listener {
   double from_;
   long samples_ = 0;
   Scalar alarmed_ = 0;
-  Scalar low_ = kNone, high_ = -kNone;  // no score is between them: the first one is looked at
+  Scalar low_ = kInfinity,
+         high_ = -kInfinity;  // no score is between them: the first one is looked at
   std::array<std::size_t, kWidth> above_;
   std::array<Answers, kWidth> answers_;
 };

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,6 +144,13 @@ TEST(Session, CountsWhereAScoreRisesThroughALevel) {
   ASSERT_EQ(said.marks.size(), 4u);
   EXPECT_EQ(said.marks[0].t, 1.5);
   EXPECT_EQ(said.marks[0].contact, Contact::kClamping);
+}
+
+TEST(Session, IsRefusedATraceOfAnotherArm) {
+  const std::vector<Trace> traces = blows(1);
+  const Robot& other = robot("testbed1");
+  EXPECT_THROW(other.session(traces), std::invalid_argument);
+  EXPECT_THROW(other.detect("threshold", traces.front(), {}, {}), std::invalid_argument);
 }
 
 TEST(Session, OfRunsThatASensorSpoilsSaysWhy) {
