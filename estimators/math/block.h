@@ -108,8 +108,9 @@ template <int N, class Scalar>
       }
     }
   } else {
-    t = Block<N, Scalar>::zero();
+#pragma GCC unroll 8
     for (int j = 0; j < N; ++j) {
+#pragma GCC unroll 8
       for (int i = 0; i < N; ++i) t.column[j].set(i, b(j, i));
     }
   }
@@ -121,73 +122,60 @@ enum class Into { kSet, kAdd, kSubtract };
 
 /// The columns of c from `first` on, so many, become the sum of a_t b_t, or get it, or lose it. The
 /// first kTransposed b are given as their transposes.
-template <Into kInto, std::size_t kTransposed, int kColumns, int N, std::size_t Terms>
-[[gnu::always_inline]] inline void columns_of_products(const Block<N>* const (&a)[Terms],
-                                                       const Block<N>* const (&b)[Terms], int first,
-                                                       Block<N>& c) noexcept {
-  constexpr int kLanes = Column<N>::kCount;
-  Lanes sum[kColumns][kLanes];
+template <Into kInto, std::size_t kTransposed, int kColumns, int N, class Scalar, std::size_t Terms>
+[[gnu::always_inline]] inline void columns_of_products(const Block<N, Scalar>* const (&a)[Terms],
+                                                       const Block<N, Scalar>* const (&b)[Terms],
+                                                       int first, Block<N, Scalar>& c) noexcept {
+  constexpr bool kLoop = N > 4 && std::is_same_v<Scalar, double>;
+  constexpr int kPieces = Column<N, Scalar>::kCount;
+  using Piece = typename Column<N, Scalar>::Piece;
+  Piece sum[kColumns][kPieces];
 #pragma GCC unroll 6
   for (int j = 0; j < kColumns; ++j) {
-#pragma GCC unroll 2
-    for (int i = 0; i < kLanes; ++i)
-      sum[j][i] = kInto == Into::kSet ? Lanes(0) : c.column[first + j].x[i];
+#pragma GCC unroll 8
+    for (int i = 0; i < kPieces; ++i)
+      sum[j][i] = kInto == Into::kSet ? Piece(0) : c.column[first + j].x[i];
   }
 #pragma GCC unroll 3
   for (std::size_t t = 0; t < Terms; ++t) {
-    for_each<(kLanes > 1), N>([&](int k) __attribute__((always_inline)) {
+    for_each<kLoop, N>([&](int k) __attribute__((always_inline)) {
 #pragma GCC unroll 6
       for (int j = 0; j < kColumns; ++j) {
-        const Lanes times = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
-#pragma GCC unroll 2
-        for (int i = 0; i < kLanes; ++i) {
-          const Lanes product = a[t]->column[k].x[i] * times;
-          sum[j][i] = kInto == Into::kSubtract ? sum[j][i] - product : sum[j][i] + product;
+        const Piece times = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
+#pragma GCC unroll 8
+        for (int i = 0; i < kPieces; ++i) {
+          const Piece product = a[t]->column[k].x[i] * times;
+          if (kInto == Into::kSubtract) {
+            sum[j][i] = sum[j][i] - product;
+          } else if (kInto == Into::kSet && !kLoop && t == 0 && k == 0) {
+            sum[j][i] = product;
+          } else {
+            sum[j][i] = sum[j][i] + product;
+          }
         }
       }
     });
   }
 #pragma GCC unroll 6
   for (int j = 0; j < kColumns; ++j) {
-#pragma GCC unroll 2
-    for (int i = 0; i < kLanes; ++i) c.column[first + j].x[i] = sum[j][i];
-  }
-}
-
-/// The same of all columns, of other scalars than double.
-template <Into kInto, std::size_t kTransposed = 0, int N, class Scalar, std::size_t Terms>
-[[gnu::always_inline]] inline void products(const Block<N, Scalar>* const (&a)[Terms],
-                                            const Block<N, Scalar>* const (&b)[Terms],
-                                            Block<N, Scalar>& c) noexcept {
 #pragma GCC unroll 8
-  for (int j = 0; j < N; ++j) {
-#pragma GCC unroll 8
-    for (int i = kTransposed == 1 && Terms == 1 && a[0] == b[0] ? j : 0; i < N; ++i) {
-      Scalar sum = kInto == Into::kSet ? Scalar(0) : c.column[j].x[i];
-#pragma GCC unroll 3
-      for (std::size_t t = 0; t < Terms; ++t) {
-#pragma GCC unroll 8
-        for (int k = 0; k < N; ++k) {
-          const Scalar& times = t < kTransposed ? b[t]->column[k].x[j] : b[t]->column[j].x[k];
-          const Scalar product = a[t]->column[k].x[i] * times;
-          sum = kInto == Into::kSubtract ? sum - product : sum + product;
-        }
-      }
-      c.column[j].x[i] = sum;
-      if (kTransposed == 1 && Terms == 1 && a[0] == b[0] && i != j) c.column[i].x[j] = sum;
-    }
+    for (int i = 0; i < kPieces; ++i) c.column[first + j].x[i] = sum[j][i];
   }
 }
 
 /// c becomes the sum of a_t b_t, or gets it, or loses it. The first kTransposed b are given as
-/// their transposes. Up to six columns of c at a time stay in registers.
-template <Into kInto, std::size_t kTransposed = 0, int N, std::size_t Terms>
-[[gnu::always_inline]] inline void products(const Block<N>* const (&a)[Terms],
-                                            const Block<N>* const (&b)[Terms],
-                                            Block<N>& c) noexcept {
-  constexpr int kFirst = N <= 6 ? N : (N + 1) / 2;
-  columns_of_products<kInto, kTransposed, kFirst>(a, b, 0, c);
-  if constexpr (kFirst < N) columns_of_products<kInto, kTransposed, N - kFirst>(a, b, kFirst, c);
+/// their transposes. As many columns of c at a time as stay in registers.
+template <Into kInto, std::size_t kTransposed = 0, int N, class Scalar, std::size_t Terms>
+[[gnu::always_inline]] inline void products(const Block<N, Scalar>* const (&a)[Terms],
+                                            const Block<N, Scalar>* const (&b)[Terms],
+                                            Block<N, Scalar>& c) noexcept {
+  constexpr bool kDoubles = std::is_same_v<Scalar, double>;
+  constexpr int kAtOnce = kDoubles ? (N <= 6 ? N : (N + 1) / 2) : (N <= 4 ? N : 1);
+#pragma GCC unroll 8
+  for (int first = 0; first + kAtOnce <= N; first += kAtOnce)
+    columns_of_products<kInto, kTransposed, kAtOnce>(a, b, first, c);
+  if constexpr (N % kAtOnce > 0)
+    columns_of_products<kInto, kTransposed, N % kAtOnce>(a, b, N - N % kAtOnce, c);
 }
 
 /// Where (3) leads, in lanes. With r = B qdd + C qd + F + g + tau_ext - tau, which is 0, a model's

@@ -93,21 +93,31 @@ class Ldlt {
       }
       return out;
     } else {
-      return detail::Block<N, Scalar>::from(-solve(Mat<N, Scalar>(Mat<N, Scalar>::Identity())));
+      Mat<N, Scalar> out;
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) {
+        Scalar x[N];  // column j from row j on: it is symmetric
+#pragma GCC unroll 8
+        for (int i = j; i < N; ++i) x[i] = i == j ? -1 : 0;
+        substitute(x, j, j);
+#pragma GCC unroll 8
+        for (int i = j; i < N; ++i) out(i, j) = out(j, i) = x[i];
+      }
+      return detail::Block<N, Scalar>::from(out);
     }
   }
 
  private:
-  // x = B^-1 x, where the rows before the first one are zero
+  // x = B^-1 x from row `least` on, where the rows before the first one are zero
   template <class Row>
-  [[gnu::always_inline]] void substitute(Row (&x)[N], int first = 0) const noexcept {
+  [[gnu::always_inline]] void substitute(Row (&x)[N], int first = 0, int least = 0) const noexcept {
 #pragma GCC unroll 8
     for (int i = first; i < N; ++i) {
 #pragma GCC unroll 8
       for (int k = first; k < i; ++k) x[i] = x[i] - L_[k][i] * x[k];
     }
 #pragma GCC unroll 8
-    for (int i = N - 1; i >= 0; --i) {
+    for (int i = N - 1; i >= least; --i) {
       x[i] = d_inverse_[i] * x[i];
 #pragma GCC unroll 8
       for (int k = i + 1; k < N; ++k) x[i] = x[i] - L_[i][k] * x[k];
