@@ -38,22 +38,32 @@ double crossing(const Times& t, const Signal& x, Eigen::Index start, double leve
   return kNoValue;
 }
 
-// sum of the squares of estimate(t_k) - truth(t_k-shift), of every stride-th sample
-double mismatch(const Signal& truth, const Signal& estimate, Eigen::Index first, Eigen::Index shift,
-                Eigen::Index stride) {
+using Contiguous = Eigen::RowVectorXd;  // a row of a matrix is not, and slow
+
+// sum of the squares of estimate(t_k) - truth(t_k-shift)
+double mismatch(const Contiguous& truth, const Contiguous& estimate, Eigen::Index first,
+                Eigen::Index shift) {
+  const Eigen::Index n = truth.size() - first;
+  return (estimate.tail(n) - truth.segment(first - shift, n)).squaredNorm();
+}
+
+// standard deviation of the same differences
+double spread(const Contiguous& truth, const Contiguous& estimate, Eigen::Index first,
+              Eigen::Index shift) {
+  const Eigen::Index n = truth.size() - first;
+  const Contiguous e = estimate.tail(n) - truth.segment(first - shift, n);
+  return std::sqrt((e.array() - e.mean()).square().mean());
+}
+
+// sum of the squares of every stride-th difference
+double rough_mismatch(const Contiguous& truth, const Contiguous& estimate, Eigen::Index first,
+                      Eigen::Index shift, Eigen::Index stride) {
   double sum = 0;
   for (Eigen::Index k = first; k < truth.size(); k += stride) {
     const double e = estimate[k] - truth[k - shift];
     sum += e * e;
   }
   return sum;
-}
-
-// standard deviation of the same differences
-double spread(const Signal& truth, const Signal& estimate, Eigen::Index first, Eigen::Index shift) {
-  const Eigen::Index n = truth.size() - first;
-  const Eigen::RowVectorXd e = estimate.tail(n) - truth.segment(first - shift, n);
-  return std::sqrt((e.array() - e.mean()).square().mean());
 }
 
 }  // namespace
@@ -117,10 +127,11 @@ StepResponse step_response(const Times& t, const Signal& truth, const Signal& es
   return r;
 }
 
-double lag(const Times& t, const Signal& truth, const Signal& estimate, double from) {
+double lag(const Times& t, const Signal& of_truth, const Signal& of_estimate, double from) {
   // a first look tries each fourth delay, so that it sees the periods of quick sines, by each
   // sixteenth sample
   constexpr Eigen::Index kCoarse = 4, kStride = 16;
+  const Contiguous truth = of_truth, estimate = of_estimate;
   if (t.size() < 2 || truth.maxCoeff() == truth.minCoeff()) return kNoValue;
   if (estimate.maxCoeff() == estimate.minCoeff()) return kNoValue;
   const Eigen::Index first = first_from(t, t.front() + from + kLongestLag);
@@ -128,10 +139,10 @@ double lag(const Times& t, const Signal& truth, const Signal& estimate, double f
   const auto longest = static_cast<Eigen::Index>(kLongestLag / Ts);
   if (first >= truth.size() || longest > first) return kNoValue;
 
-  const auto left_at = [&](Eigen::Index s) { return mismatch(truth, estimate, first, s, 1); };
+  const auto left_at = [&](Eigen::Index s) { return mismatch(truth, estimate, first, s); };
   std::vector<double> coarse;
   for (Eigen::Index s = 0; s <= longest; s += kCoarse)
-    coarse.push_back(mismatch(truth, estimate, first, s, kStride));
+    coarse.push_back(rough_mismatch(truth, estimate, first, s, kStride));
   std::vector<std::pair<double, Eigen::Index>> minima;
   const auto n = static_cast<Eigen::Index>(coarse.size());
   for (Eigen::Index i = 0; i < n; ++i) {
