@@ -7,7 +7,7 @@
 ///     F = I + h [ 0  I  0 ; Jq  Jv  -B^-1 ; 0  0  0 ]                                   (10), (15)
 /// and, unless Integration::kEuler asks for (10) as printed, the second-order terms of Taylor's
 /// series
-///     q += h^2/2 qdd,   qd += h^2/2 (Jq qd + Jv qdd),                                       (iii)
+///     q += h^2/2 qdd,   qd += h^2/2 (Jq qd + Jv qdd),                                       (i)
 /// without which the filter takes h/2 B qddd for a load: 0.14 N m rms on wallmobot3 in motion at 1
 /// ms. (10) says that tau_k-1 drives this step; (13) prints tau_k, a sample late:
 /// Alignment::kPaper.
@@ -15,8 +15,8 @@
 /// Dry friction, where the model tells it apart, acts like tau, at the measured speeds: within
 /// qdd, steep at low speed, it would slow the filter and make steps overshoot.
 ///
-/// H = [I 0] picks states and R is diagonal, so (14) is 2N scalar updates in turn. How P is kept and
-/// updated: math/covariance.h.
+/// H = [I 0] picks states and R is diagonal, so (14) is 2N scalar updates in turn. How P is kept
+/// and updated: math/covariance.h.
 #pragma once
 
 #include <cmath>
@@ -155,7 +155,7 @@ class Ekf {
     const Column qd = x_[1];
     x_[0] = x_[0] + h * qd;  // (10)
     x_[1] = x_[1] + h * f.qdd;
-    if (p_.integration == Integration::kSecondOrder) {  // (iii)
+    if (p_.integration == Integration::kSecondOrder) {  // (i)
       Column rate = Column::zero(), jerk = rate;        // of r, of qdd
 #pragma GCC unroll 8
       for (int j = 0; j < kDof; ++j)

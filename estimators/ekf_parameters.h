@@ -38,7 +38,7 @@ struct EkfParameters {
   /// Otherwise both are meant for steps of Ts, and a step of h takes Q h / Ts and R Ts / h, white
   /// noise of constant density, so that the answer does not depend on the sampling time.
   double Ts = 0;
-  Integration integration = Integration::kSecondOrder;  ///< (iii), or (10) alone
+  Integration integration = Integration::kSecondOrder;  ///< (i), or (10) alone
   Alignment alignment = Alignment::kHeld;               ///< which tau belongs to a step
   Start start = Start::kFirstMeasurement;               ///< what the first sample does to the state
   /// [1] standard deviations by which q may jump; the printed R knows no noise, so with it there is

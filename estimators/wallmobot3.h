@@ -226,7 +226,8 @@ class BasicWallMoBot3 {
     Coupling c;
     c.sin = Vec3(-k[0], s[1], k[2]);  // the offsets of phi_2 and phi_5 are quarter turns
     c.cos = Vec3(s[0], k[1], -s[2]);
-    const auto pair = [&](int a, int b, double A, double S, Scalar& f, Scalar& d) {
+    const auto pair = [&](int a, int b, double A, double S, Scalar& f, Scalar& d)
+        __attribute__((always_inline)) {
       const Scalar cd = c.cos[a] * c.cos[b] + c.sin[a] * c.sin[b];
       const Scalar sd = c.sin[a] * c.cos[b] - c.cos[a] * c.sin[b];
       f = A * cd + S * sd;

@@ -127,27 +127,27 @@ template <Into kInto, std::size_t kTransposed, int kColumns, int N, class Scalar
                                                        const Block<N, Scalar>* const (&b)[Terms],
                                                        int first, Block<N, Scalar>& c) noexcept {
   constexpr bool kLoop = N > 4 && std::is_same_v<Scalar, double>;
-  constexpr int kPieces = Column<N, Scalar>::kCount;
-  using Piece = typename Column<N, Scalar>::Piece;
-  Piece sum[kColumns][kPieces];
+  constexpr int kCount = Column<N, Scalar>::kCount;
+  using Operand = typename Column<N, Scalar>::Operand;
+  Operand sum[kColumns][kCount];
 #pragma GCC unroll 6
   for (int j = 0; j < kColumns; ++j) {
 #pragma GCC unroll 8
-    for (int i = 0; i < kPieces; ++i)
-      sum[j][i] = kInto == Into::kSet ? Piece(0) : c.column[first + j].x[i];
+    for (int i = 0; i < kCount; ++i)
+      sum[j][i] = kInto == Into::kSet ? Operand(0) : c.column[first + j].x[i];
   }
 #pragma GCC unroll 3
   for (std::size_t t = 0; t < Terms; ++t) {
     for_each<kLoop, N>([&](int k) __attribute__((always_inline)) {
 #pragma GCC unroll 6
       for (int j = 0; j < kColumns; ++j) {
-        const Piece times = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
+        const Operand times = t < kTransposed ? (*b[t])(first + j, k) : (*b[t])(k, first + j);
 #pragma GCC unroll 8
-        for (int i = 0; i < kPieces; ++i) {
-          const Piece product = a[t]->column[k].x[i] * times;
+        for (int i = 0; i < kCount; ++i) {
+          const Operand product = a[t]->column[k].x[i] * times;
           if (kInto == Into::kSubtract) {
             sum[j][i] = sum[j][i] - product;
-          } else if (kInto == Into::kSet && !kLoop && t == 0 && k == 0) {
+          } else if (kInto == Into::kSet && !kLoop && t == 0 && k == 0) {  // else 0 + it is added
             sum[j][i] = product;
           } else {
             sum[j][i] = sum[j][i] + product;
@@ -159,12 +159,12 @@ template <Into kInto, std::size_t kTransposed, int kColumns, int N, class Scalar
 #pragma GCC unroll 6
   for (int j = 0; j < kColumns; ++j) {
 #pragma GCC unroll 8
-    for (int i = 0; i < kPieces; ++i) c.column[first + j].x[i] = sum[j][i];
+    for (int i = 0; i < kCount; ++i) c.column[first + j].x[i] = sum[j][i];
   }
 }
 
 /// c becomes the sum of a_t b_t, or gets it, or loses it. The first kTransposed b are given as
-/// their transposes. As many columns of c at a time as stay in registers.
+/// their transposes. About as many columns of c at a time as stay in registers.
 template <Into kInto, std::size_t kTransposed = 0, int N, class Scalar, std::size_t Terms>
 [[gnu::always_inline]] inline void products(const Block<N, Scalar>* const (&a)[Terms],
                                             const Block<N, Scalar>* const (&b)[Terms],

@@ -3,20 +3,20 @@
 /// Covariance of the EKF's x = [q; qd; d], in blocks of N. Of P only those on and below the
 /// diagonal are kept: qq, vq, dq, vv, dv, dd.
 ///
-/// Over h, F = I + h [0 I 0; G; 0 0 0] changes, with G = [Jq Jv -B^-1] (N x 3N) and U = P G^T in
-/// blocks U_q, U_v, U_d, these:
+/// Over h, P' = F P F^T + Q with F = I + h [0 I 0; G; 0 0 0], G = [Jq Jv -B^-1] (N x 3N). With
+/// U = P G^T, in blocks U_q, U_v, U_d, these change; Q, diagonal, is added to qq, vv and dd:
 ///     P_qq' = P_qq + h (P_qv + P_vq) + h^2 P_vv
 ///     P_qv' = P_qv + h (P_vv + U_q + h U_v)          P_dq' = P_dq + h P_dv
 ///     P_vv' = P_vv + V + V^T,  V = h U_v + h^2 G U / 2   P_dv' = P_dv + h U_d               (i)
-/// Of a reading y_i, with noise of variance R_i, of state i it learns
+/// A reading y_i of state i, with noise of variance R_i, changes x and P:
 ///     s = P_ii + R_i,   c = P e_i,   x += c (y_i - x_i) / s,   P -= (c c^T) / s             (ii)
 /// The columns e_i of q lie in the blocks; for those of v the block vq is turned into qv = vq^T.
 ///
-/// (i) and (ii) are symmetric to the last bit (c_i c_j is formed first), which is what keeps a long
-/// run alive. The N rows of a block of doubles are padded with zeros to whole SIMD registers. Where
-/// they do not fit into one, all of q, and then of qd, are learnt from first and taken from P at
-/// once: see learn_block.h. Of several runs at once each number is a register: of what is
-/// symmetric, half is computed.
+/// (i) and (ii) are symmetric to the last bit (one by one, c_i c_j is formed first), which is what
+/// keeps a long run alive. The N rows of a block of doubles are padded with zeros to whole SIMD
+/// registers. If they need more than one, P changes once for all of q, then once for all of qd:
+/// learn_block.h. For several runs each number is a register, and of a symmetric block only one
+/// half is computed.
 #pragma once
 
 #include <tuple>
@@ -35,14 +35,14 @@ class Covariance {
   using Column = detail::Column<N, Scalar>;  ///< a number of each joint
   using VecN = Vec<N, Scalar>;               ///< the same
 
-  /// Diagonal.
+  /// P becomes diagonal, of these blocks.
   void start(const Block& q, const Block& v, const Block& d) noexcept {
     qq_ = q, vv_ = v, dd_ = d;
     vq_ = dq_ = dv_ = Block::zero();
   }
   Block& dd() noexcept { return dd_; }                   ///< of d [(N m)^2]
   Scalar qq(int j) const noexcept { return qq_(j, j); }  ///< variance of q_j [rad^2]
-  /// Whole, symmetric.
+  /// All of P, symmetric.
   Mat<3 * N, Scalar> matrix() const noexcept {
     Mat<3 * N, Scalar> P;
     P << qq_.matrix(), vq_.matrix().transpose(), dq_.matrix().transpose(),  //
@@ -56,19 +56,19 @@ class Covariance {
   /// (i) over h [s], with `scale` times the noise Q, whose blocks are diagonal.
   [[gnu::always_inline]] void spread(const Scalar& h, const LinearMotion<N, Scalar>& f,
                                      const Scalar& scale, const Block (&Q)[3]) noexcept {
-    // U^T and G U; transposes are named by their letters
+    // the transposes of U_q, U_v, U_d, and G U
     const Block qv = transposed(vq_);
     const Block Uq = f.template times<0>({&qq_, &vq_}, dq_),
                 Uv = f.template times<0>({&qv, &vv_}, dv_),
-                Ud = f.template times<2>({&dq_, &dv_}, dd_), dv = transposed(Ud),
-                GU = f.template times<2>({&Uq, &Uv}, dv);
+                Ud = f.template times<2>({&dq_, &dv_}, dd_), U_d = transposed(Ud),
+                GU = f.template times<2>({&Uq, &Uv}, U_d);
     if constexpr (kSeveral) {
       grow(
           qq_, scale, Q[0], [&](int i, int j) __attribute__((always_inline)) {
             return h * (qv(i, j) + vq_(i, j)) + h * h * vv_(i, j);
           });
       for_each<kLarge, N>([&](int j) __attribute__((always_inline)) {
-        below(j, h, Uq, Uv, dv);
+        below(j, h, Uq, Uv, U_d);
         dd_.column[j].set(j, dd_(j, j) + scale * Q[2](j, j));
       });
       grow(
@@ -84,7 +84,7 @@ class Covariance {
       for_each<kLarge, N>([&](int j) __attribute__((always_inline)) {
         Column &qq = qq_.column[j], &vv = vv_.column[j], &dd = dd_.column[j];
         qq = qq + h * (qv.column[j] + vq_.column[j]) + h * h * vv + scale * Q[0].column[j];
-        below(j, h, Uq, Uv, dv);
+        below(j, h, Uq, Uv, U_d);
         vv = vv + (V.column[j] + V_t.column[j]) + scale * Q[1].column[j];
         dd = dd + scale * Q[2].column[j];
       });
@@ -120,11 +120,11 @@ class Covariance {
 
   // (i) of column j of what lies below the diagonal
   [[gnu::always_inline]] void below(int j, const Scalar& h, const Block& Uq, const Block& Uv,
-                                    const Block& dv) noexcept {
-    Column &vq = vq_.column[j], &dq = dq_.column[j], &own = dv_.column[j];
-    dq = dq + h * own;
+                                    const Block& U_d) noexcept {
+    Column &vq = vq_.column[j], &dq = dq_.column[j], &dv = dv_.column[j];
+    dq = dq + h * dv;
     vq = vq + h * (vv_.column[j] + Uq.column[j] + h * Uv.column[j]);
-    own = own + h * dv.column[j];
+    dv = dv + h * U_d.column[j];
   }
 
   // a block on the diagonal gets by(i, j), which is symmetric, and noise
@@ -156,7 +156,7 @@ class Covariance {
     call_apart(here, m);  // in code that stands once
   }
 
-  // by value: what y refers to could, for all that a compiler knows, be these blocks
+  // by value: a compiler must assume that references could be to these blocks
   [[gnu::always_inline]] void one_by_one(Column (&x)[3], const VecN q, const VecN R_q,
                                          const VecN qd, const VecN R_qd) noexcept {
 #pragma GCC unroll 8

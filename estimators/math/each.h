@@ -25,7 +25,7 @@ inline constexpr int kPiece = P > 4 && std::is_same_v<Scalar, double> ? 4 : P;
 /// A number of each of P bodies.
 template <int P, class Scalar>
 struct Each {
-  using Piece = Scalar;             ///< what operators take one by one
+  using Operand = Scalar;           ///< what operators take one by one
   static constexpr int kCount = P;  ///< of them
   Scalar x[P];                      ///< by body
 
@@ -101,7 +101,7 @@ template <int P, class Scalar>
 /// Registers full of them; of one body, which needs no padding, the first lane of one.
 template <int P>
 requires(P % 4 == 0 || P == 1) struct Each<P, double> {
-  using Piece = Lanes;
+  using Operand = Lanes;
   static constexpr int kCount = (P + 3) / 4;
   Lanes x[kCount];  ///< by body, four in each
 

@@ -2,7 +2,7 @@
 /// @file
 /// A Kalman filter's measurement update for N readings at once, of a state in blocks of N: the
 /// scalar updates in turn, of which only the columns are formed that the next ones need. No root is
-/// on the way from one column to the next.
+/// on the way from one column to the next. For one run, and for several at once.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ template <int N, std::size_t Blocks>
                                                Column<N> (&x)[Blocks],
                                                Block<N> (&w)[Blocks]) noexcept {
   Block<N> c[Blocks];  // the columns, less what the readings before theirs take
-  double r[N];         // what a column is divided by, [1/unit^2]
+  double r[N];         // 1 / s of each reading, [1/unit^2]
   Column<N> column[Blocks];
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) {
@@ -44,16 +44,17 @@ template <int N, std::size_t Blocks>
   }
 }
 
-/// The same of several runs, whose numbers fill registers one by one: row by row, without a root,
-/// and P below its diagonal alone, which is copied to above it.
+/// The same for several runs, by rows and without a root. Of the blocks of P on its diagonal, the
+/// lower half is computed and copied up. teach() wants b = 0, 1, 2 in turn: each needs the columns
+/// of those before.
 template <int N, class Scalar>
 class LearntBlock {
  public:
-  /// The blocks of P on and below its diagonal.
-  using Covariance = Block<N, Scalar>* const (&)[3][3];
+  /// Those on and below the diagonal.
+  using BlocksOfP = Block<N, Scalar>* const (&)[3][3];
 
   /// Block m of the state is x, and read as y.
-  [[gnu::always_inline]] LearntBlock(int m, Covariance P, const Vec<N, Scalar>& y,
+  [[gnu::always_inline]] LearntBlock(int m, BlocksOfP P, const Vec<N, Scalar>& y,
                                      const Vec<N, Scalar>& R, const Column<N, Scalar>& x) noexcept
       : m_(m), P_(P) {
     Scalar before = 0;
@@ -62,7 +63,7 @@ class LearntBlock {
       Scalar c[N], innovation = y[i] - x[i], pivot = (*P[m][m])(i, i) + R[i];
 #pragma GCC unroll 8
       for (int k = 0; k < i; ++k) {
-        c[k] = less((*P[m][m])(i, k), k, c);
+        c[k] = reduced((*P[m][m])(i, k), k, c);
         share_[i][k] = c[k] * r_[k];
         innovation = innovation - learnt_[k] * c[k];
         if (k + 1 < i || i % 2 == 0) pivot = pivot - share_[i][k] * c[k];
@@ -74,13 +75,14 @@ class LearntBlock {
     }
   }
 
-  /// Block b, which is x, learns from it, and with it row b of P. The blocks come in their order.
+  /// Block b, which is x, learns from it, and with it row b of P.
   [[gnu::always_inline]] void teach(int b, Column<N, Scalar>& x) noexcept {
     for_each<(N > 4), N>([&](int i) __attribute__((always_inline)) {
-      Scalar(&row)[N] = c_[b][i], scaled[N], sum = x[i];
+      Scalar(&row)[N] = c_[b][i];
+      Scalar scaled[N], sum = x[i];
 #pragma GCC unroll 8
       for (int k = 0; k < N; ++k) {
-        row[k] = less(b < m_ ? (*P_[m_][b])(k, i) : (*P_[b][m_])(i, k), k, row);
+        row[k] = reduced(b < m_ ? (*P_[m_][b])(k, i) : (*P_[b][m_])(i, k), k, row);
         sum = sum + learnt_[k] * row[k];
         scaled[k] = r_[k] * row[k];
       }
@@ -102,15 +104,15 @@ class LearntBlock {
 
  private:
   // number k of a row of P, less what the readings before it take
-  [[gnu::always_inline]] Scalar less(Scalar of_P, int k, const Scalar (&row)[N]) const noexcept {
+  [[gnu::always_inline]] Scalar reduced(Scalar of_P, int k, const Scalar (&row)[N]) const noexcept {
 #pragma GCC unroll 8
     for (int l = 0; l < k; ++l) of_P = of_P - share_[k][l] * row[l];
     return of_P;
   }
 
   int m_;
-  Covariance P_;
-  Scalar r_[N], learnt_[N];  // of each reading: what its column is divided by, and what x gets
+  BlocksOfP P_;
+  Scalar r_[N], learnt_[N];  // of each reading: 1 / s, and what x gets of its column
   Scalar share_[N][N];       // of column k that column i loses
   Scalar c_[3][N][N];        // the columns so far, by rows
 };

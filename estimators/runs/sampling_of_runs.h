@@ -21,7 +21,7 @@ class Sampling<N, Pack<W>> {
 
  public:
   using Sample = Measurement<N, Scalar>;  ///< of all runs
-  static constexpr int kSpan = 8;         ///< samples that are kept
+  static constexpr int kSpan = 8;  ///< samples that are kept: fewer copies, a longer way back
 
   /// As of one run.
   explicit Sampling(double max_gap, const ArmLimits<N>& limits, TorqueSampling torque)

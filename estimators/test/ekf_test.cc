@@ -190,8 +190,8 @@ TEST(Ekf, PassesASineAtItsBandwidthAtAbout3dB) {
 
 TEST(Ekf, InSteadyStateIsAnNdobWithXTheRootOfQTauOverQv) {
   // scalar case, R negligible, h small against the poles: the Riccati equation of (qd, d) gives the
-  // gain of d on qd as -sqrt(Q_tau / Q_v) = -(2000, 1581, 2000), and (ii) gives that gain as P_dv /
-  // R_v
+  // gain of d on qd as -sqrt(Q_tau / Q_v) = -(2000, 1581, 2000), and (ii) of math/covariance.h
+  // gives that gain as P_dv / R_v
   const ArmEkf::Parameters p = ArmEkf::Parameters::paper();
   ArmEkf ekf(WallMoBot3(), p);
   for (const auto& y : simulate(grid(2, 1e-4), sine_load)) ekf.update(y);

@@ -182,10 +182,12 @@ class TreeModel {
   /// in the first three rows, the angular velocity in the others, in the axes of the base. tau_ext
   /// = -J^T (f; n) for a force f [N] and a moment n [N m] that act on the arm there.
   /// @param joint from 0
-  Eigen::Matrix<Scalar, 6, N> jacobian(const VecN& q, int joint,
-                                       const Vec<3>& point) const noexcept {
+  /// @param position as position() has it, if asked for
+  Eigen::Matrix<Scalar, 6, N> jacobian(const VecN& q, int joint, const Vec<3>& point,
+                                       Vec<3, Scalar>* position = nullptr) const noexcept {
     const auto s = passes_.pose(to_rho(q));
     const Vec<3, Scalar> at = passes_.at_base(s, joint, point);
+    if (position != nullptr) *position = at;
     Eigen::Matrix<Scalar, 6, M> J;
     for (int i = 0; i < M; ++i) {
       const Vec<3, Scalar> w(s.S.w.x[i], s.S.w.y[i], s.S.w.z[i]);
@@ -193,9 +195,8 @@ class TreeModel {
       J.col(i) << v + w.cross(at), w;
       J.col(i) *= passes_.sums().ahead(joint)[i];
     }
-    if constexpr (M == N) {
+    if constexpr (M == N)
       if (direct_) return J;
-    }
     return J * drho_;
   }
 

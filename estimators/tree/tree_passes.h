@@ -56,7 +56,8 @@ class TreePasses {
   [[gnu::always_inline]] Pose pose(const VecN& rho) const noexcept {
     const VecN moved = rho - zero_;
     VecN s, c;
-    tauext::sin_cos<N>(VecN(moved.cwiseProduct(turns_)), s, c);
+    using tauext::sin_cos;  // a scalar may have its own: pack.h
+    sin_cos<N>(VecN(moved.cwiseProduct(turns_)), s, c);
     const One sine = One::from(s), cosine = One::from(c), slide = slide_ * One::from(moved);
     Pose out;
     out.R = {cosine * R_.x + sine * R_.y, cosine * R_.y - sine * R_.x, R_.z};

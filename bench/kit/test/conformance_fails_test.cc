@@ -99,6 +99,7 @@ TEST(Conformance, FindsWhatIsWrongWithAnEstimator) {
 struct RubsMore : WallMoBot3 {
   Vec<3> friction(const Vec<3>& qd) const noexcept { return 50 * qd; }
 };
+static_assert(TorqueEstimator<MomentumObserver<RubsMore>>);
 static_assert(ForRuns<Mo1> && !ForRuns<MomentumObserver<RubsMore>>);
 
 // marks every tenth of a second, whatever happens

@@ -101,8 +101,7 @@ class Listener {
   double from_;
   long samples_ = 0;
   Scalar alarmed_ = 0;
-  Scalar low_ = kInfinity,
-         high_ = -kInfinity;  // no score is between them: the first one is looked at
+  Scalar low_ = kInfinity, high_ = -kInfinity;  // no score is between: the first is looked at
   std::array<std::size_t, kWidth> above_;
   std::array<Answers, kWidth> answers_;
 };

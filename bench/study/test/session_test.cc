@@ -146,7 +146,7 @@ TEST(Session, CountsWhereAScoreRisesThroughALevel) {
   EXPECT_EQ(said.marks[0].contact, Contact::kClamping);
 }
 
-TEST(Session, IsRefusedATraceOfAnotherArm) {
+TEST(Session, RefusesTracesOfAnotherArm) {
   const std::vector<Trace> traces = blows(1);
   const Robot& other = robot("testbed1");
   EXPECT_THROW(other.session(traces), std::invalid_argument);
