@@ -19,6 +19,11 @@ bool is_plain(const Scenario& s) {
   return !s.load && s.scene.empty();
 }
 
+// MuJoCo makes dry friction that is too stiff for its steps softer
+bool holds_for(const PlainArm& arm, const Recording& r) {
+  return arm.dry.most.isZero(0) || arm.timestep == r.Ts / r.substeps;
+}
+
 // nothing of a run that got lost
 std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant>> runs,
                                                const Recording& r) {
@@ -46,7 +51,7 @@ std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> 
                                   int joints, MakeTreeMotion motion, const Recording& recording) {
   const std::optional<PlainArm> arm = plain_arm(model);
   std::shared_ptr<const TreeMotion> dynamics;
-  if (arm && arm->tree.dof() == joints) dynamics = motion(arm->tree);
+  if (arm && arm->tree.dof() == joints && holds_for(*arm, recording)) dynamics = motion(*arm);
   std::vector<Trace> traces;
   for (std::size_t from = 0, n = 0; from < scenarios.size(); from += n) {
     std::vector<detail::Run<TreePlant>> runs;

@@ -14,7 +14,7 @@
 namespace tauext {
 
 /// Makes the dynamics of an arm: tree_motion<N> for N joints.
-using MakeTreeMotion = std::unique_ptr<const TreeMotion> (*)(const ArmTree& tree);
+using MakeTreeMotion = std::unique_ptr<const TreeMotion> (*)(const PlainArm& arm);
 
 /// simulate() of scenarios without a supervisor, of an arm of so many joints that nothing but the
 /// scenario acts on: by the estimators' own dynamics, which takes a tenth of the time, and a third

@@ -54,13 +54,32 @@ bool any(const mjtByte* of, int count) {
   return std::any_of(of, of + count, [](mjtByte x) { return x != 0; });
 }
 
+constexpr double kExactTolerance = 1e-15;  // of the solver, for rounding to be all that is left
+
 bool needs_mujoco(const mjModel& m) {
   const int known = mjDSBL_CONTACT | mjDSBL_FRICTIONLOSS | mjDSBL_EQUALITY | kSimulated;
-  const bool solver_friction = (m.opt.disableflags & kSimulated) == 0 &&
+  const bool solver_friction = (m.opt.disableflags & mjDSBL_FRICTIONLOSS) == 0 &&
                                !Eigen::VectorXd::Map(m.dof_frictionloss, m.nv).isZero(0);
+  // at the usual tolerance of 1e-8 it gives friction to 2 % only
+  const bool other_solver = m.opt.solver != mjSOL_NEWTON || m.opt.noslip_iterations > 0 ||
+                            m.opt.tolerance > kExactTolerance;
   return (m.opt.disableflags & ~known) != 0 || m.opt.integrator != mjINT_RK4 || may_touch(m) ||
-         solver_friction || has_ties(m) || any(m.tendon_limited, m.ntendon) ||
+         (solver_friction && other_solver) || has_ties(m) || any(m.tendon_limited, m.ntendon) ||
          any(m.actuator_forcelimited, m.nu);
+}
+
+// as the solver has it; d is the model's state
+SolverFriction solver_friction(const mjModel& m, const mjData& d) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(m.nv);
+  SolverFriction f{none, none, none};
+  for (int r = 0; r < d.nefc; ++r) {
+    if (d.efc_type[r] != mjCNSTR_FRICTION_DOF) continue;
+    const int i = d.efc_id[r];
+    f.most[i] = d.efc_frictionloss[r];
+    f.D[i] = d.efc_D[r];
+    f.rate[i] = d.efc_KBIP[4 * r + 1];
+  }
+  return f;
 }
 
 }  // namespace
@@ -119,13 +138,17 @@ std::optional<PlainArm> plain_arm(const Model& model) {
   const Layout layout = layout_of(m, *d);
   if (layout.dof != m.nv || layout.load_dof >= 0) return std::nullopt;
   arm.screws = layout.screws;
+  arm.dry = solver_friction(m, *d);
+  arm.timestep = m.opt.timestep;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   arm.least = arm.lowest = Eigen::VectorXd::Constant(m.nv, -kNone);
   arm.most = arm.highest = Eigen::VectorXd::Constant(m.nv, kNone);
   for (int i = 0; i < m.nv; ++i) {
+    TreeJoint& j = arm.tree.joints[static_cast<std::size_t>(i)];
     if ((m.opt.disableflags & kSimulated) != 0) {  // as it was before errors were added
-      TreeJoint& j = arm.tree.joints[static_cast<std::size_t>(i)];
       j.v_s = v_s_of(m, i), j.offset = offset_of(m, i), j.viscous_skew = viscous_skew_of(m, i);
+    } else {
+      j.dry = 0;  // that is the solver's
     }
     if (m.actuator_ctrllimited[i] != 0)
       arm.least[i] = m.actuator_ctrlrange[2 * i], arm.most[i] = m.actuator_ctrlrange[2 * i + 1];

@@ -25,16 +25,27 @@ std::string too_stiff(const Model& model);
 /// scenario's force.
 Model simulated(const Model& model);
 
+/// Dry friction by MuJoCo's solver, of each of its joints: of rho, it brakes by D (d2rho + rate
+/// drho), within +-most.
+struct SolverFriction {
+  Eigen::VectorXd most;  ///< [N m] frictionloss; 0 without
+  Eigen::VectorXd D;     ///< [kg m^2] large: a joint that it holds hardly moves
+  Eigen::VectorXd rate;  ///< [1/s]
+};
+
 /// What its simulation needs of an arm, in plain numbers.
 struct PlainArm {
   ArmTree tree;                     ///< its joints
   std::vector<Screw> screws;        ///< of the joints; empty if the robot has none
   Eigen::VectorXd least, most;      ///< [N m] what the motors can do
   Eigen::VectorXd lowest, highest;  ///< [rad] or [m] of MuJoCo's joints, short of their limits
+  SolverFriction dry;               ///< beside the tree's
+  double timestep = 0;              ///< [s] for which that holds
 };
 
 /// Nothing for an arm that needs MuJoCo: with something around it, with shapes that may touch each
-/// other, joints that follow others, dry friction by MuJoCo's solver, or another integrator.
+/// other, joints that follow others, or another integrator; with dry friction by the solver, with
+/// another one than Newton's, or an <option tolerance> above 1e-15: it is inexact then.
 std::optional<PlainArm> plain_arm(const Model& model);
 
 }  // namespace tauext

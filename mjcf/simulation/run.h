@@ -38,7 +38,7 @@ template <class P>
 typename P::Vector computed_torque(const P& plant, const Motion<typename P::Vector>& ref,
                                    const Tracking& c) {
   const typename P::Vector a = ref.qdd + c.Kp * (ref.q - plant.q()) + c.Kd * (ref.qd - plant.qd());
-  return plant.inertia() * a + plant.bias() + plant.damping();
+  return plant.inertia().lazyProduct(a) + plant.bias() + plant.damping();
 }
 
 // room for `samples` samples of n joints

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -14,6 +15,7 @@
 #include "estimators/math/pack.h"
 #include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/simulated.h"
 
 namespace tauext {
 
@@ -27,16 +29,25 @@ struct TreeState {
 
   /// At rest where q is 0, with so many joints.
   explicit TreeState(int joints)
-      : q(Vector::Zero(joints)), qd(q), tau(q), tau_ext(q), qdd(q), bias(q), friction(q) {
+      : q(Vector::Zero(joints)),
+        qd(q),
+        tau(q),
+        tau_ext(q),
+        qdd(q),
+        bias(q),
+        damping(q),
+        friction(q) {
     B.setZero(joints, joints);
   }
 
   Vector q, qd;         ///< [rad], [rad/s]
   Vector tau, tau_ext;  ///< [N m] what acts, sign of (3)
   // what follows from these
-  Vector qdd;             ///< [rad/s^2]
-  Vector bias, friction;  ///< [N m] C qd + g, F
-  Matrix B;               ///< [kg m^2]
+  Vector qdd;       ///< [rad/s^2]; NaN where none was found
+  Vector bias;      ///< [N m] C qd + g
+  Vector damping;   ///< [N m] of F what is smooth
+  Vector friction;  ///< [N m] F
+  Matrix B;         ///< [kg m^2]
 };
 
 /// The dynamics of such an arm, whatever its number of joints.
@@ -58,20 +69,27 @@ template <int N, int W = kRuns>
 class TreeMotionOf final : public TreeMotion {
  public:
   /// @throws std::invalid_argument for another number of joints
-  explicit TreeMotionOf(const ArmTree& tree)
-      : arm_(model_of(tree)),
+  explicit TreeMotionOf(const PlainArm& arm)
+      : arm_(model_of(arm.tree)),
         arms_(arm_.template with<Pack<W>>()),
-        end_(tree.point(kEndEffector)) {}
+        end_(arm.tree.point(kEndEffector)),
+        most_(arm.dry.most),
+        D_(arm.dry.D),
+        rate_(arm.dry.rate),
+        T_(arm.tree.drho),
+        is_dry_(!arm.dry.most.isZero(0)) {}
 
   void look(TreeState& s) const override {
-    Moving<double> x{fixed(s.q), fixed(s.qd)};
+    Moving<double> x{fixed(s.q), fixed(s.qd), fixed(s.qdd)};
     look_at(arm_, x, Vec<N>(fixed(s.tau) - fixed(s.tau_ext)));
     put(x, s);
   }
 
   void accelerate(TreeState& s) const override {
-    const Vec<N> rest = fixed(s.tau) - fixed(s.tau_ext) - fixed(s.bias) - fixed(s.friction);
-    fixed(s.qdd) = Ldlt<N>(Mat<N>::Map(s.B.data())).solve(rest);
+    Moving<double> x{fixed(s.q),       fixed(s.qd),       fixed(s.qdd),           fixed(s.bias),
+                     fixed(s.damping), fixed(s.friction), Mat<N>::Map(s.B.data())};
+    accelerate(x, Vec<N>(fixed(s.tau) - fixed(s.tau_ext)));
+    fixed(s.qdd) = x.qdd, fixed(s.friction) = x.friction;
   }
 
   void step(std::span<TreeState* const> runs, double h) const override {
@@ -88,8 +106,9 @@ class TreeMotionOf final : public TreeMotion {
   }
 
   Point end_effector(const TreeState& s) const override {
-    const Vec<N> q = fixed(s.q);
-    return {arm_.position(q, end_.joint, end_.place), jacobian(q) * fixed(s.qd)};
+    Vec<3> position;
+    const auto J = jacobian(fixed(s.q), &position);
+    return {position, J * fixed(s.qd)};
   }
 
   TreeState::Vector tau_ext_of(const TreeState& s, const Vec<3>& f) const override {
@@ -109,23 +128,76 @@ class TreeMotionOf final : public TreeMotion {
   // where a run is, or W of them are, and what follows from that
   template <class Scalar>
   struct Moving {
-    Vec<N, Scalar> q, qd, qdd, bias, friction;
+    Vec<N, Scalar> q, qd, qdd, bias, damping, friction;
     Mat<N, Scalar> B;
   };
 
   // under torques u
   template <class M, class Scalar>
-  static void look_at(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u) {
+  void look_at(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u) const {
     const Dynamics<N, Scalar> d = arm.dynamics(x.q, x.qd);
     x.B = d.B;
     x.bias = d.bias;
-    x.friction = arm.friction(x.qd);
-    x.qdd = Ldlt<N, Scalar>(x.B).solve(Vec<N, Scalar>(u - x.bias - x.friction));
+    x.damping = arm.friction(x.qd);
+    accelerate(x, u);
+  }
+
+  // qdd and friction, by what else is known
+  template <class Scalar>
+  void accelerate(Moving<Scalar>& x, const Vec<N, Scalar>& u) const {
+    const Vec<N, Scalar> rest = u - x.bias - x.damping;
+    x.friction = x.damping;
+    if (is_dry_) {
+      be_held(x, rest);
+    } else {
+      x.qdd = Ldlt<N, Scalar>(x.B).solve(rest);
+    }
+  }
+
+  // The same with SolverFriction f of the joints, which move by T: B qdd + T^T f = rest. Which of
+  // them it holds, and which slide, is guessed, at first by the last qdd, until qdd agrees. After
+  // some guesses only the first wrong joint changes, which finds the one answer: it is a linear
+  // complementarity problem with a P-matrix (Murty 1974). Else qdd is NaN, and MuJoCo takes over.
+  template <class Scalar>
+  void be_held(Moving<Scalar>& x, const Vec<N, Scalar>& rest) const {
+    constexpr int kMostGuesses = 60, kAllChange = 6;
+    const Scalar one = 1, none = 0;
+    const Mat<N, Scalar> T = T_.template cast<Scalar>();
+    const Vec<N, Scalar> speed = T.lazyProduct(x.qd);
+    Vec<N, Scalar> slides = Vec<N, Scalar>::Zero();  // 1, -1: by most_, by -most_; 0: is held
+    Scalar wrong = 0;                                // guesses
+    const auto guess = [&](bool only_first) {
+      wrong = none;
+      const Vec<N, Scalar> change = T.lazyProduct(x.qdd);
+      for (int i = 0; i < N; ++i) {
+        const Scalar f = D_[i] * (change[i] + rate_[i] * speed[i]);
+        Scalar now = select(f > Scalar(most_[i]), one, select(f < Scalar(-most_[i]), -one, none));
+        now = select(now * slides[i] < none, none, now);  // who slid the other way is held first
+        if (only_first) now = select(wrong > none, slides[i], now);
+        wrong += select(now == slides[i], none, one);
+        slides[i] = now;
+      }
+    };
+    guess(false);
+    for (int k = 0; k < kMostGuesses && (k == 0 || any(wrong > none)); ++k) {
+      Vec<N, Scalar> stiff, f;
+      for (int i = 0; i < N; ++i) {
+        stiff[i] = (one - slides[i] * slides[i]) * D_[i];
+        f[i] = stiff[i] * rate_[i] * speed[i] + slides[i] * most_[i];
+      }
+      const Mat<N, Scalar> held = stiff.asDiagonal() * T;
+      const Mat<N, Scalar> B = x.B + T.transpose().lazyProduct(held);
+      x.qdd = Ldlt<N, Scalar>(B).solve(Vec<N, Scalar>(rest - T.transpose().lazyProduct(f)));
+      guess(k >= kAllChange);
+    }
+    x.friction += rest - x.B.lazyProduct(x.qdd);
+    for (int i = 0; i < N; ++i)
+      x.qdd[i] = select(wrong > none, Scalar(std::numeric_limits<double>::quiet_NaN()), x.qdd[i]);
   }
 
   // RK4
   template <class M, class Scalar>
-  static void integrate(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u, const Scalar& h) {
+  void integrate(const M& arm, Moving<Scalar>& x, const Vec<N, Scalar>& u, const Scalar& h) const {
     const Scalar half = h / 2, sixth = h / 6;
     const Vec<N, Scalar> q = x.q, v1 = x.qd, a1 = x.qdd;
     const auto at = [&](const Vec<N, Scalar>& v, const Vec<N, Scalar>& a, const Scalar& ahead) {
@@ -145,7 +217,7 @@ class TreeMotionOf final : public TreeMotion {
 
   static void put(const Moving<double>& x, TreeState& s) {
     fixed(s.q) = x.q, fixed(s.qd) = x.qd, fixed(s.qdd) = x.qdd;
-    fixed(s.bias) = x.bias, fixed(s.friction) = x.friction;
+    fixed(s.bias) = x.bias, fixed(s.damping) = x.damping, fixed(s.friction) = x.friction;
     Mat<N>::Map(s.B.data()) = x.B;
   }
 
@@ -169,24 +241,27 @@ class TreeMotionOf final : public TreeMotion {
     };
     for (int i = 0; i < static_cast<int>(runs.size()); ++i) {
       put({of_lane(x.q, i), of_lane(x.qd, i), of_lane(x.qdd, i), of_lane(x.bias, i),
-           of_lane(x.friction, i), of_lane(x.B, i)},
+           of_lane(x.damping, i), of_lane(x.friction, i), of_lane(x.B, i)},
           *runs[static_cast<std::size_t>(i)]);
     }
   }
 
-  Eigen::Matrix<double, 3, N> jacobian(const Vec<N>& q) const {
-    return arm_.jacobian(q, end_.joint, end_.place).template topRows<3>();
+  Eigen::Matrix<double, 3, N> jacobian(const Vec<N>& q, Vec<3>* position = nullptr) const {
+    return arm_.jacobian(q, end_.joint, end_.place, position).template topRows<3>();
   }
 
   TreeModel<N> arm_;
   TreeModel<N, Pack<W>> arms_;  // the same of W runs
   ArmPoint end_;
+  Vec<N> most_, D_, rate_;  // of SolverFriction
+  Mat<N> T_;                // of the tree's joints by q
+  bool is_dry_;
 };
 
 /// Makes one of an arm.
 template <int N>
-std::unique_ptr<const TreeMotion> tree_motion(const ArmTree& tree) {
-  return std::make_unique<TreeMotionOf<N>>(tree);
+std::unique_ptr<const TreeMotion> tree_motion(const PlainArm& arm) {
+  return std::make_unique<TreeMotionOf<N>>(arm);
 }
 
 }  // namespace tauext

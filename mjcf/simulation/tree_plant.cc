@@ -47,9 +47,9 @@ Point TreePlant::end_effector() const {
 }
 
 bool TreePlant::is_lost() const {
-  const Vector moved = drho_ * s_.q;
+  const Vector moved = drho_.lazyProduct(s_.q);
   return !(moved.array() > lowest_.array()).all() || !(moved.array() < highest_.array()).all() ||
-         !s_.qd.allFinite();
+         !s_.qd.allFinite() || !s_.qdd.allFinite();
 }
 
 }  // namespace tauext

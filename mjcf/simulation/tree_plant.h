@@ -40,8 +40,8 @@ class TreePlant {
   const Vector& qdd() const { return s_.qdd; }               ///< [rad/s^2] under the present input
   const TreeState::Matrix& inertia() const { return s_.B; }  ///< B [kg m^2]
   const Vector& bias() const { return s_.bias; }             ///< C qd + g [N m]
-  const Vector& damping() const { return s_.friction; }      ///< F [N m], all of which is smooth
-  const Vector& friction() const { return s_.friction; }     ///< the same
+  const Vector& damping() const { return s_.damping; }       ///< of F what is smooth [N m]
+  const Vector& friction() const { return s_.friction; }     ///< F [N m]
   double contact_force() const { return 0; }                 ///< [N] nothing touches it
 
   Point end_effector() const;  ///< the point that touches the outside

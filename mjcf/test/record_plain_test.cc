@@ -2,6 +2,7 @@
 #include "mjcf/record_plain.h"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,11 @@ void expect_same(const Trace& a, const Trace& b) {
     const double force = a.contact_force[static_cast<std::size_t>(k)];
     ASSERT_NEAR(b.contact_force[static_cast<std::size_t>(k)], force, 1e-9 * std::max(1., force));
   }
+}
+
+// with dry friction by the solver, solved as exactly as it can
+Model rubbing(const Model& arm) {
+  return changed(with_errors(arm, {.friction = 5}), [](mjModel& m) { m.opt.tolerance = 1e-17; });
 }
 
 TEST(RecordPlain, ADifferenceIsTheLargestOfAnyQuantity) {
@@ -63,7 +69,11 @@ TEST(RecordPlain, StudiesSimulateWithoutMuJoCo) {
          {TouchKind::kBlow, TouchKind::kSlowPush, TouchKind::kBriskPush, TouchKind::kClamp}) {
       Scenario touched = touched_wallmobot3(kind, 7);
       touched.duration = 8;
-      expect_same(simulate(arm, touched), simulate_plain<3>(arm, touched));
+      for (const Model& of : {arm, rubbing(arm)}) {
+        const Trace truth = simulate(of, touched), plain = simulate_plain<3>(of, touched);
+        expect_same(truth, plain);
+        EXPECT_GT(difference(truth, plain), 0) << "MuJoCo took over";
+      }
     }
   }
   const Model arm = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
@@ -84,11 +94,13 @@ TEST(RecordPlain, SeveralRunsAtOnceAreMuJoCosTruthEach) {
     runs.push_back(touched_wallmobot3(static_cast<TouchKind>(i % 4), 20 + i));
     runs.back().duration = i < 5 ? 6 : 5;  // those of one length go together
   }
-  const std::vector<Trace> all = simulate_plain<3>(arm, runs);
-  ASSERT_EQ(all.size(), runs.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    SCOPED_TRACE(i);
-    expect_same(simulate(arm, runs[i]), all[i]);
+  for (const Model& of : {arm, rubbing(arm)}) {
+    const std::vector<Trace> all = simulate_plain<3>(of, runs);
+    ASSERT_EQ(all.size(), runs.size());
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      SCOPED_TRACE(i);
+      expect_same(simulate(of, runs[i]), all[i]);
+    }
   }
 }
 
@@ -112,7 +124,10 @@ TEST(RecordPlain, ARunThatComesNearALimitGoesOnInMuJoCoAndTheOthersWithoutIt) {
 TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
   EXPECT_FALSE(plain_arm(load_robot("testbed1")).has_value()) << "its tip may touch the ground";
   const Model arm = wallmobot3_with_panel(0);
-  EXPECT_FALSE(plain_arm(with_errors(arm, {.friction = 5})).has_value()) << "by the solver";
+  EXPECT_FALSE(plain_arm(with_errors(arm, {.friction = 5})).has_value()) << "solved inexactly";
+  const Model dry = rubbing(arm);  // for steps of 1 ms
+  const Recording finer{.substeps = 2};
+  EXPECT_EQ(difference(simulate(dry, quiet(), finer), simulate_plain<3>(dry, quiet(), finer)), 0);
   // a limit ends a run, whoever simulates it
   const Model six = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
   Scenario far = quiet();
