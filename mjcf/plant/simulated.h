@@ -45,7 +45,7 @@ struct PlainArm {
 
 /// Nothing for an arm that needs MuJoCo: with something around it, with shapes that may touch each
 /// other, joints that follow others, or another integrator; with dry friction by the solver, with
-/// another one than Newton's, or an <option tolerance> above 1e-15: it is inexact then.
+/// another one than Newton's, or a tolerance of that above 1e-15: it is inexact then.
 std::optional<PlainArm> plain_arm(const Model& model);
 
 }  // namespace tauext
