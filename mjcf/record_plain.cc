@@ -40,7 +40,7 @@ std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant
   }
   std::vector<std::optional<Trace>> traces(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!lost[i]) traces[i] = std::move(runs[i]).trace();
+    if (!lost[i] && !runs[i].plant().is_lost()) traces[i] = std::move(runs[i]).trace();
   }
   return traces;
 }
