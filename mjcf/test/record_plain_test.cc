@@ -30,7 +30,9 @@ void expect_same(const Trace& a, const Trace& b) {
 }
 
 // with dry friction by the solver
-Model rubbing(const Model& arm) { return with_errors(arm, {.friction = 5}); }
+Model rubbing(const Model& arm) {
+  return with_errors(arm, {.friction = 5});
+}
 
 TEST(RecordPlain, ADifferenceIsTheLargestOfAnyQuantity) {
   const Trace a = simulate(load_robot("testbed1"), scenario("testbed1", "manual"));
