@@ -139,6 +139,9 @@ std::string format_seeds(const std::vector<SeededRow>& rows, const std::string& 
 Means over the seeds +- half of their 95 % interval (Student's t), or with its ends: of recall
 Wilson's over all collisions, of false alarms Garwood's. never k/n: at k of n seeds.
 )";
+  const auto of_one = [](const SeededRow& r) { return r.scores.size() < 2; };
+  if (std::all_of(rows.begin(), rows.end(), of_one))
+    out += "A mean of one seed has no interval; of several, like --seeds 1-20, it has.\n";
   if (!differences.empty())
     out += "Below them differences at the same seed; * where the interval of one is beside 0.\n";
   for (const MetricRow& m : kMetrics) {

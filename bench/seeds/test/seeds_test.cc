@@ -52,6 +52,12 @@ TEST(SeedFigure, APairedDifferenceKnowsThatBothSawTheSameNoise) {
   EXPECT_NE(text.find("*"), std::string::npos) << text;
 }
 
+TEST(SeedFigure, OfOneSeedHasNoIntervalAndTheTableSaysSo) {
+  const SeededRow a = row("mo1", {rmse(1)}), b = row("mo2", {rmse(1), rmse(2)});
+  EXPECT_NE(format_seeds({a}, "").find("one seed has no interval"), std::string::npos);
+  EXPECT_EQ(format_seeds({b}, "").find("one seed has no interval"), std::string::npos);
+}
+
 TEST(SeedFigure, WhatNeverCameIsCountedAndNoMean) {
   SeededRow a = row("mo1", {rmse(1), rmse(2), rmse(std::nan(""))});
   const SeedFigure f = figure_of(a, Metric::kRmse);
