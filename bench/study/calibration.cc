@@ -27,13 +27,16 @@ std::string name_of(const std::string& specification) {
   return std::string(name_of_specification(specification));
 }
 
-// all that can be calibrated, or those of them that were asked for
+// all that can be calibrated, or those that were asked for and what these are made of
 std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std::string>& asked) {
   const std::vector<std::string> all = r.calibratable();
   if (asked.empty()) return all;
   std::vector<std::string> trained;
   for (const std::string& d : chosen_detectors(r, asked)) {
-    if (std::count(all.begin(), all.end(), name_of(d)) > 0) trained.push_back(d);
+    for (const std::string& part : r.trained_parts(name_of(d))) {
+      const std::string& own = part == name_of(d) ? d : part;
+      if (std::count(trained.begin(), trained.end(), own) == 0) trained.push_back(own);
+    }
   }
   return trained;
 }

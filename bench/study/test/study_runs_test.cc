@@ -97,5 +97,18 @@ TEST(Calibration, AClassifierHasTheThresholdsOfWhatItIsMadeOf) {
   EXPECT_FALSE(marks(1e12));
 }
 
+TEST(Calibration, AClassifierAloneIsTrainedAsAmongOthers) {
+  CalibrationOptions o{.conditions = {"known_150"}, .estimators = {"mo2"}, .runs = 2};
+  const Thresholds all = calibrate(o);
+  o.detectors = {"contact_classifier", "clamping"};
+  const Thresholds alone = calibrate(o);
+  for (const std::string d : {"contact_classifier", "clamping"}) {
+    const auto of = trained_for(alone, "wallmobot3", 0, "mo2", d);
+    for (const auto& [part, trained] : trained_for(all, "wallmobot3", 0, "mo2", d))
+      EXPECT_EQ(of.at(part).threshold, trained.threshold) << part;
+  }
+  EXPECT_EQ(alone.sets.front().by_estimator.at("mo2").size(), 2);
+}
+
 }  // namespace
 }  // namespace tauext::study::test
