@@ -117,12 +117,7 @@ int run_calibration(const Flags& f) {
         "--calibrate {}: the name of a file of thresholds ends in .json", f.calibrate_to));
   require_writable(f.calibrate_to);
   bool usable = true;
-  const Thresholds t = f.logs.empty() ? calibrated(f) : calibrated_on_logs(f, usable);
-  const auto untrained = [](const ThresholdSet& set) { return set.by_estimator.empty(); };
-  if (std::all_of(t.sets.begin(), t.sets.end(), untrained))
-    throw std::invalid_argument(fmt::format("--detector {}: none of them has a threshold to train",
-                                            fmt::join(f.study.detectors, ",")));
-  write_thresholds(t, f.calibrate_to);
+  write_thresholds(f.logs.empty() ? calibrated(f) : calibrated_on_logs(f, usable), f.calibrate_to);
   if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
   return usable ? kGood : kAnswerIsNo;
 }

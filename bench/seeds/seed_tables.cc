@@ -141,7 +141,7 @@ Wilson's over all collisions, of false alarms Garwood's. never k/n: at k of n se
 )";
   const auto of_one = [](const SeededRow& r) { return r.scores.size() < 2; };
   if (std::all_of(rows.begin(), rows.end(), of_one))
-    out += "A mean of one seed has no interval; of several, like --seeds 1-20, it has.\n";
+    out += "A mean of one seed has no interval; of several it has.\n";
   if (!differences.empty())
     out += "Below them differences at the same seed; * where the interval of one is beside 0.\n";
   for (const MetricRow& m : kMetrics) {

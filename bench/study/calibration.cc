@@ -29,8 +29,7 @@ std::string name_of(const std::string& specification) {
 
 // all that can be calibrated, or those that were asked for and what these are made of
 std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std::string>& asked) {
-  const std::vector<std::string> all = r.calibratable();
-  if (asked.empty()) return all;
+  if (asked.empty()) return r.calibratable();
   std::vector<std::string> trained;
   for (const std::string& d : chosen_detectors(r, asked)) {
     for (const std::string& part : r.trained_parts(name_of(d))) {

@@ -21,12 +21,11 @@ inline constexpr std::uint64_t kTrainingSeed = 1'000'000;
 struct CalibrationOptions {
   std::string robot;    ///< "" for the first one that has runs
   double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
-  std::vector<std::string> conditions;  ///< trained on; empty: those that the robot's runs name
-  std::vector<std::string> estimators;  ///< specifications; empty: all but the baselines
-  std::vector<std::string>
-      detectors;    ///< these, and their parts; empty: all that can be calibrated
-  int runs = 20;    ///< of 30 s for each condition
-  int threads = 0;  ///< 0: one a core
+  std::vector<std::string> conditions;   ///< trained on; empty: those that the robot's runs name
+  std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
+  std::vector<std::string> detectors;    ///< with their parts; empty: all that can be calibrated
+  int runs = 20;                         ///< of 30 s for each condition
+  int threads = 0;                       ///< 0: one a core
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
 };
 
