@@ -168,8 +168,9 @@ void print_found(const Tuned& t, Metric minimize, std::FILE* to) {
   const auto value = [&](double x) {
     return std::isnan(x) ? "never, or beyond a limit" : fmt::format("{:.4g}", x);
   };
-  fmt::print(to, "start  {}  {} {}\nbest   {}  {}\n{} evaluations\n", name_of(t.start),
-             key_of(minimize), value(t.of_start), name_of(t.best), value(t.of_best), t.evaluations);
+  fmt::print(to, "start  {}  {} {}\n{:<5}  {}  {}\n{} evaluations\n", name_of(t.start),
+             key_of(minimize), value(t.of_start), std::isnan(t.of_best) ? "nearest" : "best",
+             name_of(t.best), value(t.of_best), t.evaluations);
   if (!t.at_bound.empty())
     fmt::print(to, "at an end of its range: {}; a wider one may have a better value\n",
                fmt::join(t.at_bound, ", "));

@@ -41,6 +41,7 @@ int expect_runs_alike(const typename E::Model& arm,
   for (const auto& s : samples) length = std::max(length, s.size());
   int odd = 0;
   double scale = 0, off = 0;
+  std::ptrdiff_t where[3] = {};  // sample, run and joint that are off most
   for (std::size_t k = 0; k < length; ++k) {
     Measurement<N, Pack<W>> y;
     for (int i = 0; i < W; ++i) {
@@ -54,16 +55,24 @@ int expect_runs_alike(const typename E::Model& arm,
       const Estimate<N> e = alone[at].update(mine);
       if (all.status[at] != e.status || all.joints[at] != e.joints) {
         ADD_FAILURE() << "run " << i << ", sample " << k << ": " << name_of(all.status[at])
-                      << ", alone " << name_of(e.status);
+                      << ", alone " << name_of(e.status)
+                      << ": does memory() list its Sampling first?";
         return odd;
       }
       odd += e.status != Status::kOk || e.joints != 0;
       scale = std::max(scale, e.tau_ext.cwiseAbs().maxCoeff());
       if (used(e.status)) scale = std::max(scale, mine.tau.cwiseAbs().maxCoeff());
-      for (int j = 0; j < N; ++j) off = std::max(off, std::abs(all.tau_ext[j][i] - e.tau_ext[j]));
+      for (int j = 0; j < N; ++j) {
+        const double apart = std::abs(all.tau_ext[j][i] - e.tau_ext[j]);
+        if (apart <= off) continue;
+        off = apart;
+        where[0] = static_cast<std::ptrdiff_t>(k), where[1] = i, where[2] = j;
+      }
     }
   }
-  EXPECT_LE(off, 1e-12 * scale) << "N m";
+  EXPECT_LE(off, 1e-12 * scale) << "N m of joint " << where[2] + 1 << " in run " << where[1]
+                                << ", sample " << where[0]
+                                << ": does memory() list all that update() remembers?";
   return odd;
 }
 

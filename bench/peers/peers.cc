@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -17,14 +16,13 @@
 #include "bench/roster/stages.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
+#include "bench/score/suite.h"
 #include "estimators/ekf_parameters.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/record.h"
 
 namespace tauext::peers {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Entry {
   Peer peer;
@@ -105,11 +103,7 @@ std::vector<Peer> compare(const std::string& module, const std::string& name,
   std::vector<Entry> all = entries(module, r, trace, model, bandwidth);
   for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner->run(), s.score_from);
   for (int i = 0; i < rounds; ++i) {
-    for (Entry& e : all) {
-      const auto from = Clock::now();
-      e.runner->batch();
-      e.rounds.push_back(std::chrono::duration<double>(Clock::now() - from).count());
-    }
+    for (Entry& e : all) e.rounds.push_back(batch_seconds(*e.runner));
   }
   std::vector<Peer> peers;
   for (Entry& e : all) {

@@ -13,7 +13,7 @@ namespace tauext::peers {
 struct Peer {
   std::string name;    ///< of observers.h, or the roster
   std::string beside;  ///< ours of the same kind; its own name for ours
-  double ns = 0;       ///< [ns] a step: the median of rounds
+  double ns = 0;       ///< [ns] of CPU time a step: the median of rounds
   double spread = 0;   ///< [1] half of what lies between the quartiles of rounds, as a share
   double ratio = 1;    ///< [1] of its time to that of `beside`: the median of rounds
   double rmse = 0;     ///< [N m] of the worst joint, over what the scenario scores

@@ -94,7 +94,8 @@ void require_mode(const CLI::App& app, bool fits, const std::string& mode,
 }
 
 void add_robot_flags(CLI::App& app, std::string& robot, std::string& lock) {
-  app.add_option("--robot", robot, "robot (see --list), or a file of MJCF or URDF")
+  app.add_option("--robot", robot,
+                 "robot (tauext-bench --list shows them), or a file of MJCF or URDF")
       ->type_name("NAME|FILE");
   app.add_option("--lock", lock, "joints of that file to fix, like grippers'")
       ->type_name("REGEX")

@@ -14,12 +14,13 @@ namespace {
 
 static_assert(kMaxFileJoints <= kMostCoordinates);
 
-std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
+std::unique_ptr<const Robot> robot_from(const detail::Kernels& kernels, int joints,
+                                        const std::string& name, const Model& model) {
   if (joints > kMaxFileJoints) {
     throw std::invalid_argument(fmt::format(
         "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
   }
-  return detail::kernels().of_file.at(static_cast<std::size_t>(joints) - 1)(name, model);
+  return kernels.of_file.at(static_cast<std::size_t>(joints) - 1)(name, model);
 }
 
 }  // namespace
@@ -29,8 +30,9 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::string path = name.substr(0, lock);
   const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
   const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}) : load_robot(name);
+  const detail::Kernels& kernels = detail::kernels();  // its error is not the file's
   try {
-    return robot_from(tree_of(model).dof(), name, model);
+    return robot_from(kernels, tree_of(model).dof(), name, model);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
   }

@@ -128,12 +128,11 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
 Thresholds read_thresholds(const std::string& path) {
   const Json j = read_json(path);
   try {
-    if (j.at("format") != kFormat) {
+    const Json format = j.is_object() ? j.value("format", Json()) : Json();
+    if (format != kFormat)
       throw std::runtime_error(
-          fmt::format("\"format\" is {}, not \"{}\"; write it with "
-                      "tauext-detect --calibrate",
-                      j.at("format").dump(), kFormat));
-    }
+          fmt::format("\"format\" is {}, not \"{}\"; write it with tauext-detect --calibrate",
+                      format.dump(), kFormat));
     Thresholds t{.path = path};
     t.trained_on = j.at("trained_on").get<std::string>();
     t.margin = j.at("margin").get<double>();

@@ -112,7 +112,7 @@ inline constexpr std::array kRowsOfEstimates{
     MetricRow{kRise0To90, "rise_0_90_s", "rise 0-90 %", "s", 3, kLess, kLargest, kGate,
               "The time from the step of the load until the estimate has 90 % of it."},
     MetricRow{kSettling, "settling_s", "settling", "s", 3, kLess, kLargest, kUsual,
-              "The time from the step until the estimate stays within 2 % of it."},
+              "The time from the step until the estimate, noise included, stays within 2 % of it."},
     MetricRow{kOvershoot, "overshoot_percent", "overshoot", "%", 1, kLess, kLargest, kUsual,
               "How far the estimate goes beyond the step, as a share of the step."},
     MetricRow{kFinal, "final_Nm", "final", "N m", 3, kLess, kLargest, kUsual,

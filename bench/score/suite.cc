@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 #include "bench/kit/allocations.h"
@@ -35,6 +36,17 @@ Eigen::VectorXd slack(const Robot& r) {
 }
 
 }  // namespace
+
+double batch_seconds(Runner& runner) {
+  const auto spent = [] {
+    std::timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  };
+  const double from = spent();
+  runner.batch();
+  return spent() - from;
+}
 
 std::string bad_status(const Trace& trace, const Output& out) {
   Soundness soundness(out.counts);

@@ -35,6 +35,9 @@ std::string bad_status(const Trace& trace, const Output& output);
 std::string failure(const Trace& ideal, const Output& output, double from,
                     const Eigen::VectorXd& slack);
 
+/// [s] that this thread spends on a batch: what else runs beside it does not count.
+double batch_seconds(Runner& runner);
+
 /// Scores entries; records each robot's scenario once and shares it. A scenario that reacts is
 /// recorded anew for each pair of estimator and detector, whose mark then stops the motor. Safe for
 /// one thread.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <stdexcept>
 
@@ -89,20 +88,10 @@ double measured_bandwidth(const SharedRuns& runs, const std::string& specificati
   return value(response_of(runs.robot, specification, "chirp", runs.chirp), Metric::kBandwidth);
 }
 
-double cpu_seconds() {
-  std::timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 double measured_cpu(const SharedRuns& runs, const std::string& specification) {
   const auto runner = runs.robot.runner(specification, "", runs.free);
   double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 200; ++i) {
-    const double start = cpu_seconds();
-    runner->batch();
-    best = std::min(best, cpu_seconds() - start);
-  }
+  for (int i = 0; i < 200; ++i) best = std::min(best, batch_seconds(*runner));
   return 1e9 * best / Runner::kBatch;
 }
 

@@ -123,8 +123,8 @@ const StudyRuns& find(const char* study, const std::string& name, bool (*has)(co
     with.push_back(r.robot);
   }
   if (!own && has(of_any(name))) return of_any(name);
-  throw std::invalid_argument(fmt::format("the {} study has runs for {} alone; {} has none", study,
-                                          fmt::join(with, ", "), name));
+  throw std::invalid_argument(fmt::format("the {} study has no runs for {}; it has them for {}",
+                                          study, name, fmt::join(with, ", ")));
 }
 
 // what has the name of a known one; its keys are checked by building it

@@ -12,7 +12,8 @@
 /// - it has `Model`, `For` (the same over another model), parameters(), and is made of a model and
 ///   Parameters;
 /// - memory() lists what it remembers, its Sampling first.
-/// The model has `Number` and with<S>(), the same arm computed with S.
+/// The model has `Number` and with<S>(), the same arm computed with S. What of this is missing,
+/// static_assert(ForRuns<E>) says; bench/kit/conformance.h then compares the runs of E.
 #pragma once
 
 #include <array>

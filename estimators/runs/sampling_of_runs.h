@@ -24,7 +24,8 @@ class Sampling<N, Pack<W>> {
   static constexpr int kSpan = 8;  ///< samples that are kept: fewer copies, a longer way back
 
   /// As of one run.
-  explicit Sampling(double max_gap, const ArmLimits<N>& limits, TorqueSampling torque)
+  explicit Sampling(double max_gap, const ArmLimits<N>& limits = {},
+                    TorqueSampling torque = TorqueSampling::kHeld)
       : max_gap_(max_gap), rules_(limits), torque_(torque) {}
 
   /// Looks at the next sample.

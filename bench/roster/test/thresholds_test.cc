@@ -61,6 +61,9 @@ TEST_F(ThresholdFile, SaysWhatIsWrongWithIt) {
   EXPECT_NE(error("{", "").find("parse error"), std::string::npos);
   EXPECT_NE(error("tauext-thresholds-1", "x").find("write it with tauext-detect --calibrate"),
             std::string::npos);
+  EXPECT_NE(error("\"format\"", "\"shape\"")
+                .find("\"format\" is null, not \"tauext-thresholds-1\"; write it with"),
+            std::string::npos);
   EXPECT_NE(error("\"wallmobot3\"", "\"r2d2\"").find("unknown robot 'r2d2'"), std::string::npos);
   EXPECT_NE(error("\"ekf\"", "\"oracle\"").find("unknown estimator 'oracle'"), std::string::npos);
   EXPECT_NE(error("\"ekf\"", "\"ekf:alpha=1\"").find("there is no key 'alpha'"), std::string::npos);

@@ -20,9 +20,9 @@ using Names = std::vector<std::string>;
 
 TEST(StudyRuns, ARobotWithoutRunsIsToldWhichHaveThem) {
   EXPECT_EQ(error_of([] { touched_runs("testbed1"); }),
-            "the detection study has runs for wallmobot3 alone; testbed1 has none");
+            "the detection study has no runs for testbed1; it has them for wallmobot3");
   EXPECT_EQ(error_of([] { drawn_runs("wallmobot3"); }),
-            "the reliability study has runs for testbed1 alone; wallmobot3 has none");
+            "the reliability study has no runs for wallmobot3; it has them for testbed1");
   EXPECT_EQ(error_of([] { touched_runs("r2d2"); }).find("unknown robot 'r2d2'; known: "), 0u);
   EXPECT_EQ(touched_runs("").robot, "wallmobot3");
   EXPECT_EQ(drawn_runs("").robot, "testbed1");
