@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/program/program.h"
+#include "bench/report/provenance.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/run/commands.h"
 #include "bench/run/recording_flags.h"
@@ -52,7 +53,8 @@ struct Flags {
   StudyFlags studies;  // what runs instead of the suite; its format is that of all tables
   bool list = false, list_metrics = false, list_tests = false, paper = false;
   std::string lock;
-  std::optional<std::string> scenarios, out, out_format, format, golden, commands, lcm, lcm_log;
+  std::optional<std::string> scenarios, out, out_format, format, golden, commands, report, lcm,
+      lcm_log;
   std::optional<std::string> seeds;
 };
 
@@ -78,7 +80,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
         "--reliability, --equal-bandwidth, --pareto)");
   }
   const bool suite = !study && !listing && !golden && !commands;
-  require_mode(app, suite, "the suite alone", {"--paper", "--lcm", "--lcm-log"});
+  require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
   const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
   const bool seeds = !f.studies.seeds.empty();
@@ -145,6 +147,7 @@ int run(const CLI::App& app, Flags& flags) {
                     .format = table_format(flags.studies.format.value_or("text")),
                     .display = flags.format,
                     .out = flags.out,
+                    .report = flags.report,
                     .lcm = flags.lcm,
                     .lcm_log = flags.lcm_log});
 }
@@ -204,6 +207,8 @@ void add_output_flags(CLI::App& app, Flags& flags) {
       ->type_name("1-30");
   app.add_option("--against", flags.studies.against)->group("");
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
+  app.add_option("--report", flags.report, "write all of it as a page for a browser, with traces")
+      ->type_name("FILE.html");
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
       ->type_name("[URL]")
       ->expected(0, 1);
@@ -227,7 +232,7 @@ void add_flags(CLI::App& app, Flags& flags) {
   app.add_option("--noise_probe", flags.suite.noise_probe)->group("");  // bench/score/README.md
   add_recording_flags(app, flags.suite.sensors, flags.suite.model_error, flags.suite.recording);
   for (const char* less_used : {"--kp", "--kd", "--velocity_noise", "--loadcell", "--degrade",
-                                "--list-metrics", "--lcm-log", "--golden"}) {
+                                "--list-metrics", "--lcm-log", "--golden", "--paper"}) {
     app.get_option(less_used)->group("");
   }
 }

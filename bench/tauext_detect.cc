@@ -13,6 +13,7 @@
 
 #include "bench/logs/read_log.h"
 #include "bench/program/program.h"
+#include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/study/calibration.h"
@@ -138,7 +139,8 @@ int run_study(const Flags& f) {
              study::format_study(f.study.robot, cells, format));
   if (f.out.empty()) return kGood;
   AtomicFile file(f.out);
-  file.write(study::study_json(f.study.robot, cells, thresholds));
+  file.write(study::study_json(f.study.robot, cells, thresholds,
+                               provenance(fmt::format("seeds from {}", f.study.first_seed))));
   file.commit();
   if (f.out != "-") {
     fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);

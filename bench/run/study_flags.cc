@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/program/program.h"
+#include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/score/degradation.h"
 #include "bench/seeds/golden.h"
@@ -28,6 +29,12 @@ TableFormat format_of(const StudyFlags& f) {
 
 const Robot& robot_of(const StudyFlags& f) {
   return f.robot ? robot(*f.robot) : *robots().front();
+}
+
+// a file of JSON is one for tauext-report, with where it comes from
+std::string for_file(const StudyFlags& f, const char* format, const std::string& run,
+                     const std::string& table) {
+  return f.out && format_of(f) == TableFormat::kJson ? result_file(format, run, table) : table;
 }
 
 // at the noise that was asked for, or at a good and at a poor encoder's
@@ -53,13 +60,16 @@ std::string run_equal_bandwidth(const StudyFlags& f) {
   const double w = *f.equal_bandwidth;
   const auto rows =
       study::at_equal_bandwidth(robot_of(f), w, 0, progress.callback(), f.selection.estimators);
-  return study::format_equal_bandwidth(robot_of(f), w, rows, format_of(f));
+  return for_file(f, "tauext-equal-bandwidth-1",
+                  fmt::format("{} at {:g} rad/s", robot_of(f).label(), w),
+                  study::format_equal_bandwidth(robot_of(f), w, rows, format_of(f)));
 }
 
 std::string run_pareto(const StudyFlags& f) {
   Progress progress("sweeping");
   const auto points = study::pareto(robot_of(f), 0, progress.callback(), f.selection.estimators);
-  return study::format_pareto(robot_of(f), points, format_of(f));
+  return for_file(f, "tauext-pareto-1", robot_of(f).label(),
+                  study::format_pareto(robot_of(f), points, format_of(f)));
 }
 
 std::vector<Entry> chosen_entries(const StudyFlags& f) {
@@ -84,8 +94,10 @@ std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
   const std::vector<SeededRow> rows = score_over_seeds(o);
   const TableFormat format = format_of(f);
   const std::string table = format_seeds(rows, f.against, format);
-  if (format != TableFormat::kText) return table;
-  return fmt::format("sensors: {}\n\n{}", describe({o.suite.sensors, o.suite.model_error}), table);
+  const std::string degraded = describe({o.suite.sensors, o.suite.model_error});
+  if (format == TableFormat::kText) return fmt::format("sensors: {}\n\n{}", degraded, table);
+  return for_file(f, "tauext-seeds-1",
+                  fmt::format("{} seeds from {}, {}", f.seeds.size(), f.seeds[0], degraded), table);
 }
 
 // one, or the ends of a range

@@ -14,6 +14,9 @@
 
 #include "bench/live/entry_tap.h"
 #include "bench/program/program.h"
+#include "bench/report/page.h"
+#include "bench/report/provenance.h"
+#include "bench/report/traces.h"
 #include "bench/roster/robots.h"
 #include "bench/run/reporter.h"
 #include "bench/score/degradation.h"
@@ -71,9 +74,9 @@ std::unique_ptr<benchmark::BenchmarkReporter> make_display(
   throw std::invalid_argument(fmt::format("--benchmark_format={}: console or json", *format));
 }
 
-std::string build_line(const SuiteOptions& o) {
-  std::string line =
-      fmt::format("{}, MuJoCo {}, seed {}", build(), mujoco_version(), o.sensors.seed);
+// what results depend on beside the build
+std::string run_line(const SuiteOptions& o) {
+  std::string line = fmt::format("seed {}", o.sensors.seed);
   if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
   if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
   const std::string degraded = describe({o.sensors, o.model_error});
@@ -128,7 +131,7 @@ std::FILE* words_of(const SuiteRun& run) {
 
 void print_results(const SuiteRun& run, const Rows& rows) {
   std::FILE* const words = words_of(run);
-  fmt::print(words, "{}\n\n", build_line(run.suite));
+  fmt::print(words, "{}\n\n", provenance(run_line(run.suite)).front().second);
   print_tables(rows, run.format, tables_of(run));
   fmt::print(words, "{}", table_legend(rows));
   const bool step = std::any_of(rows.begin(), rows.end(), [](const Row& r) {
@@ -142,6 +145,21 @@ void write_json(const SuiteRun& run, const Reporter& reporter) {
   file.write(reporter.json());
   file.commit();
   fmt::print(words_of(run), "\n{}: results as JSON\n", *run.out);
+}
+
+void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Reporter& reporter) {
+  Progress progress("drawing");
+  report::Traces traces;
+  for (const Row& row : rows) {
+    if (row.score.error.empty()) traces.add(row.entry, suite.run(row.entry));
+    progress.show(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()));
+  }
+  AtomicFile file(*run.report);
+  file.write(report::page_of({checked_result("results.json", reporter.json()),
+                              checked_result("traces.json", traces.json(run_line(run.suite)))}));
+  file.commit();
+  progress.clear();
+  fmt::print(words_of(run), "\n{}: the report; open it in a browser\n", *run.report);
 }
 
 // whether everything that was asked for by name ran somewhere; says what did not
@@ -164,20 +182,19 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
 
 }  // namespace
 
-std::string build() {
-  const std::string arch = level().empty() ? "" : " -march=" + level();
-  return fmt::format("tauext {}, {}, {}{}", TAUEXT_VERSION, TAUEXT_COMPILER, TAUEXT_FLAGS, arch);
-}
-
 int run_suite(const SuiteRun& run) {
   Rows rows;
   for (const Entry& e : entries(run.selection)) rows.push_back({e, {}});
-  if (run.out) AtomicFile{*run.out};  // an unwritable path should not cost a run
+  for (const auto& path : {run.out, run.report}) {
+    if (path) AtomicFile{*path};  // an unwritable path should not cost a run
+  }
   const auto display = make_display(run.display);
   Suite suite(run.suite);
   EntryTap tap(run.lcm, run.lcm_log.value_or(""));
   register_benchmarks(suite, rows, tap);
-  benchmark::AddCustomContext("tauext", build_line(run.suite));
+  for (const auto& [key, text] : provenance(run_line(run.suite))) {
+    if (key != "date") benchmark::AddCustomContext(key, text);  // which it writes itself
+  }
   Reporter reporter(display.get(), run.all ? static_cast<int>(rows.size()) : 0);
   reporter.on_done = [&](const std::string& name) { publish(name, rows, reporter, tap); };
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
@@ -190,6 +207,7 @@ int run_suite(const SuiteRun& run) {
   for (Row& row : rows) add_time(reporter, row);
   print_results(run, rows);
   if (run.out) write_json(run, reporter);
+  if (run.report) write_report(run, suite, rows, reporter);
   if (!tap.heard()) say("no summary could be published");
   const bool all = all_ran(run.selection, rows);
   if (reporter.any_error() || !tap.heard()) return kAnswerIsNo;

@@ -23,12 +23,10 @@ struct SuiteRun {
   TableFormat format = TableFormat::kText;  ///< of the tables
   std::optional<std::string> display;       ///< Google Benchmark's own format on standard output
   std::optional<std::string> out;           ///< file for the results as JSON
+  std::optional<std::string> report;        ///< file for the page of the results
   std::optional<std::string> lcm;           ///< URL for summaries
   std::optional<std::string> lcm_log;       ///< folder for logs
 };
-
-/// What built this program: its version, the compiler and its flags.
-std::string build();
 
 /// Scores and times the entries, and prints their tables.
 /// @returns the exit code

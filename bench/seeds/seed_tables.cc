@@ -2,9 +2,11 @@
 #include "bench/seeds/seed_tables.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bench/seeds/seed_figures.h"
@@ -53,11 +55,24 @@ const SeededRow* rival_of(const SeededRow& row, const std::vector<SeededRow>& ro
   return found == rows.end() || &*found == &row ? nullptr : &*found;
 }
 
+// apart by blanks
+std::string by_seed(const SeededRow& row, Metric metric) {
+  std::vector<std::string> values;
+  for (const Score& s : row.scores) {
+    const std::optional<double> x = s.get(metric);
+    values.push_back(!s.error.empty() || !x ? "failed"
+                     : std::isfinite(*x)    ? fmt::format("{:.6g}", *x)
+                                            : "never");
+  }
+  return fmt::format("{}", fmt::join(values, " "));
+}
+
 std::string for_programs(const std::vector<SeededRow>& rows, const std::string& against,
                          TableFormat format) {
   std::vector<TableWriter::Column> columns;
-  for (const char* title : {"entry", "metric", "unit", "values", "never", "failed", "mean", "low",
-                            "high", "against", "difference", "difference_low", "difference_high"})
+  for (const char* title :
+       {"entry", "metric", "unit", "values", "never", "failed", "mean", "low", "high", "against",
+        "difference", "difference_low", "difference_high", "by_seed"})
     columns.push_back({title});
   TableWriter table(std::move(columns));
   const auto number = [](double x) {
@@ -83,6 +98,7 @@ std::string for_programs(const std::vector<SeededRow>& rows, const std::string& 
       cells.push_back(known ? rival->entry.name() : "");
       for (const double x : {d.mean, d.interval.low, d.interval.high})
         cells.push_back(known ? number(x) : "");
+      cells.push_back(by_seed(r, m.metric));
       table.add(std::move(cells));
     }
   }

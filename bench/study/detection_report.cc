@@ -99,6 +99,11 @@ Json roc_of(const Cell& c) {
     point["threshold_factor"] = kLevels[i];
     point[key_of(Metric::kRecall)] =
         c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
+    if (c.blows > 0) {
+      const metrics::Interval recall = metrics::share_interval(c.detected_at[i], c.blows);
+      point[key_of(Metric::kRecallLow)] = recall.low;
+      point[key_of(Metric::kRecallHigh)] = recall.high;
+    }
     if (c.quiet_samples > 0)
       point[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms_at[i] / c.hours();
     roc.push_back(point);
@@ -123,6 +128,9 @@ Json to_json(const Cell& c) {
   }
   j["delay_p50_s"] = number(quantile(c.delays, 0.5));
   j["delay_p95_s"] = number(quantile(c.delays, 0.95));
+  if (!c.delays.empty()) {
+    for (int i = 0; i <= 20; ++i) j["delay_quantiles_s"].push_back(quantile(c.delays, i / 20.));
+  }
   j["stray_marks"] = c.stray;
   j["quiet_h"] = c.hours();
   j[key_of(Metric::kFalseAlarms)] = c.alarms;
@@ -171,10 +179,13 @@ std::string format_study(const std::string& robot, const std::vector<Cell>& cell
 }
 
 std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
-                       const Thresholds& thresholds) {
+                       const Thresholds& thresholds,
+                       const std::vector<std::pair<std::string, std::string>>& context) {
   const StudyRuns& runs = touched_runs(robot);
   Json j;
   j["format"] = "tauext-detection-1";
+  j["context"] = Json::object();
+  for (const auto& [key, text] : context) j["context"][key] = text;
   j["robot"] = runs.robot;
   j["thresholds_trained_on"] = thresholds.trained_on;
   j["margin"] = thresholds.margin;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/roster/thresholds.h"
@@ -19,8 +20,10 @@ std::string format_study(const std::string& robot, const std::vector<Cell>& cell
                          TableFormat format = TableFormat::kText);
 
 /// All of it as JSON text: counts, quantiles, the bound on false alarms, points of the ROC.
+/// @param context keys and texts that say where it comes from
 std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
-                       const Thresholds& thresholds);
+                       const Thresholds& thresholds,
+                       const std::vector<std::pair<std::string, std::string>>& context = {});
 
 /// A time [s] in milliseconds for a table; "-" for NaN.
 std::string milliseconds(double s, int digits = 0);

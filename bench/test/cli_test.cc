@@ -13,9 +13,9 @@ namespace tauext::test {
 namespace {
 
 TEST_F(Programs, HelpFitsAScreenAndShowsAnExampleAndExitsWith0) {
-  for (const std::string name :
-       {"tauext-bench", "tauext-detect", "tauext-calibrate", "tauext-import", "tauext-live",
-        "tauext-record", "tauext-render", "tauext-replay", "tauext-score", "tauext-tune"}) {
+  for (const std::string name : {"tauext-bench", "tauext-detect", "tauext-calibrate",
+                                 "tauext-import", "tauext-live", "tauext-record", "tauext-render",
+                                 "tauext-replay", "tauext-report", "tauext-score", "tauext-tune"}) {
     const Outcome o = run(name + " --help");
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(o.says("  " + name + " ")) << o.text;

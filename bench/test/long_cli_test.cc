@@ -33,8 +33,9 @@ TEST_F(Programs, AStudyIsWrittenInTheFormatThatAProgramReads) {
   const Outcome o = run("tauext-bench --pareto --format json --out p.json");
   ASSERT_EQ(o.code, 0) << o.text;
   const auto json = nlohmann::json::parse(content("p.json"));
-  ASSERT_GT(json.size(), 80u);
-  for (const auto& point : json) {
+  EXPECT_EQ(json["format"], "tauext-pareto-1");
+  ASSERT_GT(json["rows"].size(), 80u);
+  for (const auto& point : json["rows"]) {
     EXPECT_EQ(point["settling_ms"].is_null(), point["verdict"] == "no value") << point;
   }
 }

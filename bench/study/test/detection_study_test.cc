@@ -196,7 +196,8 @@ TEST(DetectionStudy, UnknownNamesListTheKnownOnes) {
             std::string::npos);
   o = small();
   o.robot = "testbed1";
-  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("testbed1 has none"), std::string::npos);
+  EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("no runs for testbed1"),
+            std::string::npos);
   o = small();
   o.estimators = {"oracle"};
   EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("unknown estimator 'oracle'"),

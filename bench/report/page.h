@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Results as one page for a browser, which asks for nothing from anywhere. Not installed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/report/result_files.h"
+
+namespace tauext::report {
+
+/// The page of these results: it holds them as they are, and draws them.
+std::string page_of(const std::vector<ResultFile>& results);
+
+/// The results of a file: one, or all that such a page holds, if it is .html.
+/// @throws std::runtime_error naming the file, for a page that is none of ours, and as
+/// checked_result()
+std::vector<ResultFile> read_results(const std::string& path);
+
+}  // namespace tauext::report

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/result_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "bench/report/assets.h"
+#include "bench/score/metric_list.h"
+#include "mjcf/import/json_object.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+using Json = nlohmann::json;
+
+// the kind of a file that has this format; "" has benchmarks instead
+std::string kind_of(const Json& j, const Json& kinds, const std::string& name) {
+  const Json format = j.is_object() ? j.value("format", Json()) : Json();
+  std::string known;
+  for (const auto& [kind, schema] : kinds.items()) {
+    const Json& properties = schema["properties"];
+    const bool ours = properties.contains("format");
+    if (ours ? format == properties["format"]["const"] : j.contains("benchmarks")) return kind;
+    if (ours) known += (known.empty() ? "" : ", ") + properties["format"]["const"].dump();
+  }
+  throw std::runtime_error(fmt::format(
+      "{}: no file of results: \"format\" is {}, and must be one of {}; or it has \"benchmarks\", "
+      "as tauext-bench --benchmark_out writes it",
+      name, format.dump(), known));
+}
+
+// the first thing that is wrong, by its JSON pointer, like /benchmarks/2/rmse_Nm
+void validate(const Json& j, const Json& of_kind, const std::string& name) {
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(of_kind), schema);
+  valijson::ValidationResults results;
+  const valijson::adapters::NlohmannJsonAdapter target(j);
+  if (valijson::Validator().validate(schema, target, &results)) return;
+  std::string where, why;
+  for (const valijson::ValidationResults::Error& e : results) {  // the deepest one says most
+    std::string here;  // of "<root>", "[benchmarks]", "[2]"
+    for (std::size_t i = 1; i < e.context.size(); ++i)
+      here += "/" + e.context[i].substr(1, e.context[i].size() - 2);
+    if (why.empty() || here.size() > where.size()) where = here, why = e.description;
+  }
+  std::string value = j.at(Json::json_pointer(where)).dump();
+  if (value.size() > 60) value = value.substr(0, 57) + "...";
+  throw std::runtime_error(
+      fmt::format("{}: {} is {}: {}; tauext-report --schema says what it must be", name, where,
+                  value, one_line(why)));
+}
+
+// of a history, which is a line for each commit
+std::string object_of_lines(std::string rows) {
+  rows.resize(rows.find_last_not_of('\n') + 1);
+  for (char& c : rows) c = c == '\n' ? ',' : c;
+  return fmt::format(R"({{"format":"tauext-history-1","context":{{}},"rows":[{}]}})", rows);
+}
+
+}  // namespace
+
+std::string results_schema() {
+  auto schema = nlohmann::ordered_json::parse(report::assets().at("results.schema.json"));
+  auto& row = schema["definitions"]["suite"]["properties"]["benchmarks"]["items"];
+  for (const MetricRow& m : kMetrics) {
+    row["properties"][std::string(m.key)] = {{"type", "number"}, {"description", m.meaning}};
+    if (m.joints != WorstJoint::kNone)
+      row["patternProperties"][fmt::format("^{}_joint[1-9]$", m.key)]["type"] = "number";
+  }
+  return schema.dump(1) + "\n";
+}
+
+ResultFile checked_result(const std::string& path, const std::string& text) {
+  static const Json kinds = Json::parse(results_schema())["definitions"];
+  std::string smallest;
+  try {
+    smallest = parse_json(path.ends_with(".jsonl") ? object_of_lines(text) : text).dump();
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: no JSON: {}", path, one_line(e.what())));
+  }
+  const Json j = Json::parse(smallest);
+  const std::string kind = kind_of(j, kinds, path);
+  validate(j, kinds[kind], path);
+  return {std::filesystem::path(path).filename(), kind, smallest};
+}
+
+}  // namespace tauext

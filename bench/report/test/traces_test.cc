@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/traces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace tauext::report {
+namespace {
+
+Eigen::VectorXd noise(int n, double height, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, height);
+  return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
+}
+
+// what value i of a drawn signal stands for
+double drawn_value(const Drawn& d, std::size_t i) {
+  return d.low + d.values[i] / 65535. * (d.high - d.low);
+}
+
+// every sample lies between the two extremes of its bucket, and both are samples of it
+void expect_drawn(const Eigen::VectorXd& s, const std::vector<int>& edges) {
+  const Drawn d = draw(s, edges);
+  ASSERT_EQ(d.values.size(), 2 * (edges.size() - 1));
+  const double step = (d.high - d.low) / 65535;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    const auto part = s.segment(edges[b], edges[b + 1] - edges[b]);
+    const double first = drawn_value(d, 2 * b), second = drawn_value(d, 2 * b + 1);
+    EXPECT_NEAR(std::max(first, second), part.maxCoeff(), step);
+    EXPECT_NEAR(std::min(first, second), part.minCoeff(), step);
+    Eigen::Index most = 0, least = 0;
+    part.maxCoeff(&most), part.minCoeff(&least);
+    if (std::abs(first - second) > step) {
+      EXPECT_EQ(first > second, most < least) << "the order in time";
+    }
+  }
+}
+
+TEST(Traces, EveryPulseOfThreeSamplesIsDrawnToItsHeight) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Eigen::VectorXd s = noise(30'000, 1, seed);
+    const int at = static_cast<int>(seed) * 297 + 5;
+    s.segment<3>(at).array() += 25;
+    const std::vector<int> edges = bucket_edges({s, noise(30'000, 3, seed + 1000)});
+    EXPECT_EQ(edges.size(), kBuckets + 1);
+    const Drawn d = draw(s, edges);
+    EXPECT_EQ(d.high, s.segment<3>(at).maxCoeff());
+    EXPECT_GE(std::count(d.values.begin(), d.values.end(), 65535), 1) << seed;
+  }
+}
+
+TEST(Traces, BucketsHoldTheirSamples) {
+  const Eigen::VectorXd s = noise(5000, 2, 1);
+  const std::vector<int> edges = bucket_edges({s});
+  EXPECT_EQ(edges.front(), 0);
+  EXPECT_EQ(edges.back(), 5000);
+  EXPECT_TRUE(std::is_sorted(edges.begin(), edges.end()));
+  EXPECT_EQ(std::adjacent_find(edges.begin(), edges.end()), edges.end());
+  expect_drawn(s, edges);
+}
+
+TEST(Traces, AStepIsResolvedToTheSampleAndRestIsNot) {
+  Eigen::VectorXd s = Eigen::VectorXd::Zero(30'000);
+  s.tail(29'000).setConstant(98.2);
+  const std::vector<int> edges = bucket_edges({s});
+  EXPECT_EQ(std::count(edges.begin(), edges.end(), 1000), 1);
+  expect_drawn(s, edges);
+}
+
+TEST(Traces, AFewSamplesAreBucketsOfOne) {
+  const Eigen::VectorXd s = noise(7, 1, 4);
+  const std::vector<int> edges = bucket_edges({s});
+  EXPECT_EQ(edges, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+  expect_drawn(s, edges);
+}
+
+TEST(Traces, WhatIsNotFiniteIsDrawnAsZero) {
+  Eigen::VectorXd s = Eigen::VectorXd::Constant(10, 4);
+  s[3] = std::numeric_limits<double>::quiet_NaN();
+  s[4] = std::numeric_limits<double>::infinity();
+  const Drawn d = draw(s, {0, 5, 10});
+  EXPECT_EQ(d.low, 0);
+  EXPECT_EQ(d.high, 4);
+}
+
+}  // namespace
+}  // namespace tauext::report

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// tauext-report: results as one page for a browser.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/program/program.h"
+#include "bench/report/page.h"
+#include "bench/report/result_files.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/printable.h"
+
+namespace {
+
+using namespace tauext;
+
+std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
+  std::set<std::string> seen;
+  std::vector<ResultFile> all;
+  for (const std::string& path : paths) {
+    if (!seen.insert(path).second) throw std::invalid_argument(path + ": is there twice");
+    for (ResultFile& r : report::read_results(path)) all.push_back(std::move(r));
+  }
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Makes one page of results, for a browser: who is how accurate, fast and quick, traces,\n"
+      "fronts, studies, seeds, a gate's history, and a ranking of several submitters. The page\n"
+      "holds everything, asks for nothing from anywhere, and can be read here again.\n\n"
+      "  tauext-bench --benchmark_out=ours.json\n"
+      "  tauext-report ours.json theirs.json study.json --out report.html",
+      "tauext-report");
+  std::vector<std::string> paths;
+  std::string out;
+  bool schema = false;
+  app.add_option("results", paths,
+                 "JSON of tauext-bench, -score, -detect; history.jsonl; other reports")
+      ->type_name("FILE");
+  app.add_option("-o,--out", out, "page to write, or - for standard output")
+      ->type_name("FILE.html");
+  app.add_flag("--schema", schema,
+               "print what a file of results must be, as JSON Schema, and stop");
+  return run_program(app, argc, argv, [&] {
+    if (schema) {
+      fmt::print("{}", results_schema());
+      return kGood;
+    }
+    if (paths.empty() || out.empty())
+      throw std::invalid_argument("files of results and --out FILE.html are needed; see --help");
+    AtomicFile file(out);
+    file.write(report::page_of(read_all(paths)));
+    file.commit();
+    if (out != "-") say(out + ": open it in a browser");
+    return kGood;
+  });
+}
