@@ -31,11 +31,11 @@ std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Makes one page of results, for a browser: who is how accurate, fast and quick, traces,\n"
+      "Makes one page of results, for a browser: how accurate and fast everybody is, traces,\n"
       "fronts, studies, seeds, a gate's history, and a ranking of several submitters. The page\n"
       "holds everything, asks for nothing from anywhere, and can be read here again.\n\n"
       "  tauext-bench --benchmark_out=ours.json\n"
-      "  tauext-report ours.json theirs.json study.json --out report.html",
+      "  tauext-report ours.json theirs.json study.json --out report.html\n",
       "tauext-report");
   std::vector<std::string> paths;
   std::string out;

@@ -11,6 +11,7 @@
 #include "bench/score/metric_list.h"
 #include "mjcf/import/json_object.h"
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext::report {
 namespace {
@@ -74,9 +75,14 @@ std::vector<ResultFile> read_results(const std::string& path) {
   const std::size_t end = begin == text.npos ? begin : text.find("</script>", begin);
   if (end == text.npos)
     throw std::runtime_error(path + ": no report of tauext-report, which would hold its results");
-  const Json all = parse_json(text.substr(begin + kBegin.size(), end - begin - kBegin.size()));
   std::vector<ResultFile> results;
-  for (const Json& r : all) results.push_back(checked_result(r.at("name"), r.at("data").dump()));
+  try {
+    for (const Json& r :
+         parse_json(text.substr(begin + kBegin.size(), end - begin - kBegin.size())))
+      results.push_back(checked_result(r.at("name"), r.at("data").dump()));
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: what it holds: {}", path, one_line(e.what())));
+  }
   return results;
 }
 

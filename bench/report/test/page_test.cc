@@ -48,6 +48,13 @@ TEST(Page, AnyOtherPageIsRefused) {
   const std::string path = testing::TempDir() + "other.html";
   std::ofstream(path) << "<html></html>";
   EXPECT_THROW(read_results(path), std::runtime_error);
+  std::ofstream(path) << R"(<script type="application/json" id="results">[{"name": "x"}]</script>)";
+  try {
+    read_results(path);
+    ADD_FAILURE() << "a page without data";
+  } catch (const std::runtime_error& e) {
+    EXPECT_EQ(std::string(e.what()).find(path + ": what it holds: "), 0u) << e.what();
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DSOURCE=FOLDER -DTO=FILE -P commit.cmake: a header with the commit of the tree, "" where there is no git
+# cmake -DSOURCE=FOLDER -DTO=FILE -P tauextCommit.cmake: a header with the commit of the tree, "" where there is no git
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
   OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(text "#define TAUEXT_COMMIT \"${commit}\"\n")
