@@ -85,7 +85,7 @@ ResultFile checked_result(const std::string& path, const std::string& text) {
   try {
     smallest = parse_json(path.ends_with(".jsonl") ? object_of_lines(text) : text).dump();
   } catch (const std::exception& e) {
-    throw std::runtime_error(fmt::format("{}: no JSON: {}", path, one_line(e.what())));
+    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }
   const Json j = Json::parse(smallest);
   const std::string kind = kind_of(j, kinds, path);

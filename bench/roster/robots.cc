@@ -64,10 +64,8 @@ const Robot& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
   std::vector<std::string> known;
   for (const auto& r : all) known.push_back(r->name());
   known.insert(known.end(), kRobotsByMjcf.begin(), kRobotsByMjcf.end());
-  const std::invalid_argument error = unknown("robot", name, known);
-  if (name.find_first_of("./") == name.npos) throw error;
-  throw std::invalid_argument(
-      fmt::format("{}; a robot's file is MJCF, .xml, URDF, .urdf, or ours, .json", error.what()));
+  throw std::invalid_argument(fmt::format("{}, and files: MJCF, .xml, URDF, .urdf, or ours, .json",
+                                          unknown("robot", name, known).what()));
 }
 
 std::string list_of(const Robot& r) {

@@ -126,7 +126,13 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
 }
 
 Thresholds read_thresholds(const std::string& path) {
-  const Json j = read_json(path);
+  Json j;
+  try {
+    j = read_json(path);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(
+        fmt::format("{}; tauext-detect --calibrate writes files of thresholds", e.what()));
+  }
   try {
     const Json format = j.is_object() ? j.value("format", Json()) : Json();
     if (format != kFormat)

@@ -221,8 +221,10 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
     if ((e == nullptr) == (d == nullptr))
       throw std::invalid_argument(
           fmt::format("--tune {}: {}; {}: {}{}", text,
-                      e == nullptr ? "neither has that key" : "both have that key", pair.estimator,
-                      describe_fields(of_estimator),
+                      e != nullptr            ? "both have that key"
+                      : pair.detector.empty() ? "unknown key"
+                                              : "neither has that key",
+                      pair.estimator, describe_fields(of_estimator),
                       pair.detector.empty()
                           ? ""
                           : fmt::format("; {}: {}", pair.detector, describe_fields(of_detector))));

@@ -21,6 +21,12 @@ namespace tauext::detail {
 
 // calls f(number, numbers) with all numbers of what a run remembers, and those of the Pack
 
+template <class One, class All, class F>
+void for_numbers(One&, All&, const F&) noexcept {
+  static_assert(sizeof(One) == 0,
+                "memory() lists numbers of the model (Scalar), vectors and matrices of these, and "
+                "what has a memory() of its own; a whole number or a bool counts in a Scalar");
+}
 template <int W, class F>
 [[gnu::always_inline]] inline void for_numbers(double& one, Pack<W>& all, const F& f) noexcept {
   f(one, all);
@@ -98,13 +104,37 @@ bool pack_field(const Eigen::Matrix<double, Rows, Columns>& one, int i,
 
 // the members of all Parameters P: those of fields(), and those that it leaves out
 template <class P>
-constexpr auto members_of() {
+constexpr auto listed_members() {
   const auto named = std::apply([](const auto&... f) { return std::tuple(f.at...); }, P::fields());
   if constexpr (requires { P::unnamed(); }) {
     return std::tuple_cat(named, P::unnamed());
   } else {
     return named;
   }
+}
+
+// what a member of any type may be made of
+struct Anything {
+  template <class T>
+  operator T() const;  // NOLINT(google-explicit-constructor): it stands for one
+};
+// how many members the aggregate P has
+template <class P, class... Members>
+constexpr std::size_t count_members() {
+  if constexpr (requires { P{Members()..., Anything()}; }) {
+    return count_members<P, Members..., Anything>();
+  } else {
+    return sizeof...(Members);
+  }
+}
+
+template <class P>
+constexpr auto members_of() {
+  constexpr auto all = listed_members<P>();
+  static_assert(std::is_aggregate_v<P> && count_members<P>() == std::tuple_size_v<decltype(all)>,
+                "Parameters is an aggregate that lists each of its members once, in fields(), or, "
+                "if a specification does not name it, as a pointer to member in unnamed()");
+  return all;
 }
 
 // what a specification calls the member of that number
@@ -126,8 +156,9 @@ All packed(const std::array<P, W>& p) {
         if (pack_field<static_cast<int>(W)>(mine, static_cast<int>(i), of_all)) return;
         throw std::invalid_argument("run " + std::to_string(i) + " has another " +
                                     key_of_member<P>(number) +
-                                    " than run 0; runs at once may differ in numbers, but not in "
-                                    "max_gap, Ts or a choice");
+                                    " than run 0; runs at once may differ in a Scalar of their "
+                                    "Parameters, but not in a double, as max_gap and Ts are, nor "
+                                    "in a choice");
       };
       (pack(std::integral_constant<std::size_t, I>(), p[i].*std::get<I>(one),
             out.*std::get<I>(all)),

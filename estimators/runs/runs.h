@@ -6,14 +6,18 @@
 /// own, by the estimator of doubles. So nothing branches by runs, and each run is as if it were
 /// alone, but for how a compiler rounds.
 ///
-/// An estimator over a model can do it if
+/// An estimator over a model can do it (bench/examples/twice.h is one) if
 /// - it computes with the model's number (ScalarOf), which then is a Pack. Where it has to branch,
-///   it asks all(..), or takes each run's by select(..), which doubles have, too;
+///   it asks all(..), or takes each run's by select(..), which doubles have, too; exp, sin and the
+///   like it calls without std::, after `using std::exp`;
 /// - it has `Model`, `For` (the same over another model), parameters(), and is made of a model and
 ///   Parameters;
-/// - memory() lists what it remembers, its Sampling first.
-/// The model has `Number` and with<S>(), the same arm computed with S. What of this is missing,
-/// static_assert(ForRuns<E>) says; bench/kit/conformance.h then compares the runs of E.
+/// - Parameters lists all its members in fields(), or in unnamed() those that no specification
+///   names. What may differ from run to run is a Scalar, or a vector or matrix of it;
+/// - memory() lists what it remembers, its Sampling first: in Scalars, too.
+/// The model has `Number` and with<S>(), the same arm computed with S. The compiler says what of
+/// this is missing, at static_assert(ForRuns<E>) or at Runs<E>, but for what memory() leaves out:
+/// bench/kit/conformance.h, which compares the runs of E, finds that.
 #pragma once
 
 #include <array>
@@ -64,7 +68,9 @@ void put(const Measurement<N>& y, int i, Measurement<N, Pack<W>>& all) noexcept 
 
 /// W runs of an estimator E: 4 or 8.
 template <ForRuns E, int W = kRuns>
-requires(W == 4 || W == 8) class Runs {
+class Runs {
+  static_assert(W == 4 || W == 8, "Runs<E, W> are 4 or 8 runs at once");
+
  public:
   static constexpr int kDof = E::kDof;
   using Model = typename E::Model;            ///< of doubles
@@ -105,6 +111,9 @@ requires(W == 4 || W == 8) class Runs {
   E& one(int i) noexcept { return one_[static_cast<std::size_t>(i)]; }
   Sampling<kDof, Pack<W>>& sampling() noexcept { return std::get<0>(all_.memory()); }
   static auto everything(All& all) noexcept {
+    using First = std::tuple_element_t<0, decltype(all.memory())>;
+    static_assert(std::same_as<First, Sampling<kDof, Pack<W>>&>,
+                  "memory() lists a Sampling<kDof, Scalar> first");
     return std::tuple_cat(std::get<0>(all.memory()).memory(), detail::rest(all.memory()));
   }
 

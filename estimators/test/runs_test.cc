@@ -115,49 +115,6 @@ TEST(Runs, AGateAndATorqueReadAtInstantsAreThoseOfTheRun) {
   expect_runs_alike<Ekf<WallMoBot3>, 4>(arm, p, samples);
 }
 
-// bench/examples/own_estimator.cc by the rules of runs.h
-template <class M>
-struct Twice {
-  static constexpr const char* kName = "twice";
-  static constexpr int kDof = M::kDof;
-  using Scalar = ScalarOf<M>;
-  using Model = M;
-  template <class Other>
-  using For = Twice<Other>;
-  struct Parameters {
-    Scalar pole = 47;
-    static constexpr auto fields() {
-      return std::tuple(Field{"pole", &Parameters::pole, "rad/s", 1e-3, 1e6, "larger is faster"});
-    }
-    static Parameters for_bandwidth(const M&, double w) { return {.pole = w / 0.6436}; }
-  };
-  explicit Twice(const M& m, const Parameters& parameters = {}) : model(m), p(parameters) {}
-  void reset() noexcept { *this = Twice(model, p); }
-  Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
-    const Status status = sampling.accept(y);
-    if (status == Status::kOk) {
-      const Scalar a = exp(-p.pole * sampling.h());
-      const Vec<kDof, Scalar> qdd = (y.qd - qd) / sampling.h();
-      const Vec<kDof, Scalar> rest = model.bias(y.q, y.qd) + model.friction(y.qd);
-      const Vec<kDof, Scalar> raw = sampling.torque(y) - model.inertia(y.q) * qdd - rest;
-      once = raw + a * (once - raw);
-      d = once + a * (d - once);
-    }
-    if (used(status)) qd = y.qd;
-    return {d, status, sampling.joints()};
-  }
-  const Parameters& parameters() const noexcept { return p; }
-  auto memory() noexcept { return std::tie(sampling, once, d, qd); }
-  M model;
-  Parameters p;
-  Sampling<kDof, Scalar> sampling{0.05, limits_of(model)};
-  Vec<kDof, Scalar> once = Vec<kDof, Scalar>::Zero(), d = once, qd = once;
-};
-
-TEST(Runs, SomebodysEstimatorIsAsAlone) {
-  expect_alike<Twice<WallMoBot3>, 4>(WallMoBot3());
-}
-
 // one joint whose inertia is none beyond 1 rad: Number() for S = Pack
 template <class S>
 struct Folding {
@@ -238,6 +195,13 @@ TEST(Runs, ForgetAllOrOneOfThem) {
     }
   }
 }
+
+struct ThreeMembers {
+  double w = 1;
+  Vec<6> Q = Vec<6>::Zero();
+  Start start = Start::kZero;
+};
+static_assert(detail::count_members<ThreeMembers>() == 3);
 
 TEST(Runs, MayDifferInNumbersAlone) {
   const WallMoBot3 arm;

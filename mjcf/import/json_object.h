@@ -106,7 +106,7 @@ class JsonObject {
 
 /// What a text of JSON says, in which no object has a key twice.
 /// @param comments whether it may have // and /* */
-/// @throws std::invalid_argument naming a key that is there twice; Json::exception for no JSON
+/// @throws std::invalid_argument naming a key that is there twice, or saying where it is no JSON
 inline JsonObject::Json parse_json(const std::string& text, bool comments = false) {
   using Json = JsonObject::Json;
   std::vector<std::set<std::string>> seen;  // of each object that is open
@@ -117,7 +117,12 @@ inline JsonObject::Json parse_json(const std::string& text, bool comments = fals
       throw std::invalid_argument(fmt::format("the key {} is there twice", parsed.dump()));
     return true;
   };
-  return Json::parse(text, look, true, comments);
+  try {
+    return Json::parse(text, look, true, comments);
+  } catch (const Json::exception& e) {
+    const std::string words = e.what();  // "[json.exception.parse_error.101] parse error at .."
+    throw std::invalid_argument("no JSON: " + one_line(words.substr(words.find(']') + 2)));
+  }
 }
 
 /// The same of a file.
@@ -126,10 +131,8 @@ inline JsonObject::Json read_json(const std::string& path, bool comments = false
   const std::string text = read_json_text(path);
   try {
     return parse_json(text, comments);
-  } catch (const JsonObject::Json::exception& e) {
-    throw std::runtime_error(fmt::format("{}: no JSON: {}", path, one_line(e.what())));
   } catch (const std::invalid_argument& e) {
-    throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
+    throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
   }
 }
 

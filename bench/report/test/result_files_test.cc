@@ -37,7 +37,7 @@ TEST(ResultFiles, SayWhichElementIsWrong) {
   expect_error(R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm_joint2": []}]})",
                "/benchmarks/0/rmse_Nm_joint2 is []: ");
   expect_error(R"({"context": {"submitter": 7}, "benchmarks": []})", "/context/submitter is 7: ");
-  expect_error(R"({"context": {}, "benchmarks": [], "benchmarks": []})", "no JSON: the key");
+  expect_error(R"({"context": {}, "benchmarks": [], "benchmarks": []})", "the key");
   expect_error(R"({"format": "tauext-traces-1", "context": {}, "groups": [{"name": "a/b", "t": [],
                    "contacts": [], "marks": [], "series": [{"name": "truth", "joints":
                    [{"low": 0, "high": 1, "values": "<"}]}]}]})",

@@ -138,7 +138,8 @@ TEST_F(Registry, RefusesASpecificationThatIsUnknownOrTakenOrOutOfRange) {
 TEST_F(Registry, FailsWhenTheRobotsAreFirstAskedForAndSaysWhy) {
   register_specification("r2d2", "mo2:bandwidth=50");
   EXPECT_EQ(error_of([] { robots(); }),
-            "unknown robot 'r2d2'; known: wallmobot3, testbed1, wallmobot6");
+            "unknown robot 'r2d2'; known: wallmobot3, testbed1, wallmobot6, and files: MJCF, .xml, "
+            "URDF, .urdf, or ours, .json");
   detail::registered_specifications() = {{"wallmobot3", "mo2"}};
   // as tauext-bench does: exit code 2 and a line
   CLI::App app("", "own-bench");
