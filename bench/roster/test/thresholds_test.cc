@@ -72,7 +72,8 @@ TEST_F(ThresholdFile, SaysWhatIsWrongWithIt) {
             std::string::npos);
   EXPECT_NE(error("2.0,", "").find("2 numbers for 3 joints"), std::string::npos);
   EXPECT_EQ(error_of([] { read_thresholds("/nowhere/x"); }),
-            "/nowhere/x: No such file or directory");
+            "/nowhere/x: No such file or directory; tauext-detect --calibrate writes files of "
+            "thresholds");
 }
 
 TEST(Thresholds, AreThoseOfTheLeastNoisySensorsThatAreAsNoisy) {
