@@ -10,6 +10,7 @@
 
 #include "bench/live/live_listen.h"
 #include "bench/live/live_modes.h"
+#include "bench/live/view/viewers.h"
 #include "bench/program/program.h"
 #include "bench/program/realtime.h"
 #include "bench/roster/robots.h"
@@ -24,12 +25,14 @@ using namespace tauext;
 void add_source_flags(CLI::App& app, live::Options& o, bool& listen) {
   add_robot_flags(app, o.robot, o.lock);
   app.add_option("--scenario", o.scenario, "scenario to simulate (see --list)");
-  app.add_option("--from", o.from, "log to play instead, as tauext-replay reads it (--columns)")
+  app.add_option("--from", o.from,
+                 "log to play instead, as tauext-replay reads it (--columns, --channel)")
       ->type_name("LOG");
-  app.add_option("--subscribe", o.subscribe, "LCM channel to estimate instead")
+  app.add_option("--subscribe", o.subscribe,
+                 "LCM channel to estimate instead (--type tauext, iiwa or panda)")
       ->type_name("CHANNEL");
-  app.add_option("--type", o.type, "of its messages: tauext, iiwa or panda")->capture_default_str();
-  app.add_option("--channel", o.channel, "with --from: which channel, or topic of a bag");
+  app.add_option("--type", o.type)->group("");
+  app.add_option("--channel", o.channel)->group("");
   app.add_option("--columns", o.columns)->group("");
   app.add_flag("--listen", listen, "instead: show the tauext streams at --lcm URL");
 }
@@ -50,6 +53,15 @@ void add_run_flags(CLI::App& app, live::Options& o) {
   app.add_option("--lcm", o.url, "stream; else $LCM_DEFAULT_URL or this machine's own group")
       ->type_name("[URL]")
       ->expected(0, 1);
+  app.add_option("--page", o.page, "show the stream in a browser, at http://127.0.0.1:PORT; 0: any")
+      ->type_name("[PORT]")
+      ->expected(0, 1)
+      ->default_str(std::to_string(live::PageServer::kUsualPort));
+  app.add_option(
+         "--plotjuggler", o.plotjuggler,
+         fmt::format("send it as JSON by UDP to HOST:PORT, else {}", live::PlotJuggler::kUsual))
+      ->type_name("[TO]")
+      ->expected(0, 1);
   app.add_option("--rate", o.rate, "messages a second and channel, peaks held; 0: every sample")
       ->capture_default_str();
   app.add_option("--realtime", o.realtime,
@@ -67,8 +79,7 @@ void add_run_flags(CLI::App& app, live::Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Estimates in real time, or shows a stream. Opens no socket without --lcm, --subscribe or "
-      "--listen.\n"
+      "Estimates in real time, or shows a stream. Opens no socket unless asked to.\n"
       "  tauext-live --robot wallmobot3 --scenario contact --estimator ekf,mo2 --lcm\n",
       "tauext-live");
   live::Options o;
@@ -100,13 +111,16 @@ int main(int argc, char** argv) {
       return kGood;
     }
     o.stream = app.count("--lcm") > 0;
+    if (app.count("--plotjuggler") > 0 && o.plotjuggler.empty())
+      o.plotjuggler = live::PlotJuggler::kUsual;
     require_mode(app, !o.scenario.empty(), "--scenario", of_scenarios);
     require_mode(app, !o.from.empty(), "--from", {"--channel", "--columns"});
     require_mode(app, !o.subscribe.empty(), "--subscribe", {"--type"});
     require_mode(app, o.subscribe.empty() && !listen, "--scenario and --from",
                  {"--speed", "--loop"});
     require_mode(app, !listen, "--scenario, --from and --subscribe", {"--realtime"});
-    require_mode(app, o.stream && !listen, "--lcm", {"--rate"});
+    require_mode(app, (o.stream || o.page || !o.plotjuggler.empty()) && !listen,
+                 "--lcm, --page and --plotjuggler", {"--rate"});
     live::check(o, listen);
     if (listen) return live::run_listen(o);
     if (!scenarios.empty()) add_scenarios(scenarios, robot(with_lock(o.robot, o.lock)));

@@ -20,13 +20,8 @@ constexpr auto kIdle = 100ms;  // without samples, after which nothing is held b
 }  // namespace
 
 struct LiveStream::Shared {
-  Shared(std::shared_ptr<Transport> to, const std::vector<Stream>& streams, double rate,
-         std::size_t capacity)
-      : transport(std::move(to)),
-        ring(capacity),
-        emitter(streams, rate, [this](const char* channel, std::int64_t, Bytes message) {
-          return transport && transport->publish(channel, message);
-        }) {}
+  Shared(Sink sink, const std::vector<Stream>& streams, double rate, std::size_t capacity)
+      : ring(capacity), emitter(streams, rate, std::move(sink)) {}
 
   // takes out what is there; true if there was something
   bool drain() {
@@ -68,7 +63,6 @@ struct LiveStream::Shared {
     finished.notify_all();
   }
 
-  std::shared_ptr<Transport> transport;
   moodycamel::ReaderWriterQueue<LiveSample> ring;
   Emitter emitter;  // of the thread, until done
   std::atomic<std::int64_t> published = 0, failed = 0, dropped = 0;
@@ -81,7 +75,16 @@ struct LiveStream::Shared {
 
 LiveStream::LiveStream(std::shared_ptr<Transport> transport, const std::vector<Stream>& streams,
                        double rate, std::size_t capacity)
-    : shared_(std::make_shared<Shared>(std::move(transport), streams, rate, capacity)) {
+    : LiveStream(
+          streams, rate,
+          [transport = std::move(transport)](const char* channel, std::int64_t, Bytes message) {
+            return transport && transport->publish(channel, message);
+          },
+          capacity) {}
+
+LiveStream::LiveStream(const std::vector<Stream>& streams, double rate, Sink sink,
+                       std::size_t capacity)
+    : shared_(std::make_shared<Shared>(std::move(sink), streams, rate, capacity)) {
   std::thread([shared = shared_] { shared->run(); }).detach();
 }
 

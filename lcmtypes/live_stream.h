@@ -32,6 +32,10 @@ class LiveStream {
   /// @throws std::invalid_argument as Emitter does
   LiveStream(std::shared_ptr<Transport> transport, const std::vector<Stream>& streams, double rate,
              std::size_t capacity = 8192);
+  /// The same to anything that takes messages.
+  /// @param sink called from a thread of ours; what it holds may outlive this, see finish()
+  LiveStream(const std::vector<Stream>& streams, double rate, Sink sink,
+             std::size_t capacity = 8192);
   ~LiveStream();
   LiveStream(const LiveStream&) = delete;
   LiveStream& operator=(const LiveStream&) = delete;

@@ -12,16 +12,24 @@
 namespace tauext::live {
 
 Outlet::Outlet(const Options& o, double rate)
-    : streams_(streams_of(o.estimators, o.detector, o.wrench)) {
-  if (!o.stream) return;
-  refuse_input_as_log(lcm_url(o.url));
-  transport_ = std::make_shared<Transport>(o.url);
-  if (!transport_->good()) say("streaming is off: " + transport_->trouble());
-  stream_.emplace(transport_, streams_, rate);
+    : streams_(streams_of(o.estimators, o.detector, o.wrench)),
+      viewers_(std::make_shared<Viewers>(o.page, o.plotjuggler)) {
+  if (o.stream) {
+    refuse_input_as_log(lcm_url(o.url));
+    transport_ = std::make_shared<Transport>(o.url);
+    if (!transport_->good()) say("streaming is off: " + transport_->trouble());
+  }
+  if (!o.stream && !viewers_->any()) return;
+  stream_.emplace(streams_, rate,
+                  [viewers = viewers_, transport = transport_](const char* channel, std::int64_t,
+                                                               Bytes message) {
+                    viewers->take(channel, message);
+                    return transport ? transport->publish(channel, message) : viewers->any();
+                  });
 }
 
 void Outlet::report_failures() {
-  if (!stream_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
+  if (!transport_ || reported_ || !transport_->good() || stream_->counts().failed == 0) return;
   reported_ = true;
   say(fmt::format("messages to {} fail ({}); the run goes on", transport_->url(),
                   trouble_with(transport_->url()).empty() ? "send error" : "no route"));
@@ -31,10 +39,12 @@ StreamReport Outlet::finish(std::vector<summary_t> summaries) {
   StreamReport report;
   report.asked = stream_.has_value();
   if (!stream_) return report;
-  report.url = transport_->url();
+  report.url = transport_ ? transport_->url() : viewers_->where().substr(2);
   report.hung = !stream_->finish();
   report.counts = stream_->counts();
-  if (!report.hung) publish(summaries, report.counts.dropped);
+  if (report.hung) return report;
+  publish(summaries, report.counts.dropped);
+  viewers_->close();
   return report;
 }
 
@@ -45,7 +55,9 @@ void Outlet::publish(std::vector<summary_t>& summaries, std::int64_t dropped) {
     s.failed = stream_->counts(i).failed;
     s.ring_drops = dropped;
     std::vector<std::byte> bytes(s.getEncodedSize());
-    transport_->publish(kSummaryChannel, {bytes.data(), encode(s, bytes)});
+    const Bytes message(bytes.data(), encode(s, bytes));
+    if (transport_) transport_->publish(kSummaryChannel, message);
+    viewers_->take(kSummaryChannel, message);
   }
 }
 

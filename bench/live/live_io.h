@@ -15,12 +15,13 @@
 
 #include "bench/live/live_report.h"
 #include "bench/live/options.h"
+#include "bench/live/view/viewers.h"
 #include "lcmtypes/listener.h"
 #include "lcmtypes/receive/arrivals.h"
 
 namespace tauext::live {
 
-/// A stream, if one was asked for, and what is to be said of it.
+/// A stream, if one was asked for, by LCM or to who looks on, and what is to be said of it.
 class Outlet {
  public:
   /// @param rate [1/s] of sample time
@@ -28,7 +29,10 @@ class Outlet {
   Outlet(const Options& options, double rate);
 
   LiveStream* stream() { return stream_ ? &*stream_ : nullptr; }
-  std::string where() const { return stream_ ? " to " + transport_->url() : ""; }
+  /// Where it goes, in words.
+  std::string where() const {
+    return (transport_ ? " to " + transport_->url() : "") + viewers_->where();
+  }
 
   /// Once: messages do not go out any more.
   void report_failures();
@@ -39,7 +43,8 @@ class Outlet {
   void publish(std::vector<summary_t>& summaries, std::int64_t dropped);
 
   std::vector<Stream> streams_;
-  std::shared_ptr<Transport> transport_;
+  std::shared_ptr<Viewers> viewers_;
+  std::shared_ptr<Transport> transport_;  // null without LCM
   std::optional<LiveStream> stream_;
   bool reported_ = false;
 };

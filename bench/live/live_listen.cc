@@ -3,14 +3,22 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bench/live/interrupt.h"
 #include "bench/live/stream_table.h"
+#include "bench/live/view/viewers.h"
 #include "bench/program/program.h"
 #include "lcmtypes/listener.h"
 #include "mjcf/trace/printable.h"
@@ -18,18 +26,50 @@
 namespace tauext::live {
 namespace {
 
-// what is heard, on standard output: a table on a terminal, else events as they come and a table at
-// the end
+// keys as they are pressed, while this is there; none unless both ends are a terminal, and ours
+class Keys {
+ public:
+  Keys() {
+    if (!on_ || ::tcgetattr(STDIN_FILENO, &before_) != 0) return;
+    termios now = before_;
+    now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    now.c_cc[VMIN] = 0, now.c_cc[VTIME] = 0;  // a read does not wait
+    changed_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &now) == 0;
+  }
+  ~Keys() {
+    if (changed_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+
+  // 0 if there is none
+  char next() const {
+    char key = 0;
+    return changed_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
+  }
+
+ private:
+  bool on_ = is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO) &&
+             ::tcgetpgrp(STDIN_FILENO) == ::getpgrp();
+  bool changed_ = false;
+  termios before_{};
+};
+
+// what is heard, on standard output: a table on a terminal, as much of it as fits, else events as
+// they come and a table at the end
 class Screen {
  public:
   explicit Screen(const Listener& listener) : listener_(listener) {}
 
   void show(StreamTable& table, double seconds, std::int64_t now) {
     take_events(table);
-    if (!terminal_ || seconds - shown_ < kEvery) return;
+    bool pressed = false;
+    while (const char key = keys_.next()) {
+      if (key >= '0' && key < '1' + kMaxJoints) joint_ = key - '0', pressed = true;
+    }
+    if (!terminal_ || (seconds - shown_ < kEvery && !pressed)) return;
     shown_ = seconds;
-    fmt::print("\033[H\033[2J{}  {:.0f} s\n\n{}\n{}\n{}\n", listener_.url(), seconds,
-               table.format(now), table.totals(listener_.refused()), fmt::join(events_, "\n"));
+    fmt::print("\033[H\033[2J{}", text(table, seconds, now));
     std::fflush(stdout);
   }
   void close(StreamTable& table, std::int64_t now) {
@@ -39,6 +79,40 @@ class Screen {
 
  private:
   static constexpr double kEvery = 0.2;  // [s]
+  using Lines = std::vector<std::string>;
+
+  static Lines lines_of(const std::string& text) {
+    Lines all;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+  }
+
+  std::string text(const StreamTable& table, double seconds, std::int64_t now) const {
+    winsize size{};
+    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0;
+    const std::size_t rows = known ? size.ws_row - 1 : 1000, columns = known ? size.ws_col : 1000;
+    std::string head = fmt::format("{}  {:.0f} s", listener_.url(), seconds);
+    const std::string end = table.totals(listener_.refused());
+    std::string body = table.format(now);
+    const auto fits = [&](const std::string& t) {
+      const Lines all = lines_of(t);
+      return all.size() + lines_of(end).size() + 4 <= rows &&
+             std::all_of(all.begin(), all.end(), [&](auto& l) { return l.size() <= columns; });
+    };
+    if (!fits(body)) {
+      body = table.format_small(now, joint_);
+      head += joint_ == 0 ? "  joints with the largest torque; 1 to 8: that joint"
+                          : fmt::format("  joint {}; 0: those with the largest torque", joint_);
+    }
+    Lines all = lines_of(fmt::format("{}\n\n{}\n{}\n", head, body, end));
+    const std::size_t room = rows > all.size() ? rows - all.size() : 0;
+    all.insert(all.end(), events_.end() - std::min<std::ptrdiff_t>(room, events_.size()),
+               events_.end());
+    if (all.size() > rows) all.resize(rows);
+    for (std::string& line : all) line.resize(std::min(line.size(), columns));
+    return fmt::format("{}\n", fmt::join(all, "\n"));
+  }
 
   void take_events(StreamTable& table) {
     constexpr std::size_t kShown = 12;
@@ -52,8 +126,10 @@ class Screen {
 
   const Listener& listener_;
   bool terminal_ = is_terminal(STDOUT_FILENO);
+  Keys keys_;
+  int joint_ = 0;     // from 1; 0: that with the largest torque
   double shown_ = 0;  // [s]
-  std::vector<std::string> events_;
+  Lines events_;
 };
 
 }  // namespace
@@ -62,11 +138,13 @@ int run_listen(const Options& o) {
   const auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return microseconds_since(begin); };
   StreamTable table;
+  Viewers viewers(o.page, o.plotjuggler);
   Listener listener(o.url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
     table.take(channel, sender, now(), m);
+    viewers.take(channel, m);
   });
   const Interrupt interrupt;
-  say(fmt::format("listening to TAUEXT_* at {}; Ctrl-C ends", listener.url()));
+  say(fmt::format("listening to TAUEXT_* at {}{}; Ctrl-C ends", listener.url(), viewers.where()));
   Screen screen(listener);
   bool ended = false, broken = false, at_end = false;
   while (!broken && !ended) {

@@ -179,7 +179,7 @@ int run_subscribed(const Options& o) {
   Inlet inlet(o, r, estimation, report);
   const Interrupt interrupt;
   say(fmt::format("listening to {} at {}{}; Ctrl-C ends", o.subscribe, inlet.url(),
-                  o.stream ? ", streaming" : ""));
+                  outlet.where()));
   const std::unique_ptr<Realtime> first = realtime_of(o);  // this thread is the loop
   const auto begin = Clock::now();
   StatusLine status;

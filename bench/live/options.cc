@@ -18,6 +18,8 @@ void check(const Options& o, bool listen) {
   };
   require(std::isfinite(o.pace.duration) && o.pace.duration >= 0,
           fmt::format("--duration {}: 0 s or more", o.pace.duration));
+  require(!o.page || (*o.page >= 0 && *o.page <= 65535),
+          fmt::format("--page {}: a port, 1 to 65535, or 0 for any", o.page.value_or(0)));
   const bool receives = listen || !o.subscribe.empty();
   require(!receives || !lcm_url(o.url).starts_with("memq://"),
           "memq:// does not leave a process: nothing can arrive");

@@ -18,10 +18,12 @@ struct Options {
   std::string robot, lock, scenario, from, channel, columns, subscribe, type = "tauext";
   std::vector<std::string> estimators;
   std::string detector, thresholds;
-  std::string wrench;   ///< the point at which forces are looked for; "": none
-  bool stream = false;  ///< publish
-  std::string url;      ///< "": the default
-  double rate = 200;    ///< [1/s] messages of each channel; 0: every sample
+  std::string wrench;       ///< the point at which forces are looked for; "": none
+  bool stream = false;      ///< publish
+  std::string url;          ///< "": the default
+  std::optional<int> page;  ///< port of the live page; 0: any
+  std::string plotjuggler;  ///< HOST:PORT; "": none
+  double rate = 200;        ///< [1/s] messages of each channel; 0: every sample
   Pace pace;
   std::optional<int> realtime;  ///< [1] priority of the loop; none: an ordinary thread
   Sensors sensors;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -207,6 +208,34 @@ std::string StreamTable::format(std::int64_t now) const {
     }
   }
   return table.format() + (forces_.empty() ? "" : "\n" + format_forces(now));
+}
+
+std::string StreamTable::format_small(std::int64_t now, int joint) const {
+  TableWriter table({{"estimator", "", true, 12},
+                     {"rate", "1/s", false, 4},
+                     {"joint", "", false, 5},
+                     {"tau_ext", "N m", false, 8},
+                     {"least", "N m", false, 8},
+                     {"largest", "N m", false, 8},
+                     {"reference", "N m", false, 9},
+                     {"status", "", true, 10}});
+  const auto torque = [](bool known, double x) { return known ? fmt::format("{:.3f}", x) : "-"; };
+  for (const auto& [name, c] : channels_) {
+    const estimate_t& e = c.newest;
+    const double* const shown = c.estimate ? e.tau_ext_hat : e.tau_ext_true;
+    const double* const worst = std::max_element(
+        shown, shown + e.n, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto j = joint > 0 ? joint - 1 : worst - shown;
+    if (j >= e.n) continue;
+    const std::size_t prefix =
+        name.starts_with(kEstimateChannel) ? std::strlen(kEstimateChannel) : 0;
+    table.add({name.substr(prefix, 12), fmt::to_string(c.rate(now)), fmt::to_string(j + 1),
+               torque(c.estimate, e.tau_ext_hat[j]), torque(c.estimate, e.tau_ext_hat_min[j]),
+               torque(c.estimate, e.tau_ext_hat_max[j]),
+               torque(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
+               c.estimate ? std::string(status_name(e.status)).substr(0, 10) : ""});
+  }
+  return table.format();
 }
 
 std::string StreamTable::format_forces(std::int64_t now) const {

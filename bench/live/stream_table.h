@@ -25,6 +25,9 @@ class StreamTable {
   /// A row for each joint of each channel; rates are those of the second before `now` [us, the same
   /// clock].
   std::string format(std::int64_t now) const;
+  /// A row for each estimator, in at most 80 columns: of one joint.
+  /// @param joint from 1; 0: of each estimator that with the largest torque
+  std::string format_small(std::int64_t now, int joint) const;
   /// What became of each message of all channels, and why.
   std::string totals(const GroupSocket::Counts& refused) const;
 

@@ -43,6 +43,8 @@ double residual(const Trace& t, const Arm& arm) {
   return worst;
 }
 
+#ifndef TAUEXT_SANITIZED  // numbers; what a sanitizer looks for, the next test has, too
+
 // (3) with MuJoCo's acceleration and the closed form's B and bias, which know nothing of each other
 TEST_P(EveryScenario, ObeysEquationThreeAtEverySample) {
   const Trace t = record(model(), chosen());
@@ -51,15 +53,6 @@ TEST_P(EveryScenario, ObeysEquationThreeAtEverySample) {
       GetParam().robot == "testbed1" ? residual(t, Testbed1()) : residual(t, WallMoBot3());
   EXPECT_LT(worst, 1e-9 * t.tau.cwiseAbs().maxCoeff())
       << "largest torque " << t.tau.cwiseAbs().maxCoeff();
-}
-
-TEST_P(EveryScenario, IsBitIdenticalWhenRepeated) {
-  Scenario s = chosen();
-  s.duration = 10;
-  const Trace a = record(model(), s), b = record(model(), s);
-  EXPECT_EQ(a.q, b.q);
-  EXPECT_EQ(a.tau, b.tau);
-  EXPECT_EQ(a.tau_ext, b.tau_ext);
 }
 
 // tau is held, so a finer integration of each sample must converge: RK4's error falls 16-fold when
@@ -83,6 +76,17 @@ TEST_P(EveryScenario, ConvergesWithTheStepSize) {
   const double coarse = (one - two).cwiseAbs().maxCoeff();
   const double fine = (two - four).cwiseAbs().maxCoeff();
   EXPECT_GT(coarse / fine, 8) << coarse << " rad, then " << fine;
+}
+
+#endif
+
+TEST_P(EveryScenario, IsBitIdenticalWhenRepeated) {
+  Scenario s = chosen();
+  s.duration = 4;
+  const Trace a = record(model(), s), b = record(model(), s);
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.tau, b.tau);
+  EXPECT_EQ(a.tau_ext, b.tau_ext);
 }
 
 std::vector<Case> cases() {

@@ -43,7 +43,7 @@ function draw_over(u, spans, marks) {
   c.beginPath(), c.rect(left, top, width, height), c.clip();
   c.fillStyle = 'rgba(213, 94, 0, .13)';
   for (const [from, to] of spans) c.fillRect(x(from), top, Math.max(2, x(to) - x(from)), height);
-  c.font = `${11 * devicePixelRatio}px sans-serif`;
+  c.font = `${11 * devicePixelRatio}px sans-serif`, c.textAlign = 'left', c.textBaseline = 'alphabetic';
   const rows = [];  // where names end, so that none covers another
   for (const m of marks) {
     if (x(m.t) < left || x(m.t) > left + width) continue;
@@ -58,17 +58,26 @@ function draw_over(u, spans, marks) {
   c.restore();
 }
 
+// the point that has a value and is nearest to point i of a series
+function nearest(values, i) {
+  for (let k = 0; k < values.length; ++k) {
+    for (const at of [i - k, i + k]) if (Number.isFinite(values[at] ?? NaN)) return at;
+  }
+  return i;
+}
+
 // A plot over time. series: {label, color, dash, width, show}; floor: of range_of.
-function time_plot(parent, {title, unit, width, height, data, series, x_range, floor, bands, over, sync}) {
+function time_plot(parent, {title, unit, width, height, data, series, x_range, floor, bands, over, sync, select}) {
   const axis = {stroke: themed('--text'), grid: {stroke: themed('--line'), width: .5}, ticks: {stroke: themed('--line')}};
   return new uPlot({
     title, width, height, bands,
-    cursor: {sync: sync && {key: sync}, drag: {x: true, y: false}},
+    cursor: {dataIdx: (u, s, i) => nearest(u.data[s], i), sync: sync && {key: sync}, drag: {x: true, y: false, setScale: !select}},
     scales: {x: {time: false, range: x_range}, y: {range: (u, low, high) => low === null ? [-1, 1] : range_of(low, high, floor)}},
     axes: [{...axis, label: 't [s]', labelSize: 18, size: 34}, {...axis, label: unit, labelSize: 18, size: 68, values: (u, all) => all.map((v) => Number(v.toPrecision(6)).toString())}],
     series: [{label: 't [s]', value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(3)}].concat(series.map((s) => ({
       label: s.label, stroke: s.color, dash: s.dash, width: s.width || 1.2, show: s.show !== false, points: {show: false}, spanGaps: true,
       value: (u, v) => v === null || v === undefined ? '–' : v.toPrecision(4)}))),
-    hooks: {draw: [(u) => over && draw_over(u, ...over())]},
+    hooks: {draw: [(u) => over && draw_over(u, ...over())],
+      setSelect: [(u) => select && u.select.width > 0 && select(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'))]},
   }, data, parent);
 }
