@@ -35,8 +35,7 @@ final class ChartPanel extends Strip {
       g.fillRect(x(m.t()), kTop, 2, height + 1);
     }
     g.setColor(kText);
-    g.drawString("joint " + (joint + 1), 6, kTop + height / 2 - 2);
-    g.drawString("[N m]", 6, kTop + height / 2 + 13);
+    g.drawString("joint " + (joint + 1) + " [N m]", kLeft + 6, kTop + 14);
   }
 
   /** The smaller of two of which one may be NaN. */

@@ -14,19 +14,31 @@ final class MarkStrip extends Strip {
 
   @Override
   void paint(Graphics2D g) {
-    int[] end = new int[kRows];
     g.setColor(kMark);
+    each((label, x, left, width, y) -> g.fillRect(x, y - 9, 2, getHeight()), g);
+    each((label, x, left, width, y) -> {  // above the lines of others
+      g.setColor(getBackground());
+      g.fillRect(left - 1, y - kRow + 4, width + 2, kRow - 1);
+      g.setColor(kMark);
+      g.drawString(label, left, y);
+    }, g);
+  }
+
+  private interface Draw {
+    void label(String text, int x, int left, int width, int y);
+  }
+
+  /** Each mark that has room: where its line is, and where its label. */
+  private void each(Draw draw, Graphics2D g) {
+    int[] end = new int[kRows];
     for (Mark m : snapshot.marks) {
       String label = m.label(snapshot.base);
       int width = g.getFontMetrics().stringWidth(label);
-      int x = x(m.t());
-      int left = Math.min(x + 5, getWidth() - width - 4);
+      int left = Math.min(x(m.t()) + 5, getWidth() - width - 4);
       int row = free(end, left);
       if (row >= 0) {
         end[row] = left + width + 12;
-        int y = getHeight() - 4 - row * kRow;
-        g.drawString(label, left, y);
-        g.fillRect(x, y - 9, 2, getHeight());
+        draw.label(label, x(m.t()), left, width, getHeight() - 4 - row * kRow);
       }
     }
   }

@@ -5,6 +5,8 @@ import java.util.Locale;
 
 /** From values to pixels, linearly, with ticks at 1, 2 or 5 times a power of ten. */
 final class Scale {
+  private static final double kFloor = 0.02;  // [N m] so that rounding noise is not blown up
+
   final double from;
   final double to;
   final double step;
@@ -17,13 +19,13 @@ final class Scale {
     this.pixels = pixels;
   }
 
-  /** A scale that holds 0, lo and hi (NaN: nothing) and begins and ends at a tick. */
+  /** A scale that holds 0, lo and hi [N m] (NaN: nothing) and begins and ends at a tick. */
   static Scale around(double lo, double hi, int pixels) {
     double least = Double.isNaN(lo) ? 0 : Math.min(0, lo);
     double most = Double.isNaN(hi) ? 0 : Math.max(0, hi);
-    if (most - least < 1e-6) {
-      least = -1;
-      most = 1;
+    if (most - least < kFloor) {
+      least = -kFloor;
+      most = kFloor;
     }
     double margin = 0.03 * (most - least);
     double step = nice((most - least) / Math.max(1, Math.min(6, pixels / 24)));
