@@ -22,8 +22,21 @@
 #include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model.h"
 #include "mjcf/scenarios/scenario.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
+
+namespace detail {
+// once, in the program that registers; static: each source may be compiled otherwise
+[[maybe_unused]] static void say_if_unoptimised() {
+#ifndef __OPTIMIZE__
+  [[maybe_unused]] static const bool said =
+      (say("yours is compiled without optimisation, which makes it slow: "
+           "cmake -DCMAKE_BUILD_TYPE=Release"),
+       true);
+#endif
+}
+}  // namespace detail
 
 /// An estimator for every robot of model M; make(model) builds one. With a constructor E(model,
 /// parameters) and E::Parameters::fields() (estimators/parameters.h) it is set by specifications,
@@ -34,6 +47,7 @@ namespace tauext {
 template <RobotModel M, class Make>
 void register_estimator(Make make) {
   detail::require_unused();
+  detail::say_if_unoptimised();
   detail::registered_estimators<M>().push_back(
       [make](const M& model, detail::RobotOf<M::kDof>& robot) {
         robot.add_estimator(model, [make, model](const Trace&) { return make(model); });
@@ -45,6 +59,7 @@ void register_estimator(Make make) {
 template <CollisionDetector D>
 void register_detector() {
   detail::require_unused();
+  detail::say_if_unoptimised();
   detail::registered_detectors<D::kDof>().push_back(
       [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
 }

@@ -187,10 +187,13 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
-      ->type_name("FILE.json");
+      ->type_name("FILE.json")
+      ->check(not_empty);
   app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
       ->capture_default_str();
-  app.add_option("--thresholds", f.thresholds, "file of --calibrate")->type_name("FILE.json");
+  app.add_option("--thresholds", f.thresholds, "file of --calibrate")
+      ->type_name("FILE.json")
+      ->check(not_empty);
   app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
       ->type_name("FILE");
   app.add_option("--format", f.format)->group("");

@@ -45,7 +45,8 @@ void add_run_flags(CLI::App& app, live::Options& o) {
   app.add_option("--detector", o.detector, "NAME[:KEY=VALUE].. behind each estimator");
   app.add_option("--thresholds", o.thresholds,
                  "the detectors' thresholds, from tauext-detect --calibrate")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(not_empty);
   app.add_option("--wrench", o.wrench,
                  "the force at this site or body (end_effector), and the link touched")
       ->type_name("SITE")

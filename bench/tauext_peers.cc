@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bench/peers/peers.h"
 #include "bench/program/program.h"
@@ -16,7 +18,7 @@ namespace {
 
 using namespace tauext;
 
-void print(const std::vector<peers::Peer>& all) {
+void print(const std::vector<peers::Peer>& all, std::FILE* to) {
   TableWriter table({{"estimator", "", true},
                      {"step", "ns"},
                      {"+-", "%"},
@@ -27,11 +29,11 @@ void print(const std::vector<peers::Peer>& all) {
     table.add({p.name, fmt::format("{:.1f}", p.ns), fmt::format("{:.0f}", 100 * p.spread),
                fmt::format("{:.1f}", p.ratio), p.beside, fmt::format("{:.4g}", p.rmse)});
   }
-  fmt::print("{}", table.format());
+  fmt::print(to, "{}", table.format());
 }
 
 void write(const std::vector<peers::Peer>& all, const std::string& robot,
-           const std::string& scenario, double bandwidth, const std::string& path) {
+           const std::string& scenario, double bandwidth, AtomicFile& file) {
   nlohmann::ordered_json j = {{"robot", robot},
                               {"scenario", scenario},
                               {"designed_for_rad_s", bandwidth},
@@ -44,7 +46,6 @@ void write(const std::vector<peers::Peer>& all, const std::string& robot,
                           {"ratio", p.ratio},
                           {key_of(Metric::kRmse), p.rmse}});
   }
-  AtomicFile file(path);
   file.write(j.dump(2) + "\n");
   file.commit();
 }
@@ -74,12 +75,16 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(3, 100000))
       ->type_name("N");
-  app.add_option("--out", out, "JSON to write")->type_name("FILE");
+  app.add_option("--out", out, "JSON to write; - for standard output")
+      ->type_name("FILE")
+      ->check(not_empty);
   return run_program(app, argc, argv, [&] {
+    std::optional<AtomicFile> file;  // made before the work
+    if (!out.empty()) file.emplace(out);
     const std::vector<peers::Peer> all =
         peers::compare(peers::module_path(), with_lock(name, lock), scenario, bandwidth, rounds);
-    print(all);
-    if (!out.empty()) write(all, name, scenario, bandwidth, out);
+    print(all, out == "-" ? stderr : stdout);
+    if (file) write(all, name, scenario, bandwidth, *file);
     return kGood;
   });
 }
