@@ -37,6 +37,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   /// @param most_waiting [bytes] it is closed when more of them wait for it
   Viewer(beast::tcp_stream socket, std::size_t most_waiting, Ended ended)
       : ws_(std::move(socket)), most_waiting_(most_waiting), ended_(std::move(ended)) {
+    error_code ignored;  // or a frame's end waits for an acknowledgement
+    beast::get_lowest_layer(ws_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     ws_.binary(true);
     ws_.read_message_max(1);
     ws_.set_option(beast::websocket::stream_base::timeout::suggested(beast::role_type::server));

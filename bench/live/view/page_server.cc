@@ -78,6 +78,7 @@ class PageServer::Server {
       hosts_.insert(fmt::format("{}:{}", name, port_));
     url_ = fmt::format("http://127.0.0.1:{}", port_);
     accept();
+    timer_.expires_after(0us);
     tick();
     thread_ = std::thread([this] { context_.run(); });
   }
@@ -197,7 +198,7 @@ class PageServer::Server {
   }
 
   void tick() {
-    timer_.expires_after(1000000us / kFrames);
+    timer_.expires_at(timer_.expiry() + 1000000us / kFrames);
     timer_.async_wait([this](error_code e) {
       if (e) return;
       send();

@@ -156,7 +156,7 @@ function take_frame(buffer) {
 const state = {seconds: 10, paused: null};  // paused: [from, to]
 const window_now = () => state.paused ?? [newest - state.seconds, newest];
 const order = (who) => who === 'reference' ? -1 : [...all.tau_ext.keys()].filter((w) => w !== 'reference').indexOf(who.split('+')[0]);
-const style_of = (who) => order(who) < 0 ? {color: themed('--truth'), dash: [], width: 2} : look(order(who));
+const style_of = (who) => ({width: 1, ...(order(who) < 0 ? {color: themed('--truth'), dash: []} : look(order(who)))});  // a pixel: wider takes longer
 let layout = '', plots = [];
 function lay_out() {
   plots.forEach((p) => p.u.destroy());
@@ -165,7 +165,7 @@ function lay_out() {
   const plot = (title, quantity, lines) => {
     const place = element('div', {class: 'plot'}), p = {lines, place, seen: true};
     document.getElementById('plots').append(place);
-    p.u = time_plot(place, {title, unit: `${quantity} [${QUANTITIES[quantity]}]`, width: place.clientWidth, height: 210, floor: FLOORS[quantity], sync: 'live',
+    p.u = time_plot(place, {title, unit: `${quantity} [${QUANTITIES[quantity]}]`, width: place.clientWidth, height: 200, floor: FLOORS[quantity], sync: 'live',
       x_range: (u, min, max) => [min, max], data: [[], ...lines.map(() => [])], series: lines.map((l) => ({label: l.label, ...l.style})),
       over: () => [contacts, marks.map((m) => ({...m, color: style_of(m.who).color}))], select: (from, to) => choose([from, to])});
     p.u.over.addEventListener('dblclick', () => choose(null));
@@ -178,7 +178,7 @@ function lay_out() {
   const threshold = {rows: {points: (j, from, step, count) => new Array(2 * count).fill(1)}, label: 'threshold', style: {color: themed('--quiet'), dash: [4, 4]}};
   if (pairs.length) plot('statistics of detectors', 'statistic', [threshold, ...pairs.map((w) => ({rows: all.statistic.get(w), j: 0, label: w, style: style_of(w)}))]);
   for (const quantity of ['q', 'qd', 'tau']) {
-    for (const [, rows] of all[quantity]) plot(`measured ${quantity}`, quantity, Array.from({length: rows.width}, (_, j) => ({rows, j, label: `joint ${j + 1}`, style: look(j)})));
+    for (const [, rows] of all[quantity]) plot(`measured ${quantity}`, quantity, Array.from({length: rows.width}, (_, j) => ({rows, j, label: `joint ${j + 1}`, style: {width: 1, ...look(j)}})));
   }
 }
 
@@ -196,7 +196,7 @@ function draw() {
   if (!layout) lay_out(), layout = 'done';
   drawn = state.paused ? 0 : seen.messages;
   ++seen.frames;
-  const [from, to] = window_now(), count = 600, step = (to - from) / count, begin = Math.floor(from / step) * step;
+  const [from, to] = window_now(), count = 400, step = (to - from) / count, begin = Math.floor(from / step) * step;
   const x = Array.from({length: 2 * count + 2}, (_, i) => begin + step * ((i >> 1) + (i % 2 ? 0.75 : 0.25)));
   for (const p of plots.filter((p) => p.seen)) {
     p.u.setData([x, ...p.lines.map((l) => l.rows.points(l.j, begin, step, count + 1))], false);
