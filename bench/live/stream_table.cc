@@ -28,6 +28,11 @@ const char* status_name(std::int8_t status) {
   return status >= 0 && status < kStatusCount ? name_of(static_cast<Status>(status)) : "?";
 }
 
+// [N m]
+std::string torque(bool known, double x) {
+  return known ? fmt::format("{:.3f}", x) : "-";
+}
+
 }  // namespace
 
 std::int64_t StreamTable::Channel::rate(std::int64_t now) const {
@@ -192,7 +197,6 @@ std::string StreamTable::format(std::int64_t now) const {
                      {"reference", "N m", false, 9},
                      {"status", "", true, 10},
                      {"step", "us", false, 7}});
-  const auto torque = [](bool known, double x) { return known ? fmt::format("{:.3f}", x) : "-"; };
   for (const auto& [name, c] : channels_) {
     const estimate_t& e = c.newest;
     const auto recent = c.rate(now);
@@ -219,7 +223,6 @@ std::string StreamTable::format_small(std::int64_t now, int joint) const {
                      {"largest", "N m", false, 8},
                      {"reference", "N m", false, 9},
                      {"status", "", true, 10}});
-  const auto torque = [](bool known, double x) { return known ? fmt::format("{:.3f}", x) : "-"; };
   for (const auto& [name, c] : channels_) {
     const estimate_t& e = c.newest;
     const double* const shown = c.estimate ? e.tau_ext_hat : e.tau_ext_true;

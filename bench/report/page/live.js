@@ -103,6 +103,7 @@ function forget() {
 }
 forget();
 function keep(quantity, who, t, low, high = low) {
+  if (all[quantity].size >= 100 && !all[quantity].has(who)) throw new RangeError('too many names');  // they come from outside
   if (!all[quantity].has(who)) all[quantity].set(who, new Rows(low.length)), layout = '';
   if (all[quantity].get(who).width === low.length) all[quantity].get(who).add(t, low, high);
 }
@@ -128,6 +129,8 @@ function take(channel, m) {
     if (m.mark) marks.push({t: m.mark_utime / 1e6, who: m.estimator, name: `${m.estimator} ${contact === 'None' ? m.detector : contact.toLowerCase()}`});
     if (m.contact_true && contacts.at(-1)?.[1] >= t - 0.1) contacts.at(-1)[1] = t;
     else if (m.contact_true) contacts.push([t, t]);
+    marks = marks.filter((mark) => mark.t > newest - KEPT);
+    contacts = contacts.filter(([, end]) => end > newest - KEPT);
     return;
   }
   const n = m.n, first = (x) => x.slice(0, n), who = channel.replace(/^TAUEXT_(ESTIMATE_)?/, '');
