@@ -82,9 +82,9 @@ TEST(PlotJuggler, SendsADatagramForEachMessage) {
 }
 
 TEST(PlotJuggler, RefusesWhatIsNoAddress) {
-  for (const char* bad : {"", "here", ":1", "127.0.0.1:"})
+  for (const char* bad : {"", "here", ":1", "127.0.0.1:", "127.0.0.1:port", "127.0.0.1:0",
+                          "127.0.0.1:99999", "127.0.0.1:98x"})
     EXPECT_THROW(PlotJuggler{bad}, std::invalid_argument) << bad;
-  EXPECT_THROW(PlotJuggler("127.0.0.1:port"), std::runtime_error);
 }
 
 }  // namespace

@@ -74,8 +74,10 @@ std::map<std::string, File, std::less<>> files() {
 class PageServer::Server {
  public:
   explicit Server(int port) : acceptor_(listening(port)), port_(acceptor_.local_endpoint().port()) {
-    for (const char* name : {"127.0.0.1", "localhost"})
+    for (const char* name : {"127.0.0.1", "localhost"}) {
       hosts_.insert(fmt::format("{}:{}", name, port_));
+      if (port_ == 80) hosts_.insert(name);  // as a browser says it
+    }
     url_ = fmt::format("http://127.0.0.1:{}", port_);
     accept();
     timer_.expires_after(0us);

@@ -6,6 +6,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -71,7 +73,10 @@ std::string json_of(std::string_view channel, Bytes message) {
 
 PlotJuggler::PlotJuggler(const std::string& to) : to_(to) {
   const std::size_t colon = to.rfind(':');
-  if (colon == to.npos || colon == 0 || colon + 1 == to.size())
+  int port = 0;
+  const char* const end = to.data() + to.size();
+  if (colon != to.npos && std::from_chars(to.data() + colon + 1, end, port).ptr != end) port = 0;
+  if (colon == 0 || port < 1 || port > 65535)
     throw std::invalid_argument(fmt::format("--plotjuggler {}: HOST:PORT, like {}", to, kUsual));
   addrinfo hints{}, *found = nullptr;
   hints.ai_socktype = SOCK_DGRAM;

@@ -21,8 +21,8 @@ class PlotJuggler {
   static constexpr const char* kUsual = "127.0.0.1:9870";  ///< where PlotJuggler listens
 
   /// @param to HOST:PORT
-  /// @throws std::invalid_argument for another form, std::runtime_error for a host that is not
-  /// known
+  /// @throws std::invalid_argument for another form or port, std::runtime_error for a host that is
+  /// not known
   explicit PlotJuggler(const std::string& to);
   ~PlotJuggler();
   PlotJuggler(const PlotJuggler&) = delete;

@@ -172,7 +172,7 @@ function lay_out() {
       x_range: (u, min, max) => [min, max], data: [[], ...lines.map(() => [])], series: lines.map((l) => ({label: l.label, ...l.style})),
       over: () => [contacts, marks.map((m) => ({...m, color: style_of(m.who).color}))], select: (from, to) => choose([from, to])});
     p.u.over.addEventListener('dblclick', () => choose(null));
-    new IntersectionObserver(([e]) => { p.seen = e.isIntersecting; }).observe(place);
+    new IntersectionObserver(([e]) => { p.seen = e.isIntersecting, drawn = -1; }).observe(place);
     plots.push(p);
   };
   const names = [...all.tau_ext.keys()].sort((a, b) => order(a) - order(b)), joints = Math.max(0, ...[...all.tau_ext.values()].map((r) => r.width));
@@ -235,6 +235,7 @@ document.getElementById('controls').append(
   select('seconds', ['5', '10', '30', '60', '300', '600'], '10', (s) => { state.seconds = Number(s); choose(null); }), ' s ',
   element('button', {onclick: () => shift(-0.5)}, '◀ earlier'), element('button', {onclick: () => shift(0.5)}, 'later ▶'),
   element('button', {onclick: () => save('live.csv', 'text/csv', csv())}, 'CSV of what is seen'));
+addEventListener('resize', () => { layout = '', drawn = -1; });
 let before = 0;
 setInterval(() => {
   document.getElementById('status').textContent = `${seen.text}; ${seen.messages - before} messages/s, ${seen.messages} in all, ${seen.lost} lost, `
