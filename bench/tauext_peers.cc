@@ -81,8 +81,11 @@ int main(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     std::optional<AtomicFile> file;  // made before the work
     if (!out.empty()) file.emplace(out);
+    Progress progress("timing");
     const std::vector<peers::Peer> all =
-        peers::compare(peers::module_path(), with_lock(name, lock), scenario, bandwidth, rounds);
+        peers::compare(peers::module_path(), with_lock(name, lock), scenario, bandwidth, rounds,
+                       progress.callback());
+    progress.clear();
     print(all, out == "-" ? stderr : stdout);
     if (file) write(all, name, scenario, bandwidth, *file);
     return kGood;

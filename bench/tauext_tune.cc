@@ -84,8 +84,13 @@ Metric metric_of(const std::string& key) {
 std::vector<Limit> limits_of(const std::vector<std::string>& texts) {
   std::vector<Limit> limits;
   for (const std::string& text : texts) {
-    const auto [key, value] = key_and_value(text);
-    limits.emplace_back(metric_of(key), detail::number_of(key, value, -1e12, 1e12));
+    const std::size_t equals = text.find('=');
+    if (equals == text.npos)
+      throw std::invalid_argument(
+          fmt::format("--limit {}: METRIC=X, like {}=1", text, key_of(metric_of(text))));
+    const std::string key = text.substr(0, equals);
+    limits.emplace_back(metric_of(key),
+                        detail::number_of("--limit " + key, text.substr(equals + 1), -1e12, 1e12));
   }
   return limits;
 }
@@ -107,8 +112,8 @@ using Scores = std::vector<std::vector<Score>>;  // by run, by seed
 // scores on simulated runs
 class Simulated {
  public:
-  Simulated(const Flags& f, const Robot& r, const std::string& seeds)
-      : robot_(r.name()), scenarios_(scenarios_of(f, r)), scorer_(f.suite, seeds_of(seeds)) {}
+  Simulated(const Flags& f, const Robot& r, const char* flag, const std::string& seeds)
+      : robot_(r.name()), scenarios_(scenarios_of(f, r)), scorer_(f.suite, seeds_of(seeds, flag)) {}
 
   std::vector<SeededRow> rows(const std::vector<TunedPair>& pairs) {
     std::vector<Entry> entries;
@@ -165,12 +170,12 @@ std::string name_of(const TunedPair& p) {
 }
 
 void print_found(const Tuned& t, Metric minimize, std::FILE* to) {
-  const auto value = [&](double x) {
-    return std::isnan(x) ? "never, or beyond a limit" : fmt::format("{:.4g}", x);
+  const auto value = [&](double x, const std::string& breaks) {
+    return std::isnan(x) ? breaks : fmt::format("{} {:.4g}", key_of(minimize), x);
   };
-  fmt::print(to, "start  {}  {} {}\n{:<5}  {}  {}\n{} evaluations\n", name_of(t.start),
-             key_of(minimize), value(t.of_start), std::isnan(t.of_best) ? "nearest" : "best",
-             name_of(t.best), value(t.of_best), t.evaluations);
+  fmt::print(to, "start  {}  {}\n{:<5}  {}  {}\n{} evaluations\n", name_of(t.start),
+             value(t.of_start, t.start_breaks), std::isnan(t.of_best) ? "nearest" : "best",
+             name_of(t.best), value(t.of_best, t.best_breaks), t.evaluations);
   if (!t.at_bound.empty())
     fmt::print(to, "at an end of its range: {}; a wider one may have a better value\n",
                fmt::join(t.at_bound, ", "));
@@ -191,7 +196,7 @@ void require_flags(const Flags& f) {
   }
   if (!f.logs.empty()) return;
   for (const std::uint64_t seed : seeds_of(f.seeds)) {
-    const std::vector<std::uint64_t> test = seeds_of(f.test_seeds);
+    const std::vector<std::uint64_t> test = seeds_of(f.test_seeds, "--test_seeds");
     if (std::count(test.begin(), test.end(), seed) > 0)
       throw std::invalid_argument(fmt::format("seed {} is in both --seeds and --test_seeds", seed));
   }
@@ -212,6 +217,7 @@ int run(const CLI::App& app, Flags& f) {
       f.keys, f.pair, r.estimator_fields(f.pair.estimator),
       f.pair.detector.empty() ? std::vector<FieldHelp>() : r.detector_fields(f.pair.detector));
   o.pair = without(f.pair, o.keys);
+  o.check = [&](const TunedPair& p) { r.check(p.estimator, p.detector); };
   if (f.minimize.empty())
     f.minimize = key_of(f.pair.detector.empty() ? Metric::kRmse : Metric::kDelay);
   o.minimize = metric_of(f.minimize);
@@ -226,7 +232,7 @@ int run(const CLI::App& app, Flags& f) {
   o.progress = progress.callback();
   std::FILE* const words = format == TableFormat::kText ? stdout : stderr;
   if (f.logs.empty()) {
-    Simulated training(f, r, f.seeds), test(f, r, f.test_seeds);
+    Simulated training(f, r, "--seeds", f.seeds), test(f, r, "--test_seeds", f.test_seeds);
     o.score = [&](const TunedPair& p) { return training(p); };
     const Tuned t = tune(o);
     print_found(t, o.minimize, words);

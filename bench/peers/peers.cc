@@ -62,19 +62,20 @@ std::vector<Entry> entries_of(const std::string& module, const Robot& r, const T
   return all;
 }
 
+// before a trace is made
+void require_compiled(const Robot& r) {
+  if (r.dof() != 3 && r.dof() != 6 && r.dof() != 7)
+    throw std::invalid_argument(
+        fmt::format("{} has {} joint{}; peers are compiled for 3, 6 and 7 (--lock keeps joints of "
+                    "a file's robot still)",
+                    r.name(), r.dof(), r.dof() == 1 ? "" : "s"));
+}
+
 std::vector<Entry> entries(const std::string& module, const Robot& r, const Trace& trace,
                            const Model& model, double w) {
-  switch (r.dof()) {
-    case 3:
-      return entries_of<3>(module, r, trace, model, w);
-    case 6:
-      return entries_of<6>(module, r, trace, model, w);
-    case 7:
-      return entries_of<7>(module, r, trace, model, w);
-    default:
-      throw std::invalid_argument(
-          fmt::format("{} has {} joints; peers are compiled for 3, 6 and 7", r.name(), r.dof()));
-  }
+  if (r.dof() == 3) return entries_of<3>(module, r, trace, model, w);
+  if (r.dof() == 6) return entries_of<6>(module, r, trace, model, w);
+  return entries_of<7>(module, r, trace, model, w);
 }
 
 }  // namespace
@@ -95,14 +96,17 @@ void* function_of(const std::string& module, const char* name) {
 }
 
 std::vector<Peer> compare(const std::string& module, const std::string& name,
-                          const std::string& scenario, double bandwidth, int rounds) {
+                          const std::string& scenario, double bandwidth, int rounds,
+                          const std::function<void(double)>& progress) {
   const Robot& r = robot(name);
+  require_compiled(r);
   const Scenario& s = scenario_of(r, scenario);
   const Model model = r.load_for(s);
   const Trace trace = record(model, s);
   std::vector<Entry> all = entries(module, r, trace, model, bandwidth);
   for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner->run(), s.score_from);
   for (int i = 0; i < rounds; ++i) {
+    if (progress) progress(1. * i / rounds);
     for (Entry& e : all) e.rounds.push_back(batch_seconds(*e.runner));
   }
   std::vector<Peer> peers;

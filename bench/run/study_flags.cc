@@ -101,7 +101,7 @@ std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
 }
 
 // one, or the ends of a range
-void add_seeds(const std::string& part, std::vector<std::uint64_t>& to) {
+void add_seeds(const std::string& part, const char* flag, std::vector<std::uint64_t>& to) {
   constexpr std::size_t kMost = 10'000;
   const std::size_t dash = part.find('-');
   const std::string first = part.substr(0, dash),
@@ -109,31 +109,31 @@ void add_seeds(const std::string& part, std::vector<std::uint64_t>& to) {
   for (const std::string& end : {first, last}) {
     if (const std::string why = whole_number(end); !why.empty())
       throw std::invalid_argument(
-          fmt::format("--seeds: '{}' is no seed, nor a range like 1-30", part));
+          fmt::format("{}: '{}' is no seed, nor a range like 1-30", flag, part));
   }
   const std::uint64_t from = std::stoull(first), until = std::stoull(last);
   if (until < from)
-    throw std::invalid_argument(fmt::format(
-        "--seeds: '{}' ends before it begins; {}-{} has these seeds", part, last, first));
+    throw std::invalid_argument(fmt::format("{}: '{}' ends before it begins; {}-{} has these seeds",
+                                            flag, part, last, first));
   if (until - from >= kMost || to.size() + (until - from) >= kMost)
     throw std::invalid_argument(
-        fmt::format("--seeds: with '{}' they are more than {}; take fewer", part, kMost));
+        fmt::format("{}: with '{}' they are more than {}; take fewer", flag, part, kMost));
   for (std::uint64_t n = 0; n <= until - from; ++n) to.push_back(from + n);
 }
 
 }  // namespace
 
-std::vector<std::uint64_t> seeds_of(const std::string& text) {
+std::vector<std::uint64_t> seeds_of(const std::string& text, const char* flag) {
   std::vector<std::uint64_t> all;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
-    add_seeds(text.substr(at, end - at), all);
+    add_seeds(text.substr(at, end - at), flag, all);
     at = end + 1;
   }
   std::vector<std::uint64_t> sorted = all;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    throw std::invalid_argument(fmt::format("--seeds {}: one is there twice", text));
+    throw std::invalid_argument(fmt::format("{} {}: one is there twice", flag, text));
   return all;
 }
 

@@ -36,8 +36,9 @@ struct StudyFlags {
 };
 
 /// Numbers and ranges apart by commas, like 1-30,40.
+/// @param flag that has them, for errors
 /// @throws std::invalid_argument for anything else, and for more than 10,000 of them
-std::vector<std::uint64_t> seeds_of(const std::string& text);
+std::vector<std::uint64_t> seeds_of(const std::string& text, const char* flag = "--seeds");
 
 /// Adds --reliability, --equal-bandwidth, --pareto and --out of these, and --format of all tables.
 void add_study_flags(CLI::App& app, StudyFlags& flags);

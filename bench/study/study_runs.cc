@@ -12,6 +12,7 @@
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
+#include "bench/roster/roster.h"
 #include "mjcf/plant/model_error.h"
 #include "mjcf/record_plain.h"
 #include "mjcf/scenarios/generic.h"
@@ -115,6 +116,7 @@ const StudyRuns& find(const char* study, const std::string& name, bool (*has)(co
   static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
   if (!name.empty()) robot(name);  // an unknown one is no robot without runs
   std::vector<std::string> with;
+  const char* files = "";
   bool own = name.empty();
   for (const StudyRuns& r : all) {
     own = own || r.robot == name;
@@ -123,8 +125,13 @@ const StudyRuns& find(const char* study, const std::string& name, bool (*has)(co
     with.push_back(r.robot);
   }
   if (!own && has(of_any(name))) return of_any(name);
-  throw std::invalid_argument(fmt::format("the {} study has no runs for {}; it has them for {}",
-                                          study, name, fmt::join(with, ", ")));
+  for (const std::string_view other : kRobotsByMjcf) {
+    if (!has(of_any(std::string(other)))) continue;
+    with.emplace_back(other);
+    files = ", and for robots from files";
+  }
+  throw std::invalid_argument(fmt::format("the {} study has no runs for {}; it has them for {}{}",
+                                          study, name, fmt::join(with, ", "), files));
 }
 
 // what has the name of a known one; its keys are checked by building it

@@ -13,17 +13,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bench/roster/specification.h"
-
 namespace tauext {
 namespace {
 
 constexpr double kUnbearable = 1e30;  // from here on something never comes, or breaks a limit
 constexpr double kNothing = 1e-9;     // what 0 counts as, which has no logarithm
-
-double largest(const std::vector<double>& values) {
-  return *std::max_element(values.begin(), values.end());
-}
 
 // the mean of a metric over the seeds that have it; nothing where no seed is asked for it
 struct Mean {
@@ -56,11 +50,12 @@ class Search {
     for (const TunedKey& k : o.keys) {
       low_.push_back(std::log(k.low));
       high_.push_back(std::log(k.high));
-      first_.push_back(std::clamp(std::log(largest(k.start)), low_.back(), high_.back()));
+      first_.push_back(std::clamp(std::log(k.largest_start()), low_.back(), high_.back()));
     }
   }
 
   Tuned run() {
+    check_ends();
     tuned_.start = pair_at(first_);
     const std::vector<std::vector<Score>> at_start = o_.score(tuned_.start);
     tuned_.evaluations = 1;
@@ -69,6 +64,7 @@ class Search {
     best_ = first_;
     best_value_ = objective(at_start);
     tuned_.of_start = in_units(best_value_);
+    tuned_.start_breaks = tuned_.best_breaks = broken_by(at_start);
     search(nlopt::GN_DIRECT_L, o_.evaluations / 2);
     search(nlopt::LN_SBPLX, o_.evaluations);
     tuned_.best = pair_at(best_);
@@ -88,13 +84,56 @@ class Search {
     TunedPair pair = o_.pair;
     for (std::size_t i = 0; i < o_.keys.size(); ++i) {
       const TunedKey& k = o_.keys[i];
-      const double factor = std::exp(x[i]) / largest(k.start);
+      const double factor = std::exp(x[i]) / k.largest_start();
       std::vector<std::string> values;
       for (const double v : k.start) values.push_back(fmt::format("{:.4g}", v * factor));
       std::string& specification = k.of_detector ? pair.detector : pair.estimator;
       specification += fmt::format(":{}={}", k.key, fmt::join(values, "/"));
     }
     return pair;
+  }
+
+  void check_ends() const {
+    if (!o_.check) return;
+    for (std::size_t i = 0; i < o_.keys.size(); ++i) {
+      for (const double end : {low_[i], high_[i]}) {
+        Place x = first_;
+        x[i] = end;
+        try {
+          o_.check(pair_at(x));
+        } catch (const std::invalid_argument& e) {
+          const TunedKey& k = o_.keys[i];
+          throw std::invalid_argument(fmt::format(
+              "--tune {}: from {:g} to {:g} is no range of it, {}={} sets another one: {}", k.key,
+              k.low, k.high, k.key, "LOW:HIGH", e.what()));
+        }
+      }
+    }
+  }
+
+  // what the objective counts as broken, in words
+  std::string broken_by(const std::vector<std::vector<Score>>& runs) const {
+    std::vector<std::string> all;
+    double never = 0;
+    for (const std::vector<Score>& seeds : runs) {
+      if (const auto m = mean_of(seeds, o_.minimize)) never = std::max(never, m->never);
+    }
+    if (never > 0)
+      all.push_back(
+          fmt::format("no {} in {:.0f} % of the seeds", key_of(o_.minimize), 100 * never));
+    for (const auto& [metric, limit] : o_.limits) {
+      const std::vector<Score>* worst = nullptr;
+      for (const std::vector<Score>& seeds : runs) {
+        if (excess(seeds, metric, limit) > (worst ? excess(*worst, metric, limit) : 0))
+          worst = &seeds;
+      }
+      if (worst == nullptr) continue;
+      const Mean m = mean_of(*worst, metric).value();
+      all.push_back(m.never < 1 ? fmt::format("{} is {:.4g}, and its limit {:g}", key_of(metric),
+                                              m.value, limit)
+                                : fmt::format("{} never comes", key_of(metric)));
+    }
+    return fmt::format("{}", fmt::join(all, "; "));
   }
 
   double objective(const std::vector<std::vector<Score>>& runs) const {
@@ -134,14 +173,18 @@ class Search {
   double evaluate(const Place& x) {
     const TunedPair pair = pair_at(x);
     const std::string name = pair.estimator + "+" + pair.detector;
-    auto known = known_.find(name);
-    if (known == known_.end()) {
-      known = known_.emplace(name, objective(o_.score(pair))).first;
-      ++tuned_.evaluations;
-      if (o_.progress) o_.progress(std::min(1., 1. * tuned_.evaluations / o_.evaluations));
+    const auto known = known_.find(name);
+    if (known != known_.end()) return known->second;
+    const auto runs = o_.score(pair);
+    const double value = known_[name] = objective(runs);
+    ++tuned_.evaluations;
+    if (o_.progress) o_.progress(std::min(1., 1. * tuned_.evaluations / o_.evaluations));
+    if (value < best_value_) {
+      best_value_ = value;
+      best_ = x;
+      tuned_.best_breaks = broken_by(runs);
     }
-    if (known->second < best_value_) best_value_ = known->second, best_ = x;
-    return known->second;
+    return value;
   }
 
   // until so many evaluations have been made in all
@@ -188,94 +231,7 @@ class Search {
   Tuned tuned_;
 };
 
-const FieldHelp* find(const std::vector<FieldHelp>& fields, const std::string& key) {
-  const auto it =
-      std::find_if(fields.begin(), fields.end(), [&](const FieldHelp& f) { return f.key == key; });
-  return it == fields.end() ? nullptr : &*it;
-}
-
-// of each joint, or of all; none if it is no number
-std::vector<double> numbers_in(const std::string& key, const std::string& text) {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  try {
-    const auto n = std::count(text.begin(), text.end(), '/') + 1;
-    return detail::numbers_of(key, text, static_cast<int>(n), -kMost, kMost);
-  } catch (const std::invalid_argument&) {
-    return {};
-  }
-}
-
 }  // namespace
-
-std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const TunedPair& pair,
-                              const std::vector<FieldHelp>& of_estimator,
-                              const std::vector<FieldHelp>& of_detector) {
-  std::vector<TunedKey> keys;
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('='),
-                      colon = text.find(':', std::min(equals, text.size()));
-    TunedKey k;
-    k.key = text.substr(0, equals);
-    const FieldHelp* const e = find(of_estimator, k.key);
-    const FieldHelp* const d = pair.detector.empty() ? nullptr : find(of_detector, k.key);
-    if ((e == nullptr) == (d == nullptr))
-      throw std::invalid_argument(
-          fmt::format("--tune {}: {}; {}: {}{}", text,
-                      e != nullptr            ? "both have that key"
-                      : pair.detector.empty() ? "unknown key"
-                                              : "neither has that key",
-                      pair.estimator, describe_fields(of_estimator),
-                      pair.detector.empty()
-                          ? ""
-                          : fmt::format("; {}: {}", pair.detector, describe_fields(of_detector))));
-    k.of_detector = d != nullptr;
-    const FieldHelp& field = d != nullptr ? *d : *e;
-    if (field.unit.empty())
-      throw std::invalid_argument(fmt::format(
-          "--tune {}: a choice ({}) cannot be tuned; tune with each of them", text, field.range));
-    const auto set = key_of(d != nullptr ? pair.detector : pair.estimator, k.key);
-    k.start = numbers_in(k.key, set.value_or(field.value));
-    if (equals != text.npos) {
-      const std::vector<double> low =
-                                    numbers_in(k.key, text.substr(equals + 1, colon - equals - 1)),
-                                high = colon == text.npos
-                                           ? low
-                                           : numbers_in(k.key, text.substr(colon + 1));
-      if (low.size() != 1 || high.size() != 1 || !(0 < low[0] && low[0] < high[0]))
-        throw std::invalid_argument(
-            fmt::format("--tune {}: KEY=LOW:HIGH, with 0 < LOW < HIGH", text));
-      k.low = low[0], k.high = high[0];
-      if (k.start.empty()) k.start = {std::sqrt(k.low * k.high)};
-    }
-    if (k.start.empty() || !(largest(k.start) > 0))
-      throw std::invalid_argument(fmt::format(
-          "--tune {}: no number above 0 to begin with; {}={} says where it lies, or set it in the "
-          "specification",
-          text, k.key, "LOW:HIGH"));
-    if (k.high > 0 && (largest(k.start) < k.low || largest(k.start) > k.high))
-      throw std::invalid_argument(
-          fmt::format("--tune {}: the start, {:g}, is not between these", text, largest(k.start)));
-    if (k.high == 0) k.low = largest(k.start) / 30, k.high = largest(k.start) * 30;
-    keys.push_back(std::move(k));
-  }
-  return keys;
-}
-
-TunedPair without(const TunedPair& pair, const std::vector<TunedKey>& keys) {
-  const auto stripped = [&](const std::string& text, bool of_detector) {
-    if (text.empty()) return text;
-    const Specification s = parse_specification(text);
-    std::string out = s.name;
-    for (const KeyValues::value_type& set : s.keys) {
-      const bool tuned = std::any_of(keys.begin(), keys.end(), [&](const TunedKey& k) {
-        return k.key == set.first && k.of_detector == of_detector;
-      });
-      if (!tuned) out += ":" + set.first + "=" + set.second;
-    }
-    return out;
-  };
-  return {stripped(pair.estimator, false), stripped(pair.detector, true)};
-}
 
 Tuned tune(const TuneOptions& o) {
   if (o.keys.empty()) throw std::invalid_argument("nothing to tune");

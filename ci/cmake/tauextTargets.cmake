@@ -6,6 +6,9 @@ include_guard(GLOBAL)
 # (not nlohmann/json.hpp: each source would take a second longer)
 set(precompiled <array> <algorithm> <cmath> <functional> <map> <memory> <stdexcept> <string> <vector> <Eigen/LU> <fmt/format.h>
                 <fmt/ranges.h>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # said so that ccache finds it in another folder, too
+  set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH -include-pch <PCH_FILE>)
+endif()
 function(tauext_precompile target position_independent)
   add_library(${target} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/empty.cc)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent} UNITY_BUILD OFF)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -128,10 +129,24 @@ constexpr std::size_t count_members() {
   }
 }
 
+// true if each of the pointers to members is another one
+template <class... At>
+constexpr bool all_differ(const std::tuple<At...>& list) {
+  const auto same = []<class A, class B>(A a, B b) {
+    if constexpr (std::same_as<A, B>) return a == b;
+    return false;
+  };
+  const auto times = [&](auto a) {
+    return std::apply([&](auto... b) { return (0 + ... + same(a, b)); }, list);
+  };
+  return std::apply([&](auto... a) { return ((times(a) == 1) && ...); }, list);
+}
+
 template <class P>
 constexpr auto members_of() {
   constexpr auto all = listed_members<P>();
-  static_assert(std::is_aggregate_v<P> && count_members<P>() == std::tuple_size_v<decltype(all)>,
+  static_assert(std::is_aggregate_v<P> && all_differ(all) &&
+                    count_members<P>() == std::tuple_size_v<decltype(all)>,
                 "Parameters is an aggregate that lists each of its members once, in fields(), or, "
                 "if a specification does not name it, as a pointer to member in unnamed()");
   return all;

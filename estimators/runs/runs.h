@@ -8,8 +8,9 @@
 ///
 /// An estimator over a model can do it (bench/examples/twice.h is one) if
 /// - it computes with the model's number (ScalarOf), which then is a Pack. Where it has to branch,
-///   it asks all(..), or takes each run's by select(..), which doubles have, too; exp, sin and the
-///   like it calls without std::, after `using std::exp`;
+///   it asks all(..), or takes each run's by select(..), after `using tauext::all, tauext::select`,
+///   which doubles have, too. A Pack has abs, copysign, cos, exp, expm1, max, min, sin, sqrt and
+///   tanh, called without std:: after `using std::exp`, and no other function;
 /// - it has `Model`, `For` (the same over another model), parameters(), and is made of a model and
 ///   Parameters;
 /// - Parameters lists all its members in fields(), or in unnamed() those that no specification
@@ -24,6 +25,8 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -38,7 +41,8 @@ namespace tauext {
 template <class E>
 concept ForRuns = TorqueEstimator<E> && requires(E& e, const typename E::Model& model) {
   model.template with<Pack<4>>();
-  typename E::template For<decltype(model.template with<Pack<4>>())>;
+  requires std::same_as < typename E::template For<decltype(model.template with<Pack<4>>())>::Model,
+  decltype(model.template with<Pack<4>>()) > ;
   { e.parameters() } -> std::convertible_to<typename E::Parameters>;
   e.memory();
   E(model, e.parameters());
@@ -179,7 +183,14 @@ class Runs {
   template <std::size_t... I>
   static std::array<E, W> made(const Model& model, const std::array<Parameters, W>& p,
                                std::index_sequence<I...>) {
-    return {E(model, p[I])...};
+    return {made(model, p[I], I)...};
+  }
+  static E made(const Model& model, const Parameters& p, std::size_t run) {
+    try {
+      return E(model, p);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument("run " + std::to_string(run) + ": " + e.what());
+    }
   }
   static std::array<Parameters, W> repeated(const Parameters& p) {
     std::array<Parameters, W> out;

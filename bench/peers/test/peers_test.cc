@@ -68,8 +68,8 @@ TEST(Peers, WhatCannotBeSaysWhy) {
             }).find("/nowhere.so"),
             std::string::npos);
   EXPECT_NE(tauext::test::error_of([] {
-              compare(kModule, "testbed1", "hold", 30, 3);
-            }).find("testbed1 has 1 joints; peers are compiled for 3, 6 and 7"),
+              compare(kModule, "testbed1", "sine", 30, 3);
+            }).find("testbed1 has 1 joint; peers are compiled for 3, 6 and 7"),
             std::string::npos);
 }
 

@@ -50,7 +50,8 @@ const Kernels& choose(const std::vector<const Kernels*>& all, bool (*runs)(const
                     "for several",
                     all.front()->level));
   throw std::invalid_argument(
-      fmt::format("TAUEXT_LEVEL={}: this processor and this build have {}; unset it for the best",
+      fmt::format("TAUEXT_LEVEL={}: this build has, of what this processor runs, {}; without it "
+                  "the best one is taken",
                   asked, fmt::join(known, ", ")));
 }
 

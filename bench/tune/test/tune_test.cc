@@ -60,7 +60,23 @@ TEST(Tune, KeepsALimitAndSaysWhatIsAtABound) {
   o.limits = {{Metric::kRecall, 1}};
   EXPECT_NE(error_of([&] { tune(o); }).find("no run has the metric recall"), std::string::npos);
   o.limits = {{Metric::kNoise, 1e-6}};  // which no place keeps
-  EXPECT_TRUE(std::isnan(tune(o).of_best));
+  const Tuned none = tune(o);
+  EXPECT_TRUE(std::isnan(none.of_best));
+  EXPECT_EQ(none.start_breaks, "noise_Nm is 0.1, and its limit 1e-06");
+  EXPECT_EQ(none.best_breaks, "noise_Nm is 0.01, and its limit 1e-06");
+}
+
+TEST(Tune, AnEndThatCannotBeMadeIsSaidBeforeAnythingIsScored) {
+  TuneOptions o = bowl();
+  o.check = [](const TunedPair& p) {
+    if (number(p.detector, "b") > 5) throw std::invalid_argument("b=10: it must be 0 to 5");
+  };
+  o.score = [](const TunedPair&) -> std::vector<std::vector<Score>> {
+    throw std::invalid_argument("scored");
+  };
+  EXPECT_EQ(error_of([&] { tune(o); }),
+            "--tune b: from 0.01 to 10 is no range of it, b=LOW:HIGH sets another one: b=10: it "
+            "must be 0 to 5");
 }
 
 TEST(Tune, AnErrorOfTheScoreIsItsOwn) {
@@ -88,12 +104,15 @@ TEST(Tune, WhatNeverComesIsWorseThanAnyValue) {
 TEST(Tune, KeysKeepTheProportionsOfJoints) {
   const std::vector<FieldHelp> fields = {{"X", "1", "", "", "600/300/150"},
                                          {"w", "rad/s", "", "", "10"},
-                                         {"bandwidth", "rad/s", "", "", ""}};
+                                         {"bandwidth", "rad/s", "", "", ""},
+                                         {"Ts", "s", "", "", "0"}};
   const TunedPair pair{"ndob:w=20", ""};
   const auto keys = keys_of({"X=60:6000", "w"}, pair, fields, {});
   EXPECT_EQ(keys[0].start, (std::vector<double>{600, 300, 150}));
   EXPECT_NEAR(keys[1].low * keys[1].high, 400, 1e-9) << "about the specification's own value";
   EXPECT_EQ(without(pair, keys).estimator, "ndob");
+  EXPECT_NEAR(keys_of({"Ts=0.1:0.4"}, pair, fields, {})[0].start[0], 0.2, 1e-12)
+      << "a default of 0 is no place to begin";
   TuneOptions o;
   o.pair = {"ndob", ""};
   o.keys = {keys[0]};
