@@ -86,6 +86,7 @@ function(tauext_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} tauext_flags tauext_estimators fmt::fmt GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_options(${name} PRIVATE -Wno-array-bounds $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+  target_compile_options(${name} PRIVATE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)  # the same in any folder
   target_compile_definitions(${name} PRIVATE ${ARG_DEFINITIONS})
   tauext_not_fuzzed(${name})
   if(NOT ARG_FAST)
