@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/program/program.h"
+#include "bench/report/page.h"
 #include "bench/report/provenance.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/run/commands.h"
@@ -81,6 +82,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   }
   const bool suite = !study && !listing && !golden && !commands;
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
+  if (f.report) report::require_page(*f.report, "--report");
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
   const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
   const bool seeds = !f.studies.seeds.empty();

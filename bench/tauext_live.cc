@@ -57,6 +57,7 @@ void add_run_flags(CLI::App& app, live::Options& o) {
   app.add_option("--page", o.page, "show the stream in a browser, at http://127.0.0.1:PORT; 0: any")
       ->type_name("[PORT]")
       ->expected(0, 1)
+      ->check(CLI::Range(0, 65535).description(""))
       ->default_str(std::to_string(live::PageServer::kUsualPort));
   app.add_option(
          "--plotjuggler", o.plotjuggler,

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <set>
+#include <map>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/program/program.h"
@@ -18,11 +20,18 @@ namespace {
 using namespace tauext;
 
 std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
-  std::set<std::string> seen;
+  std::map<std::string, std::string> seen;  // paths by what they hold
   std::vector<ResultFile> all;
   for (const std::string& path : paths) {
-    if (!seen.insert(path).second) throw std::invalid_argument(path + ": is there twice");
-    for (ResultFile& r : report::read_results(path)) all.push_back(std::move(r));
+    for (ResultFile& r : report::read_results(path)) {
+      const auto [before, is_new] = seen.emplace(r.json, path);
+      if (!is_new)
+        throw std::invalid_argument(
+            before->second == path
+                ? fmt::format("{}: is there twice", path)
+                : fmt::format("{}: {} has the same results", path, before->second));
+      all.push_back(std::move(r));
+    }
   }
   return all;
 }
@@ -49,11 +58,14 @@ int main(int argc, char** argv) {
                "print what a file of results must be, as JSON Schema, and stop");
   return run_program(app, argc, argv, [&] {
     if (schema) {
+      if (!paths.empty() || !out.empty())
+        throw std::invalid_argument("--schema prints the schema, and takes nothing else");
       fmt::print("{}", results_schema());
       return kGood;
     }
     if (paths.empty() || out.empty())
       throw std::invalid_argument("files of results and --out FILE.html are needed; see --help");
+    if (out != "-") report::require_page(out, "--out");
     AtomicFile file(out);
     file.write(report::page_of(read_all(paths)));
     file.commit();

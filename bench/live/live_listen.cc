@@ -88,12 +88,27 @@ class Screen {
     return all;
   }
 
+  // in lines of so many columns, broken between words
+  static std::string wrapped(const std::string& text, std::size_t columns) {
+    std::string out;
+    for (std::string line : lines_of(text)) {
+      while (line.size() > columns) {
+        const std::size_t blank = line.rfind(' ', columns);
+        if (blank == line.npos || blank < 3) break;  // a word that long is cut
+        out += line.substr(0, blank) + "\n";
+        line.replace(0, blank, " ");
+      }
+      out += line + "\n";
+    }
+    return out;
+  }
+
   std::string text(const StreamTable& table, double seconds, std::int64_t now) const {
     winsize size{};
     const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0;
     const std::size_t rows = known ? size.ws_row - 1 : 1000, columns = known ? size.ws_col : 1000;
-    std::string head = fmt::format("{}  {:.0f} s", listener_.url(), seconds);
-    const std::string end = table.totals(listener_.refused());
+    std::string below;
+    const std::string end = wrapped(table.totals(listener_.refused()), columns);
     std::string body = table.format(now);
     const auto fits = [&](const std::string& t) {
       const Lines all = lines_of(t);
@@ -102,10 +117,11 @@ class Screen {
     };
     if (!fits(body)) {
       body = table.format_small(now, joint_);
-      head += joint_ == 0 ? "  joints with the largest torque; 1 to 8: that joint"
-                          : fmt::format("  joint {}; 0: those with the largest torque", joint_);
+      below = joint_ == 0 ? "joints with the largest torque; keys 1 to 8: that joint"
+                          : fmt::format("joint {}; key 0: those with the largest torque", joint_);
     }
-    Lines all = lines_of(fmt::format("{}\n\n{}\n{}\n", head, body, end));
+    Lines all = lines_of(
+        fmt::format("{}  {:.0f} s\n{}\n{}\n{}\n", listener_.url(), seconds, below, body, end));
     const std::size_t room = rows > all.size() ? rows - all.size() : 0;
     all.insert(all.end(), events_.end() - std::min<std::ptrdiff_t>(room, events_.size()),
                events_.end());

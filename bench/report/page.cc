@@ -86,4 +86,9 @@ std::vector<ResultFile> read_results(const std::string& path) {
   return results;
 }
 
+void require_page(const std::string& path, const std::string& flag) {
+  if (!path.ends_with(".html"))
+    throw std::invalid_argument(fmt::format("{} {}: a page is FILE.html", flag, path));
+}
+
 }  // namespace tauext::report

@@ -18,4 +18,9 @@ std::string page_of(const std::vector<ResultFile>& results);
 /// checked_result()
 std::vector<ResultFile> read_results(const std::string& path);
 
+/// @param flag that names the path, for the error
+/// @throws std::invalid_argument for another name than FILE.html, by which browsers and
+/// read_results() know a page
+void require_page(const std::string& path, const std::string& flag);
+
 }  // namespace tauext::report

@@ -33,9 +33,10 @@ std::string kind_of(const Json& j, const Json& kinds, const std::string& name) {
     if (ours) known += (known.empty() ? "" : ", ") + properties["format"]["const"].dump();
   }
   throw std::runtime_error(fmt::format(
-      "{}: no file of results: \"format\" is {}, and must be one of {}; or it has \"benchmarks\", "
-      "as tauext-bench --benchmark_out writes it",
-      name, format.dump(), known));
+      "{}: no file of results: {}, and must be one of {}; or it has \"benchmarks\", as "
+      "tauext-bench --benchmark_out writes it",
+      name, format.is_null() ? "\"format\" is not there" : "\"format\" is " + format.dump(),
+      known));
 }
 
 // the first thing that is wrong, by its JSON pointer, like /benchmarks/2/rmse_Nm

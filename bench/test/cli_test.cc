@@ -161,6 +161,8 @@ TEST_F(Programs, ListNamesEntriesAndTheKeysOfSpecifications) {
 
 TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
   write("log.csv", "t,q1,qd1,tau1\n0,0,0,0\n0.001,0,0,0\n");
+  for (const char* file : {"s.json", "copy.json"})
+    write(file, R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm": 1}]})");
   const std::vector<std::pair<std::string, std::string>> refused = {
       {"tauext-bench --golden g.tsv --benchmark_out=r.json", "--benchmark_out and"},
       {"tauext-bench --golden g.tsv --paper", "--paper goes with the suite"},
@@ -177,6 +179,11 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
       {"tauext-detect --calibrate x.json --conditions known_0", "--conditions goes with a study"},
       {"tauext-detect --thresholds x.json --margin 2", "--margin goes with training"},
       {"tauext-detect --conditions known_0,known_0", "condition 'known_0' is named twice"},
+      {"tauext-report --schema r.json", "--schema prints the schema, and takes nothing else"},
+      {"tauext-report s.json --out r.txt", "--out r.txt: a page is FILE.html"},
+      {"tauext-bench --report r.txt", "--report r.txt: a page is FILE.html"},
+      {"tauext-report s.json s.json --out r.html", "s.json: is there twice"},
+      {"tauext-report s.json copy.json --out r.html", "copy.json: s.json has the same results"},
       {"tauext-detect --hours -1", "a study has 0 to 1000 hours, not -1"},
       {"tauext-live --listen --scenario step", "exactly one of"},
       {"tauext-live --listen --detector cusum", "--listen shows streams"},
@@ -189,7 +196,7 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
     EXPECT_EQ(o.code, 2) << command;
     EXPECT_TRUE(o.says(why)) << command << '\n' << o.text;
   }
-  for (const char* file : {"g.tsv", "r.json", "x.json", "e.csv"})
+  for (const char* file : {"g.tsv", "r.json", "x.json", "e.csv", "r.txt", "r.html"})
     EXPECT_FALSE(exists(file)) << file;
 }
 

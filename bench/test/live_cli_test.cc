@@ -236,7 +236,10 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   };
   refuses("", "exactly one of --scenario, --from, --subscribe and --listen is required");
   refuses("--robot wallmobot3 --scenario step --from x.csv --estimator ekf", "one of");
-  refuses("--robot wallmobot3 --scenario step", "--robot and --estimator are required");
+  refuses("--robot wallmobot3 --scenario step", "tauext-live: --estimator is required");
+  refuses("--scenario step --estimator ekf", "tauext-live: --robot is required");
+  refuses("--robot wallmobot3 --scenario step --estimator ekf --page abc",
+          "--page: Value abc not in range 0 to 65535");
   refuses("--robot wallmobot9 --scenario step --estimator ekf", "unknown robot 'wallmobot9'");
   refuses("--robot wallmobot3 --scenario stepp --estimator ekf", "unknown scenario 'stepp'");
   refuses("--robot wallmobot3 --scenario step --estimator ekff", "unknown estimator 'ekff'");

@@ -96,10 +96,10 @@ class Rows {
 const QUANTITIES = {tau_ext: 'N m', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
 const FLOORS = {tau_ext: 0.02, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
 const seen = {messages: 0, lost: 0, late: 0, rejected: 0, frames: 0, text: ''};
-let all, next, marks, contacts, newest;
+let all, next, marks, contacts, newest, oldest;
 function forget() {
   all = {tau_ext: new Map(), statistic: new Map(), q: new Map(), qd: new Map(), tau: new Map()};
-  next = new Map(), marks = [], contacts = [], newest = -Infinity;
+  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity;
 }
 forget();
 function keep(quantity, who, t, low, high = low) {
@@ -122,7 +122,7 @@ function take(channel, m) {
   if (m.type === 'summary_t' || m.type === 'force_t') return;
   const t = m.utime / 1e6, pair = `${m.estimator}+${m.detector}`;
   if (!in_turn(m.type === 'detection_t' ? pair : channel, m)) return;
-  newest = Math.max(newest, t);
+  [oldest, newest] = [Math.min(oldest, t), Math.max(newest, t)];
   if (m.type === 'detection_t') {
     keep('statistic', pair, t, [m.score]);
     const contact = TYPES.get('detection_t').names_of('contact')[m.contact] ?? '?';
@@ -157,7 +157,10 @@ function take_frame(buffer) {
 
 // ---- what is seen: the last seconds, or what was chosen
 const state = {seconds: 10, paused: null};  // paused: [from, to]
-const window_now = () => state.paused ?? [newest - state.seconds, newest];
+const window_now = () => {
+  const end = Math.max(newest, oldest + state.seconds);  // a time before the first sample is none
+  return state.paused ?? [end - state.seconds, end];
+};
 const order = (who) => who === 'reference' ? -1 : [...all.tau_ext.keys()].filter((w) => w !== 'reference').indexOf(who.split('+')[0]);
 const style_of = (who) => ({width: 1, ...(order(who) < 0 ? {color: themed('--truth'), dash: []} : look(order(who)))});  // a pixel: wider takes longer
 let layout = '', plots = [];
@@ -225,7 +228,7 @@ function connect() {
   socket.onmessage = ({data}) => take_frame(data);
   socket.onopen = () => { seen.text = 'connected'; };
   socket.onclose = () => {
-    seen.text = 'the stream is over';
+    seen.text = 'the stream is over; asked for again every 2 s';
     setTimeout(connect, 2000);
   };
 }

@@ -25,7 +25,7 @@ void expect_error(const std::string& text, const std::string& words) {
 
 TEST(ResultFiles, SayWhichElementIsWrong) {
   expect_error("{", "no JSON: ");
-  expect_error("[1]", "no file of results: \"format\" is null, and must be one of ");
+  expect_error("[1]", "no file of results: \"format\" is not there, and must be one of ");
   expect_error(R"({"format": "tauext-seeds-2"})",
                "no file of results: \"format\" is \"tauext-seeds-2\"");
   expect_error(R"({"benchmarks": []})",
