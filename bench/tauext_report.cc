@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -23,14 +24,15 @@ std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
   std::map<std::string, std::string> seen;  // paths by what they hold
   std::vector<ResultFile> all;
   for (const std::string& path : paths) {
+    if (std::count(paths.begin(), paths.end(), path) > 1)
+      throw std::invalid_argument(path + ": is there twice");
     for (ResultFile& r : report::read_results(path)) {
       const auto [before, is_new] = seen.emplace(r.json, path);
-      if (!is_new)
+      if (!is_new && before->second != path)
         throw std::invalid_argument(
-            before->second == path
-                ? fmt::format("{}: is there twice", path)
-                : fmt::format("{}: {} has the same results", path, before->second));
-      all.push_back(std::move(r));
+            fmt::format("{}: {} has the same results", path, before->second));
+      if (is_new)  // a page of ours may hold them twice
+        all.push_back(std::move(r));
     }
   }
   return all;

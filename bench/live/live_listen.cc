@@ -94,7 +94,8 @@ class Screen {
     for (std::string line : lines_of(text)) {
       while (line.size() > columns) {
         const std::size_t blank = line.rfind(' ', columns);
-        if (blank == line.npos || blank < 3) break;  // a word that long is cut
+        if (blank == line.npos || blank < 3)
+          break;  // a word that long, and what follows it, is cut
         out += line.substr(0, blank) + "\n";
         line.replace(0, blank, " ");
       }

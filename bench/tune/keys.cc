@@ -74,7 +74,8 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
         throw std::invalid_argument(
             fmt::format("--tune {}: KEY=LOW:HIGH, with 0 < LOW < HIGH", text));
       k.low = low[0], k.high = high[0];
-      if (k.start.empty() || !(k.largest_start() > 0)) k.start = {std::sqrt(k.low * k.high)};
+      if (!set && (k.start.empty() || !(k.largest_start() > 0)))
+        k.start = {std::sqrt(k.low) * std::sqrt(k.high)};
     }
     if (k.start.empty() || !(k.largest_start() > 0))
       throw std::invalid_argument(fmt::format(

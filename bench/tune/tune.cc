@@ -95,6 +95,7 @@ class Search {
 
   void check_ends() const {
     if (!o_.check) return;
+    o_.check(pair_at(first_));
     for (std::size_t i = 0; i < o_.keys.size(); ++i) {
       for (const double end : {low_[i], high_[i]}) {
         Place x = first_;
@@ -104,23 +105,29 @@ class Search {
         } catch (const std::invalid_argument& e) {
           const TunedKey& k = o_.keys[i];
           throw std::invalid_argument(fmt::format(
-              "--tune {}: from {:g} to {:g} is no range of it, {}={} sets another one: {}", k.key,
-              k.low, k.high, k.key, "LOW:HIGH", e.what()));
+              "--tune {}: its range, {:g} to {:g}, has an end that cannot be made ({}); --tune "
+              "{}=LOW:HIGH sets another range",
+              k.key, k.low, k.high, e.what(), k.key));
         }
       }
     }
   }
 
-  // what the objective counts as broken, in words
+  // what the objective counts as broken, in words: of each metric that of the worst scenario
   std::string broken_by(const std::vector<std::vector<Score>>& runs) const {
     std::vector<std::string> all;
+    const auto missing = [&](Metric m, double never) {
+      if (never >= 1)
+        all.push_back(fmt::format("{} never comes", key_of(m)));
+      else if (never > 0)
+        all.push_back(fmt::format("{} is missing for {:.2g} % of the seeds of a scenario",
+                                  key_of(m), 100 * never));
+    };
     double never = 0;
     for (const std::vector<Score>& seeds : runs) {
       if (const auto m = mean_of(seeds, o_.minimize)) never = std::max(never, m->never);
     }
-    if (never > 0)
-      all.push_back(
-          fmt::format("no {} in {:.0f} % of the seeds", key_of(o_.minimize), 100 * never));
+    missing(o_.minimize, never);
     for (const auto& [metric, limit] : o_.limits) {
       const std::vector<Score>* worst = nullptr;
       for (const std::vector<Score>& seeds : runs) {
@@ -129,9 +136,11 @@ class Search {
       }
       if (worst == nullptr) continue;
       const Mean m = mean_of(*worst, metric).value();
-      all.push_back(m.never < 1 ? fmt::format("{} is {:.4g}, and its limit {:g}", key_of(metric),
-                                              m.value, limit)
-                                : fmt::format("{} never comes", key_of(metric)));
+      const bool over = is_more_better(metric) ? m.value < limit : m.value > limit;
+      if (m.never < 1 && over)
+        all.push_back(
+            fmt::format("{} is {:.4g}, and its limit is {:g}", key_of(metric), m.value, limit));
+      missing(metric, m.never);
     }
     return fmt::format("{}", fmt::join(all, "; "));
   }

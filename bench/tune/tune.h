@@ -44,9 +44,10 @@ struct Tuned {
   double of_start = 0;    ///< [the metric's unit] the objective; NaN if something never comes, or a
                           ///< limit is broken
   double of_best = 0;     ///< likewise
-  std::string start_breaks, best_breaks;  ///< why it is NaN, in words
-  int evaluations = 0;                    ///< that were made
-  std::vector<std::string> at_bound;      ///< keys whose best value is at an end of their range
+  std::string start_breaks;  ///< what is missing or breaks a limit, in words; "" if nothing does
+  std::string best_breaks;   ///< as start_breaks, of best
+  int evaluations = 0;       ///< that were made
+  std::vector<std::string> at_bound;  ///< keys whose best value is at an end of their range
 };
 
 /// @throws std::invalid_argument for a range with an end that cannot be made, and if no run has the

@@ -102,6 +102,14 @@ struct RubsMore : WallMoBot3 {
 static_assert(TorqueEstimator<MomentumObserver<RubsMore>>);
 static_assert(ForRuns<Mo1> && !ForRuns<MomentumObserver<RubsMore>>);
 
+// of an arm of several runs it would be that of one
+struct Forgetful : Mo1 {
+  using Mo1::Mo1;
+  template <class Other>
+  using For = Forgetful;
+};
+static_assert(TorqueEstimator<Forgetful> && !ForRuns<Forgetful>);
+
 // marks every tenth of a second, whatever happens
 struct Nervous {
   static constexpr const char* kName = "nervous";

@@ -189,6 +189,7 @@ function lay_out() {
 }
 
 function choose(window) {
+  if (!window?.every(Number.isFinite)) window = null;  // nothing has come yet
   state.paused = window;
   document.getElementById('pause').textContent = window ? 'follow' : 'pause';
   drawn = -1;

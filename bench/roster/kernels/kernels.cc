@@ -49,10 +49,10 @@ const Kernels& choose(const std::vector<const Kernels*>& all, bool (*runs)(const
         fmt::format("this build is for {}, and this processor is not; CMake's TAUEXT_LEVELS builds "
                     "for several",
                     all.front()->level));
-  throw std::invalid_argument(
-      fmt::format("TAUEXT_LEVEL={}: this build has, of what this processor runs, {}; without it "
-                  "the best one is taken",
-                  asked, fmt::join(known, ", ")));
+  throw std::invalid_argument(fmt::format(
+      "TAUEXT_LEVEL={}: no such level here; this build and this processor both have {}; "
+      "unset it to take the best one",
+      asked, fmt::join(known, ", ")));
 }
 
 const Kernels& kernels() {

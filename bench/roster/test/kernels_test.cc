@@ -21,8 +21,8 @@ TEST(Kernels, TheHighestLevelThatRunsIsTaken) {
   EXPECT_EQ(&choose(all, every, "x86-64-v2"), &v2);
   EXPECT_EQ(&choose(all, every, "any"), &any);
   EXPECT_EQ(error_of([&] { choose(all, old, "x86-64-v3"); }),
-            "TAUEXT_LEVEL=x86-64-v3: this build has, of what this processor runs, any, x86-64-v2; "
-            "without it the best one is taken");
+            "TAUEXT_LEVEL=x86-64-v3: no such level here; this build and this processor both have "
+            "any, x86-64-v2; unset it to take the best one");
 }
 
 TEST(Kernels, ABuildForABetterProcessorSaysSo) {

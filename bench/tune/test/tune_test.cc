@@ -62,8 +62,8 @@ TEST(Tune, KeepsALimitAndSaysWhatIsAtABound) {
   o.limits = {{Metric::kNoise, 1e-6}};  // which no place keeps
   const Tuned none = tune(o);
   EXPECT_TRUE(std::isnan(none.of_best));
-  EXPECT_EQ(none.start_breaks, "noise_Nm is 0.1, and its limit 1e-06");
-  EXPECT_EQ(none.best_breaks, "noise_Nm is 0.01, and its limit 1e-06");
+  EXPECT_EQ(none.start_breaks, "noise_Nm is 0.1, and its limit is 1e-06");
+  EXPECT_EQ(none.best_breaks, "noise_Nm is 0.01, and its limit is 1e-06");
 }
 
 TEST(Tune, AnEndThatCannotBeMadeIsSaidBeforeAnythingIsScored) {
@@ -75,8 +75,8 @@ TEST(Tune, AnEndThatCannotBeMadeIsSaidBeforeAnythingIsScored) {
     throw std::invalid_argument("scored");
   };
   EXPECT_EQ(error_of([&] { tune(o); }),
-            "--tune b: from 0.01 to 10 is no range of it, b=LOW:HIGH sets another one: b=10: it "
-            "must be 0 to 5");
+            "--tune b: its range, 0.01 to 10, has an end that cannot be made (b=10: it must be 0 "
+            "to 5); --tune b=LOW:HIGH sets another range");
 }
 
 TEST(Tune, AnErrorOfTheScoreIsItsOwn) {
@@ -99,6 +99,25 @@ TEST(Tune, WhatNeverComesIsWorseThanAnyValue) {
   const double a = number(tune(o).best.estimator, "a");
   EXPECT_LE(a, 15);
   EXPECT_GT(a, 13);
+}
+
+TEST(Tune, SaysWhatIsMissingAndNamesNoLimitThatIsKept) {
+  TuneOptions o = bowl();
+  const double none = std::nan("");
+  o.evaluations = 3;
+  o.limits = {{Metric::kNoise, 1}};
+  o.score = [&](const TunedPair&) -> std::vector<std::vector<Score>> {
+    return {{score_of(1, 0.5), score_of(1, none), score_of(1, none), score_of(none, 0.5)}};
+  };
+  EXPECT_EQ(tune(o).start_breaks,
+            "rmse_Nm is missing for 25 % of the seeds of a scenario; noise_Nm is missing for 50 % "
+            "of the seeds of a scenario");
+  o.score = [&](const TunedPair&) -> std::vector<std::vector<Score>> {
+    return {{score_of(1, 2), score_of(1, none)}, {score_of(none, 0.5)}};
+  };
+  EXPECT_EQ(tune(o).start_breaks,
+            "rmse_Nm never comes; noise_Nm is 2, and its limit is 1; noise_Nm is missing for 50 % "
+            "of the seeds of a scenario");
 }
 
 TEST(Tune, KeysKeepTheProportionsOfJoints) {
