@@ -100,10 +100,15 @@ std::vector<std::string> scenarios_of(const Flags& f, const Robot& r) {
   if (!f.scenario.empty()) return f.scenario;
   std::vector<std::string> wanted = {"step", "sine", "in_motion"};
   if (!f.pair.detector.empty()) wanted = {"collision", "blow", "push"};
-  std::vector<std::string> there;
+  std::vector<std::string> all, there;
   for (const Scenario& s : r.scenarios()) {
+    all.push_back(s.name);
     if (std::count(wanted.begin(), wanted.end(), s.name) > 0) there.push_back(s.name);
   }
+  if (there.empty())
+    throw std::invalid_argument(fmt::format("--scenario is required: {} has none of {}; it has: {}",
+                                            r.name(), fmt::join(wanted, ", "),
+                                            fmt::join(all, ", ")));
   return there;
 }
 

@@ -45,6 +45,12 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
   EXPECT_EQ(detector.code, 2);
   EXPECT_TRUE(detector.says("unknown detector 'ear'; known: pan_tompkins")) << detector.text;
   EXPECT_FALSE(exists("est.csv"));
+  const Outcome tuned = run("tauext-tune --robot testbed1 --estimator mo1 --tune bandwidth=5:50");
+  EXPECT_EQ(tuned.code, 2);
+  EXPECT_TRUE(
+      tuned.says("--scenario is required: testbed1 has none of step, sine, in_motion; it "
+                 "has: model_check"))
+      << tuned.text;
 }
 
 TEST_F(Programs, WrongFlagsExitWith2) {

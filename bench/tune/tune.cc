@@ -59,8 +59,8 @@ class Search {
     tuned_.start = pair_at(first_);
     const std::vector<std::vector<Score>> at_start = o_.score(tuned_.start);
     tuned_.evaluations = 1;
-    require(at_start, o_.minimize);
-    for (const auto& [metric, limit] : o_.limits) require(at_start, metric);
+    require(at_start, o_.minimize, "--minimize");
+    for (const auto& [metric, limit] : o_.limits) require(at_start, metric, "--limit");
     best_ = first_;
     best_value_ = objective(at_start);
     tuned_.of_start = in_units(best_value_);
@@ -159,10 +159,18 @@ class Search {
     return std::exp(sum / std::max(count, 1.));
   }
 
-  static void require(const std::vector<std::vector<Score>>& runs, Metric m) {
-    if (std::none_of(runs.begin(), runs.end(),
-                     [&](const auto& seeds) { return mean_of(seeds, m).has_value(); }))
-      throw std::invalid_argument(fmt::format("no run has the metric {}", key_of(m)));
+  static void require(const std::vector<std::vector<Score>>& runs, Metric m, const char* flag) {
+    const auto has = [&](Metric metric) {
+      return std::any_of(runs.begin(), runs.end(),
+                         [&](const auto& seeds) { return mean_of(seeds, metric).has_value(); });
+    };
+    if (has(m)) return;
+    std::vector<std::string> there;
+    for (const MetricRow& row : kMetrics) {
+      if (has(row.metric)) there.emplace_back(row.key);
+    }
+    throw std::invalid_argument(fmt::format("{} {}: no run has this metric; they have: {}", flag,
+                                            key_of(m), fmt::join(there, ", ")));
   }
 
   static double excess(const std::vector<Score>& seeds, Metric metric, double limit) {

@@ -58,7 +58,8 @@ TEST(Tune, KeepsALimitAndSaysWhatIsAtABound) {
   o.keys[0].high = 30;
   EXPECT_EQ(tune(o).at_bound, std::vector<std::string>{"a"});
   o.limits = {{Metric::kRecall, 1}};
-  EXPECT_NE(error_of([&] { tune(o); }).find("no run has the metric recall"), std::string::npos);
+  EXPECT_EQ(error_of([&] { tune(o); }),
+            "--limit recall: no run has this metric; they have: rmse_Nm, noise_Nm");
   o.limits = {{Metric::kNoise, 1e-6}};  // which no place keeps
   const Tuned none = tune(o);
   EXPECT_TRUE(std::isnan(none.of_best));
@@ -152,7 +153,9 @@ TEST(Tune, KeysKeepTheProportionsOfJoints) {
   EXPECT_NE(error_of([&] { keys_of({"w=5:2"}, pair, fields, {}); }).find("0 < LOW < HIGH"),
             std::string::npos);
   o.minimize = Metric::kDelay;
-  EXPECT_NE(error_of([&] { tune(o); }).find("no run has the metric delay_s"), std::string::npos);
+  EXPECT_NE(
+      error_of([&] { tune(o); }).find("--minimize delay_s: no run has this metric; they have"),
+      std::string::npos);
 }
 
 }  // namespace
