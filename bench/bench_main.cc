@@ -56,6 +56,7 @@ struct Flags {
   std::string lock;
   std::optional<std::string> scenarios, out, out_format, format, golden, commands, report, lcm,
       lcm_log;
+  std::string wrench;
   std::optional<std::string> seeds;
 };
 
@@ -83,6 +84,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   const bool suite = !study && !listing && !golden && !commands;
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   if (f.report) report::require_page(*f.report, "--report");
+  require_mode(app, f.report.has_value(), "--report", {"--wrench"});
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
   const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
   const bool seeds = !f.studies.seeds.empty();
@@ -150,6 +152,7 @@ int run(const CLI::App& app, Flags& flags) {
                     .display = flags.format,
                     .out = flags.out,
                     .report = flags.report,
+                    .wrench = flags.wrench,
                     .lcm = flags.lcm,
                     .lcm_log = flags.lcm_log});
 }
@@ -211,6 +214,7 @@ void add_output_flags(CLI::App& app, Flags& flags) {
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
   app.add_option("--report", flags.report, "write all of it as a page for a browser, with traces")
       ->type_name("FILE.html");
+  app.add_option("--wrench", flags.wrench)->group("")->check(not_empty);
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
       ->type_name("[URL]")
       ->expected(0, 1);

@@ -169,7 +169,7 @@ int score(const CLI::App& app, const Flags& f) {
   if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
   if (!f.out.empty()) {
     AtomicFile file(f.out);
-    file.write(results_json(rows, build()));
+    file.write(results_json(rows, provenance("run " + all.runs.front().group)));
     file.commit();
   }
   const bool good =

@@ -28,6 +28,12 @@ const char* status_name(std::int8_t status) {
   return status >= 0 && status < kStatusCount ? name_of(static_cast<Status>(status)) : "?";
 }
 
+// a name's beginning and its end, which tells specifications apart, in so many characters
+std::string shortened(const std::string& name, std::size_t most) {
+  if (name.size() <= most) return name;
+  return name.substr(0, most / 2 - 1) + "~" + name.substr(name.size() - most / 2);
+}
+
 // [N m]
 std::string torque(bool known, double x) {
   return known ? fmt::format("{:.3f}", x) : "-";
@@ -232,9 +238,9 @@ std::string StreamTable::format_small(std::int64_t now, int joint) const {
     if (j >= e.n) continue;
     const std::size_t prefix =
         name.starts_with(kEstimateChannel) ? std::strlen(kEstimateChannel) : 0;
-    table.add({name.substr(prefix, 12), fmt::to_string(c.rate(now)), fmt::to_string(j + 1),
-               torque(c.estimate, e.tau_ext_hat[j]), torque(c.estimate, e.tau_ext_hat_min[j]),
-               torque(c.estimate, e.tau_ext_hat_max[j]),
+    table.add({shortened(name.substr(prefix), 12), fmt::to_string(c.rate(now)),
+               fmt::to_string(j + 1), torque(c.estimate, e.tau_ext_hat[j]),
+               torque(c.estimate, e.tau_ext_hat_min[j]), torque(c.estimate, e.tau_ext_hat_max[j]),
                torque(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
                c.estimate ? std::string(status_name(e.status)).substr(0, 10) : ""});
   }

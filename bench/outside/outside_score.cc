@@ -103,8 +103,11 @@ Row score_outside(const std::vector<OutsideRun>& runs,
   return row;
 }
 
-std::string results_json(const std::vector<Row>& rows, const std::string& about) {
-  nlohmann::json all{{"context", {{"tauext", about}}}, {"benchmarks", nlohmann::json::array()}};
+std::string results_json(const std::vector<Row>& rows,
+                         const std::vector<std::pair<std::string, std::string>>& context) {
+  nlohmann::json all{{"context", nlohmann::json::object()},
+                     {"benchmarks", nlohmann::json::array()}};
+  for (const auto& [key, text] : context) all["context"][key] = text;
   for (const Row& r : rows) {
     const std::string name = printable_name(r.entry.name(), 1000);
     nlohmann::json one{{"name", name}, {"run_name", name}, {"run_type", "iteration"}};

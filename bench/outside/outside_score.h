@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/outside/estimates_file.h"
@@ -35,7 +36,9 @@ Row score_outside(const OutsideRun& run, const OutsideEstimates& estimates);
 Row score_outside(const std::vector<OutsideRun>& runs,
                   const std::vector<OutsideEstimates>& estimates);
 
-/// The rows as tauext-bench writes them, a benchmark for each, with this line about the run.
-std::string results_json(const std::vector<Row>& rows, const std::string& about);
+/// The rows as tauext-bench writes them, a benchmark for each.
+/// @param context keys and texts that say where they come from
+std::string results_json(const std::vector<Row>& rows,
+                         const std::vector<std::pair<std::string, std::string>>& context);
 
 }  // namespace tauext

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -50,7 +52,7 @@ void validate(const Json& j, const Json& of_kind, const std::string& name) {
   for (const valijson::ValidationResults::Error& e : results) {  // the deepest one says most
     std::string here;  // of "<root>", "[benchmarks]", "[2]"
     for (std::size_t i = 1; i < e.context.size(); ++i)
-      here += "/" + e.context[i].substr(1, e.context[i].size() - 2);
+      here.append("/").append(e.context[i], 1, e.context[i].size() - 2);
     if (why.empty() || here.size() > where.size()) where = here, why = e.description;
   }
   std::string value = j.at(Json::json_pointer(where)).dump();
@@ -58,6 +60,27 @@ void validate(const Json& j, const Json& of_kind, const std::string& name) {
   throw std::runtime_error(
       fmt::format("{}: {} is {}: {}; tauext-report --schema says what it must be", name, where,
                   value, one_line(why)));
+}
+
+// what the schema can't say of traces: each signal has as many values as there are times
+void require_whole_traces(const Json& j, const std::string& name) {
+  for (const Json& group : j["groups"]) {
+    const std::size_t wanted = (2 * group["t"].size() + 2) / 3 * 4;  // 16 bit each, as base64
+    for (const Json& series : group["series"]) {
+      for (const char* rows : {"joints", "wrench"}) {
+        const std::size_t first = group["series"][0].value(rows, Json::array()).size();
+        const Json signals = series.value(rows, Json::array());
+        const auto whole = [&](const Json& s) {
+          return s["values"].get_ref<const std::string&>().size() == wanted;
+        };
+        if (signals.size() != first || !std::all_of(signals.begin(), signals.end(), whole))
+          throw std::runtime_error(fmt::format(
+              "{}: \"{}\" of {} in {} are not {} signals of {} values, as the times and the first "
+              "series have them",
+              name, rows, series["name"].dump(), group["name"].dump(), first, group["t"].size()));
+      }
+    }
+  }
 }
 
 // of a history, which is a line for each commit
@@ -91,6 +114,7 @@ ResultFile checked_result(const std::string& path, const std::string& text) {
   const Json j = Json::parse(smallest);
   const std::string kind = kind_of(j, kinds, path);
   validate(j, kinds[kind], path);
+  if (kind == "traces") require_whole_traces(j, path);
   return {std::filesystem::path(path).filename(), kind, smallest};
 }
 

@@ -56,6 +56,29 @@ Json spans(const std::vector<std::uint8_t>& contact, const std::vector<double>& 
   return all;
 }
 
+// a row for each component of the force that these torques mean, and of the moment
+Eigen::MatrixXd wrench_of(const Trace& trace, const Eigen::MatrixXd& tau_ext,
+                          const ArmForces* forces) {
+  if (forces == nullptr) return {};
+  const bool moment = trace.dof() >= kJointsOfMoment;
+  Eigen::MatrixXd wrench(moment ? 6 : 3, trace.size());
+  for (int k = 0; k < trace.size(); ++k) {
+    const SiteForce f = forces->at_site(trace.q.col(k).data(), tau_ext.col(k).data());
+    wrench.col(k).head<3>() = f.force;
+    if (moment) wrench.col(k).tail<3>() = f.moment;
+  }
+  return wrench;
+}
+
+Json drawn_rows(const Eigen::MatrixXd& signals, const std::vector<int>& edges) {
+  Json rows = Json::array();
+  for (const auto& signal : signals.rowwise()) {
+    const Drawn d = draw(signal.transpose(), edges);
+    rows.push_back({{"low", d.low}, {"high", d.high}, {"values", base64(d.values)}});
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<int> bucket_edges(const std::vector<Eigen::VectorXd>& signals, int buckets) {
@@ -100,13 +123,16 @@ Drawn draw(const Eigen::VectorXd& signal, const std::vector<int>& edges) {
   return d;
 }
 
-void Traces::add(const Entry& entry, const Suite::Run& run) {
+void Traces::add(const Entry& entry, const Suite::Run& run, const ArmForces* forces) {
+  const auto series = [&](const std::string& name, const Eigen::MatrixXd& tau_ext) {
+    series_.push_back({name, tau_ext, wrench_of(run.trace, tau_ext, forces)});
+  };
   if (entry.group() != group_) close();
   group_ = entry.group();
   if (series_.empty()) {
     t_ = run.trace.t;
     contact_ = run.trace.contact;
-    series_.push_back({"truth", run.trace.tau_ext});
+    series("truth", run.trace.tau_ext);
   }
   if (!entry.detector().empty()) {
     marks_.push_back({entry.estimator() + "+" + entry.detector(), {}});
@@ -114,7 +140,7 @@ void Traces::add(const Entry& entry, const Suite::Run& run) {
       if (run.detections[k].mark) marks_.back().t.push_back(run.trace.t[k]);
     }
   } else if (!is_baseline(entry.estimator())) {
-    series_.push_back({entry.estimator(), run.output.tau_ext});
+    series(entry.estimator(), run.output.tau_ext);
   }
 }
 
@@ -122,7 +148,9 @@ void Traces::close() {
   if (series_.empty()) return;
   std::vector<Eigen::VectorXd> signals;
   for (const Series& s : series_) {
-    for (const auto& joint : s.tau_ext.rowwise()) signals.push_back(finite(joint.transpose()));
+    for (const Eigen::MatrixXd* rows : {&s.tau_ext, &s.wrench}) {
+      for (const auto& signal : rows->rowwise()) signals.push_back(finite(signal.transpose()));
+    }
   }
   const std::vector<int> edges = bucket_edges(signals);
   Json j = {{"name", group_}, {"t", Json::array()}};
@@ -134,12 +162,8 @@ void Traces::close() {
   j["contacts"] = spans(contact_, t_);
   j["series"] = Json::array();
   for (const Series& s : series_) {
-    Json joints = Json::array();
-    for (const auto& joint : s.tau_ext.rowwise()) {
-      const Drawn d = draw(joint.transpose(), edges);
-      joints.push_back({{"low", d.low}, {"high", d.high}, {"values", base64(d.values)}});
-    }
-    j["series"].push_back({{"name", s.name}, {"joints", joints}});
+    j["series"].push_back({{"name", s.name}, {"joints", drawn_rows(s.tau_ext, edges)}});
+    if (s.wrench.size() > 0) j["series"].back()["wrench"] = drawn_rows(s.wrench, edges);
   }
   j["marks"] = Json::array();
   for (const Marks& m : marks_) j["marks"].push_back({{"name", m.name}, {"t", m.t}});

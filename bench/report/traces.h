@@ -35,7 +35,9 @@ Drawn draw(const Eigen::VectorXd& signal, const std::vector<int>& edges);
 class Traces {
  public:
   /// Those of a group come together.
-  void add(const Entry& entry, const Suite::Run& run);
+  /// @param forces what makes a force, and with 6 joints or more a moment, of each tau_ext, to be
+  ///   shown beside it; nullptr: none
+  void add(const Entry& entry, const Suite::Run& run, const ArmForces* forces = nullptr);
   /// @param run as of provenance()
   std::string json(const std::string& run);
 
@@ -43,6 +45,7 @@ class Traces {
   struct Series {
     std::string name;
     Eigen::MatrixXd tau_ext;  // a row each joint
+    Eigen::MatrixXd wrench;   // 0, 3 or 6 rows
   };
   struct Marks {
     std::string name;

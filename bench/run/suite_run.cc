@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -147,11 +148,32 @@ void write_json(const SuiteRun& run, const Reporter& reporter) {
   fmt::print(words_of(run), "\n{}: results as JSON\n", *run.out);
 }
 
-void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Reporter& reporter) {
+using Forces = std::map<std::string, std::unique_ptr<const ArmForces>>;  // by robot
+
+// of all that are selected
+Forces forces_of(const SuiteRun& run, const Rows& rows) {
+  Forces all;
+  for (const Row& row : rows) {
+    const Robot& r = row.entry.robot();
+    auto& of_robot = all[r.name()];
+    if (run.wrench.empty() || of_robot) continue;
+    try {
+      of_robot = r.forces_at(run.wrench, r.dof() >= kJointsOfMoment);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(
+          fmt::format("--wrench: {}: {} (--robot selects one)", r.name(), e.what()));
+    }
+  }
+  return all;
+}
+
+void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Reporter& reporter,
+                  const Forces& forces) {
   Progress progress("drawing");
   report::Traces traces;
   for (const Row& row : rows) {
-    if (row.score.error.empty()) traces.add(row.entry, suite.run(row.entry));
+    if (row.score.error.empty())
+      traces.add(row.entry, suite.run(row.entry), forces.at(row.entry.robot().name()).get());
     progress.show(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()));
   }
   AtomicFile file(*run.report);
@@ -190,6 +212,7 @@ int run_suite(const SuiteRun& run) {
   }
   const auto display = make_display(run.display);
   Suite suite(run.suite);
+  const Forces forces = forces_of(run, rows);
   EntryTap tap(run.lcm, run.lcm_log.value_or(""));
   register_benchmarks(suite, rows, tap);
   for (const auto& [key, text] : provenance(run_line(run.suite))) {
@@ -207,7 +230,7 @@ int run_suite(const SuiteRun& run) {
   for (Row& row : rows) add_time(reporter, row);
   print_results(run, rows);
   if (run.out) write_json(run, reporter);
-  if (run.report) write_report(run, suite, rows, reporter);
+  if (run.report) write_report(run, suite, rows, reporter, forces);
   if (!tap.heard()) say("no summary could be published");
   const bool all = all_ran(run.selection, rows);
   if (reporter.any_error() || !tap.heard()) return kAnswerIsNo;

@@ -24,6 +24,7 @@ struct SuiteRun {
   std::optional<std::string> display;       ///< Google Benchmark's own format on standard output
   std::optional<std::string> out;           ///< file for the results as JSON
   std::optional<std::string> report;        ///< file for the page of the results
+  std::string wrench;                       ///< the point of which it shows forces; "": none
   std::optional<std::string> lcm;           ///< URL for summaries
   std::optional<std::string> lcm_log;       ///< folder for logs
 };

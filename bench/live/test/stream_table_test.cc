@@ -34,6 +34,17 @@ TEST(StreamTableTest, ShowsEachJointAndCountsLostOnes) {
   EXPECT_TRUE(has(text, "-99.500")) << text;
 }
 
+TEST(StreamTableTest, TheSmallTableTellsSpecificationsOfOneEstimatorApart) {
+  StreamTable table;
+  for (const char* w : {"20", "50"})
+    table.take(std::string("TAUEXT_ESTIMATE_mo2:bandwidth=") + w, 0, 0, bytes_of(estimate()));
+  table.take("TAUEXT_ESTIMATE_momentumkf12", 0, 0, bytes_of(estimate()));
+  const std::string text = table.format_small(6000, 0);
+  EXPECT_TRUE(has(text, "mo2:b~dth=20 ")) << text;
+  EXPECT_TRUE(has(text, "mo2:b~dth=50 ")) << text;
+  EXPECT_TRUE(has(text, "momentumkf12 ")) << text;
+}
+
 TEST(StreamTableTest, ARestartOfTheSenderIsNoLoss) {
   StreamTable table;
   estimate_t e = estimate();

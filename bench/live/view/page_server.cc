@@ -200,7 +200,8 @@ class PageServer::Server {
   }
 
   void tick() {
-    timer_.expires_at(timer_.expiry() + 1000000us / kFrames);
+    timer_.expires_at(
+        std::max(timer_.expiry() + 1000000us / kFrames, std::chrono::steady_clock::now()));
     timer_.async_wait([this](error_code e) {
       if (e) return;
       send();

@@ -48,11 +48,15 @@ function draw_over(u, spans, marks) {
   for (const m of marks) {
     if (x(m.t) < left || x(m.t) > left + width) continue;
     c.strokeStyle = c.fillStyle = m.color;
-    c.setLineDash([4, 3]);
+    c.setLineDash([4, 3]), c.lineWidth = devicePixelRatio, c.lineJoin = 'round';
     c.beginPath(), c.moveTo(x(m.t), top), c.lineTo(x(m.t), top + height), c.stroke();
     let row = rows.findIndex((end) => end < x(m.t));
     if (row < 0) row = rows.length;
-    if ((row + 1) * 13 * devicePixelRatio < height) c.fillText(m.name, x(m.t) + 3, top + (row + 1) * 13 * devicePixelRatio);
+    if ((row + 1) * 13 * devicePixelRatio < height) {
+      const at = [m.name, x(m.t) + 3, top + (row + 1) * 13 * devicePixelRatio];
+      c.setLineDash([]), c.lineWidth = 4 * devicePixelRatio, c.strokeStyle = themed('--back'), c.strokeText(...at);  // over curves
+      c.fillText(...at);
+    }
     rows[row] = x(m.t) + c.measureText(m.name).width + 8;
   }
   c.restore();
@@ -68,6 +72,7 @@ function nearest(values, i) {
 
 // A plot over time. series: {label, color, dash, width, show}; floor: of range_of.
 function time_plot(parent, {title, unit, width, height, data, series, x_range, floor, bands, over, sync, select}) {
+  const digits = Math.min(9, Math.max(0, Math.ceil(1 - Math.log10(floor))));  // of values at the cursor: a tenth of the floor
   const axis = {stroke: themed('--text'), grid: {stroke: themed('--line'), width: .5}, ticks: {stroke: themed('--line')}};
   return new uPlot({
     title, width, height, bands,
@@ -76,7 +81,7 @@ function time_plot(parent, {title, unit, width, height, data, series, x_range, f
     axes: [{...axis, label: 't [s]', labelSize: 18, size: 34}, {...axis, label: unit, labelSize: 18, size: 68, values: (u, all) => all.map((v) => Number(v.toPrecision(6)).toString())}],
     series: [{label: 't [s]', value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(3)}].concat(series.map((s) => ({
       label: s.label, stroke: s.color, dash: s.dash, width: s.width || 1.2, show: s.show !== false, points: {show: false}, spanGaps: true,
-      value: (u, v) => v === null || v === undefined ? '–' : v.toPrecision(4)}))),
+      value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(digits)}))),
     hooks: {draw: [(u) => over && draw_over(u, ...over())],
       setSelect: [(u) => select && u.select.width > 0 && select(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'))]},
   }, data, parent);

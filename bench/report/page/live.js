@@ -93,13 +93,14 @@ class Rows {
 }
 
 // ---- what has come: rows by quantity and then by whose they are
-const QUANTITIES = {tau_ext: 'N m', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
-const FLOORS = {tau_ext: 0.02, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
+const QUANTITIES = {tau_ext: 'N m', force: 'N', moment: 'N m', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
+const FLOORS = {tau_ext: 0.02, force: 0.1, moment: 0.02, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
+const MEASURED = ['q', 'qd', 'tau'], WRENCH = ['force', 'moment'];
 const seen = {messages: 0, lost: 0, late: 0, rejected: 0, frames: 0, text: ''};
-let all, next, marks, contacts, newest, oldest;
+let all, next, marks, contacts, newest, oldest, leads;  // leads: the channel whose measurements are shown
 function forget() {
-  all = {tau_ext: new Map(), statistic: new Map(), q: new Map(), qd: new Map(), tau: new Map()};
-  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity;
+  all = Object.fromEntries(Object.keys(QUANTITIES).map((quantity) => [quantity, new Map()]));
+  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity, leads = '';
 }
 forget();
 function keep(quantity, who, t, low, high = low) {
@@ -119,9 +120,9 @@ function in_turn(channel, {seq, utime}) {
 }
 
 function take(channel, m) {
-  if (m.type === 'summary_t' || m.type === 'force_t') return;
+  if (m.type === 'summary_t') return;
   const t = m.utime / 1e6, pair = `${m.estimator}+${m.detector}`;
-  if (!in_turn(m.type === 'detection_t' ? pair : channel, m)) return;
+  if (!in_turn({detection_t: pair, force_t: `force of ${m.estimator}`}[m.type] ?? channel, m)) return;
   [oldest, newest] = [Math.min(oldest, t), Math.max(newest, t)];
   if (m.type === 'detection_t') {
     keep('statistic', pair, t, [m.score]);
@@ -133,11 +134,16 @@ function take(channel, m) {
     contacts = contacts.filter(([, end]) => end > newest - KEPT);
     return;
   }
+  if (m.type === 'force_t') {
+    keep('force', m.estimator, t, m.force);
+    if (all.moment.size || m.moment.some((x) => x !== 0)) keep('moment', m.estimator, t, m.moment);
+    return;
+  }
   const n = m.n, first = (x) => x.slice(0, n), who = channel.replace(/^TAUEXT_(ESTIMATE_)?/, '');
   if (m.type === 'estimate_t') keep('tau_ext', who, t, first(m.tau_ext_hat_min), first(m.tau_ext_hat_max));
-  const leads = [...all.q.keys()][0] ?? channel;  // all estimates carry the same measurements
+  leads ||= channel;  // all estimates carry the same measurements
   if (leads !== channel) return;
-  for (const quantity of ['q', 'qd', 'tau']) keep(quantity, channel, t, first(m[quantity]));
+  for (const quantity of MEASURED) keep(quantity, 'measured', t, first(m[quantity]));
   if (m.reference) keep('tau_ext', 'reference', t, first(m.tau_ext_true_min ?? m.tau_ext_true), first(m.tau_ext_true_max ?? m.tau_ext_true));
 }
 
@@ -180,10 +186,14 @@ function lay_out() {
   };
   const names = [...all.tau_ext.keys()].sort((a, b) => order(a) - order(b)), joints = Math.max(0, ...[...all.tau_ext.values()].map((r) => r.width));
   for (let j = 0; j < joints; ++j) plot(`joint ${j + 1}`, 'tau_ext', names.map((w) => ({rows: all.tau_ext.get(w), j, label: w, style: style_of(w)})));
+  for (const quantity of WRENCH.filter((w) => all[w].size)) {
+    for (const [j, axis] of ['x', 'y', 'z'].entries())
+      plot(`${quantity} ${axis}`, quantity, [...all[quantity]].map(([w, rows]) => ({rows, j, label: w, style: style_of(w)})));
+  }
   const pairs = [...all.statistic.keys()];
   const threshold = {rows: {points: (j, from, step, count) => new Array(2 * count).fill(1)}, label: 'threshold', style: {color: themed('--quiet'), dash: [4, 4]}};
   if (pairs.length) plot('statistics of detectors', 'statistic', [threshold, ...pairs.map((w) => ({rows: all.statistic.get(w), j: 0, label: w, style: style_of(w)}))]);
-  for (const quantity of ['q', 'qd', 'tau']) {
+  for (const quantity of MEASURED) {
     for (const [, rows] of all[quantity]) plot(`measured ${quantity}`, quantity, Array.from({length: rows.width}, (_, j) => ({rows, j, label: `joint ${j + 1}`, style: {width: 1, ...look(j)}})));
   }
 }

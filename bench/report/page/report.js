@@ -155,6 +155,9 @@ function decoded(joint) {
   const range = joint.high - joint.low;
   return Array.from({length: bytes.length / 2}, (_, i) => joint.low + (bytes[2 * i] + 256 * bytes[2 * i + 1]) / 65535 * range);
 }
+// a series' signals, each with its name and unit
+const signals_of = (s) => [...s.joints.map((x, j) => [x, `joint ${j + 1}`, 'tau_ext [N m]']),
+  ...(s.wrench || []).map((x, j) => [x, `${j < 3 ? 'force' : 'moment'} ${'xyz'[j % 3]}`, j < 3 ? 'force [N]' : 'moment [N m]'])];
 // points at the begins and ends of buckets, once where a bucket is one sample
 function kept(t) {
   const all = [...t.keys()].filter((i) => i % 2 === 0 || t[i] > t[i - 1]);
@@ -173,10 +176,11 @@ function runs() {
       .flatMap((m) => m.t.map((at) => ({t: at, name: m.name.split('+')[0], color: (styles.get(m.name.split('+')[0]) || {color: '#777'}).color})));
     const shown = (s) => s.name === 'truth' || s.name === focus || !hidden.has(s.name);
     place.replaceChildren();
-    place.plots = plots = g.series[0].joints.map((_, j) => {
+    place.plots = plots = signals_of(g.series[0]).map(([, title, unit], j, all) => {
+      const largest = Math.max(1e-6, ...all.filter((s) => s[2] === unit).map(([s]) => s.high - s.low));
       const at = g.series.findIndex((s) => s.name === focus) + 1;
-      return time_plot(place, {title: `joint ${j + 1}`, unit: 'tau_ext [N m]', width: place.clientWidth || 1000, height: g.series[0].joints.length > 1 ? 250 : 400,
-        data: [t, ...g.series.map((s) => keep(decoded(s.joints[j])))], sync: 'run', floor: 1e-3 * Math.max(1e-6, g.series[0].joints[j].high - g.series[0].joints[j].low),
+      return time_plot(place, {title, unit, width: place.clientWidth || 1000, height: all.length > 1 ? 250 : 400, sync: 'run',
+        data: [t, ...g.series.map((s) => keep(decoded(signals_of(s)[j][0])))], floor: 1e-3 * largest,
         series: g.series.map((s, i) => ({label: s.name, ...styles.get(s.name), width: i === 0 ? 2 : s.name === focus ? 1.8 : 1, show: shown(s)})),
         bands: at > 1 ? [{series: [at, 1], fill: 'rgba(0, 114, 178, .15)'}, {series: [1, at], fill: 'rgba(0, 114, 178, .15)'}] : [],
         over: () => [g.contacts, marks]});
@@ -239,8 +243,8 @@ function chart({title, x, y, width = 690, height = 360, rows}, draw) {
   const plot = element('g'), names = [], texts = [];
   const svg = element('svg', {viewBox: `0 0 ${width} ${h}`, width, height: h, role: 'img', 'aria-label': title},
     element('text', {x: left, y: 15, 'font-weight': 600}, title), element('text', {x: (left + width - right) / 2, y: h - 6, 'text-anchor': 'middle'}, x.label));
-  for (const v of ticks(x.range, x.log)) {
-    svg.append(element('line', {class: 'grid', x1: px(v), x2: px(v), y1: top, y2: h - bottom}), element('text', {x: px(v), y: h - bottom + 16, 'text-anchor': 'middle'}, tick_text(v)));
+  for (const v of ticks(x.range, x.log).filter((at) => !x.names || at in x.names)) {
+    svg.append(element('line', {class: 'grid', x1: px(v), x2: px(v), y1: top, y2: h - bottom}), element('text', {x: px(v), y: h - bottom + 16, 'text-anchor': 'middle'}, x.names ? x.names[v] : tick_text(v)));
   }
   (rows || ticks(y.range, y.log)).forEach((v, i) => {
     const at = rows ? py(i) : py(v);
@@ -393,7 +397,7 @@ function history_of_gate() {
     const rows = f.data.rows, kernels = [...new Set(rows.flatMap((r) => Object.keys(r.kernels)))], place = element('div');
     const draw = (kernel) => {
       const points = rows.map((r, i) => [i, r.kernels[kernel]]).filter(([, k]) => k);
-      place.replaceChildren(chart({title: kernel, width: 1200, x: {label: 'commits, the oldest first', range: [-.5, rows.length - .5]}, y: {label: 'time of a step / reference [1]', range: spread_of(points.flatMap(([, k]) => [k.low, k.high, 1]))}}, (c) => {
+      place.replaceChildren(chart({title: kernel, width: 1200, x: {label: 'commits, the oldest first', names: rows.map((r) => r.commit.slice(0, 8)), range: [-.5, rows.length - .5]}, y: {label: 'time of a step / reference [1]', range: spread_of(points.flatMap(([, k]) => [k.low, k.high, 1]))}}, (c) => {
         c.line([[-.5, 1], [rows.length, 1]], {color: '#7f7f7f', dash: [4, 4]});
         c.line(points.map(([i, k]) => [i, k.ratio]), look(0));
         for (const [i, k] of points) {

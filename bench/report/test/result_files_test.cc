@@ -44,6 +44,19 @@ TEST(ResultFiles, SayWhichElementIsWrong) {
                "/groups/0/series/0/joints/0/values is \"<\": ");
 }
 
+TEST(ResultFiles, TracesHaveAValueForEachTime) {
+  const auto traces = [](const std::string& values, const std::string& more = "") {
+    return R"({"format": "tauext-traces-1", "context": {}, "groups": [{"name": "a/b", "t": [0, 1],
+               "contacts": [], "marks": [], "series": [{"name": "truth", "joints":
+               [{"low": 0, "high": 1, "values": ")" +
+           values + "\"}]" + more + "}]}]}";
+  };
+  EXPECT_EQ(error_of(traces("AAD//w==")), "") << "0 and 65535";
+  expect_error(traces("AAA="), "\"joints\" of \"truth\" in \"a/b\" are not 1 signals of 2 values");
+  expect_error(traces("AAD//w==", R"(, "wrench": [{"low": 0, "high": 1, "values": "AAA="}])"),
+               "\"wrench\" of \"truth\" in \"a/b\" are not 1 signals of 2 values");
+}
+
 TEST(ResultFiles, AreKnownByWhatTheyHold) {
   const auto kind = [](const std::string& text) { return checked_result("f", text).kind; };
   EXPECT_EQ(kind(R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm": 1}]})"), "suite");

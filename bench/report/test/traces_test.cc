@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <vector>
+
+#include "bench/roster/robots.h"
 
 namespace tauext::report {
 namespace {
@@ -91,6 +94,31 @@ TEST(Traces, WhatIsNotFiniteIsDrawnAsZero) {
   const Drawn d = draw(s, {0, 5, 10});
   EXPECT_EQ(d.low, 0);
   EXPECT_EQ(d.high, 4);
+}
+
+TEST(Traces, AForceIsThatWhoseTorquesAreTheTruth) {
+  const Robot& r = robot("wallmobot3");
+  const auto forces = r.forces_at(kEndEffector, false);
+  const Vec<3> force(3, 0, 5);  // in the plane of the joints, which sees all of it
+  Trace trace;
+  trace.q = Vec<3>(0.4, 0.8, -0.5).replicate(1, 4);
+  trace.tau_ext.resize(3, 4);
+  for (int k = 0; k < 4; ++k) {
+    trace.t.push_back(k * 1e-3);
+    trace.tau_ext.col(k) = forces->torque(trace.q.col(k), (k + 1) * force);
+  }
+  Output none;
+  none.tau_ext = Eigen::MatrixXd::Zero(3, 4);
+  Traces traces;
+  traces.add(Entry("wallmobot3", "step", "mo2"), {trace, none, {}}, forces.get());
+  const auto j = nlohmann::json::parse(traces.json("here"));
+  const auto& series = j["groups"][0]["series"];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& drawn = series[0]["wrench"][axis];
+    EXPECT_NEAR(drawn["low"], std::min(force[axis], 4 * force[axis]), 1e-9) << axis;
+    EXPECT_NEAR(drawn["high"], std::max(force[axis], 4 * force[axis]), 1e-9) << axis;
+    EXPECT_EQ(series[1]["wrench"][axis]["high"], 0) << axis;
+  }
 }
 
 }  // namespace
