@@ -157,7 +157,7 @@ int run(const CLI::App& app, Flags& f) {
   const bool studies = f.calibrate_to.empty();
   require_mode(app, studies, "a study, not with --calibrate",
                {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
-                "--clampings", "--hours", "--seed"});
+                "--clampings", "--regions", "--hours", "--seed"});
   require_mode(app, f.thresholds.empty(), "training, not with --thresholds", {"--margin"});
   require_mode(app, f.thresholds.empty() && f.logs.empty(),
                "training on simulated runs, not with --thresholds or recordings",
@@ -208,9 +208,10 @@ void add_flags(CLI::App& app, Flags& f) {
   add_names(app, "--estimator", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
   add_names(app, "--detector", f.study.detectors, "only these, like high_pass:w=60");
   add_count(app, "--collisions", f.study.blows, 0, 100000,
-            "blows, at least, for each condition; so --pushes, --clampings");
+            "blows of a condition, at least; --pushes, --clampings, --regions");
   add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "")->group("");
   add_count(app, "--clampings", f.study.clampings, 0, 100000, "")->group("");
+  add_count(app, "--regions", f.study.regions, 0, 100000, "")->group("");
   app.add_option("--hours", f.study.hours, "of free motion and slow pushes, at least")
       ->capture_default_str();
   add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
@@ -226,7 +227,7 @@ int main(int argc, char** argv) {
       "Tries every detector behind every estimator of a robot; without --thresholds it "
       "calibrates.\n\n"
       "  tauext-detect --calibrate t.json --robot arm.json --columns ur_rtde free*.csv\n"
-      "  tauext-detect --thresholds thresholds.json --conditions known_150,unknown_150\n",
+      "  tauext-detect --thresholds thresholds.json --conditions known_150 --regions 20\n",
       "tauext-detect");
   app.get_formatter()->column_width(34);
   Flags f;

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -20,9 +22,31 @@ namespace {
 
 using namespace tauext;
 
+// what has the name of another is named with its folder, or by a number
+void tell_apart(std::vector<ResultFile>& all, const std::vector<std::string>& paths) {
+  const auto has_twin = [&](std::size_t i) {
+    return std::count_if(all.begin(), all.end(), [&](const ResultFile& r) {
+             return r.kind == all[i].kind && r.name == all[i].name;
+           }) > 1;
+  };
+  std::vector<std::size_t> twins;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (has_twin(i)) twins.push_back(i);
+  }
+  for (const std::size_t i : twins) {
+    const std::string folder = std::filesystem::path(paths[i]).parent_path().filename().string();
+    if (!folder.empty()) all[i].name = folder + "/" + all[i].name;
+  }
+  for (const std::size_t i : twins) {
+    const std::string name = all[i].name;
+    for (int n = 2; has_twin(i); ++n) all[i].name = fmt::format("{} ({})", name, n);
+  }
+}
+
 std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
   std::map<std::string, std::string> seen;  // paths by what they hold
   std::vector<ResultFile> all;
+  std::vector<std::string> from;  // the path of each
   for (const std::string& path : paths) {
     if (std::count(paths.begin(), paths.end(), path) > 1)
       throw std::invalid_argument(path + ": is there twice");
@@ -31,10 +55,12 @@ std::vector<ResultFile> read_all(const std::vector<std::string>& paths) {
       if (!is_new && before->second != path)
         throw std::invalid_argument(
             fmt::format("{}: {} has the same results", path, before->second));
-      if (is_new)  // a page of ours may hold them twice
-        all.push_back(std::move(r));
+      if (!is_new) continue;  // a page of ours may hold them twice
+      all.push_back(std::move(r));
+      from.push_back(path);
     }
   }
+  tell_apart(all, from);
   return all;
 }
 

@@ -91,6 +91,11 @@ void add_ours(const Flags& f, const std::vector<OutsideRun>& runs, std::vector<R
       all.push_back({e, f.detector, r.runner(e, f.detector, *run.trace, settings)->run()});
     rows.push_back(runs.size() == 1 ? score_outside(runs.front(), all.front())
                                     : score_outside(runs, all));
+    for (const Row& row : rows) {
+      if (&row == &rows.back() || row.entry.name() != rows.back().entry.name()) continue;
+      throw std::invalid_argument(fmt::format(
+          "{} of {} is ours, too; --name or its columns must call it otherwise", e, f.files[0]));
+    }
   }
 }
 

@@ -34,7 +34,12 @@ std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant
     going.clear();
     for (std::size_t i = 0; i < runs.size(); ++i) {
       lost[i] = lost[i] || !runs[i].sample(k, nobody);
-      if (!lost[i]) going.push_back(&runs[i].plant());
+      if (lost[i]) continue;
+      if (runs[i].steps_alone()) {
+        runs[i].step();
+      } else {
+        going.push_back(&runs[i].plant());
+      }
     }
     for (int i = 0; i < r.substeps; ++i) TreePlant::step(going, r.Ts / r.substeps);
   }

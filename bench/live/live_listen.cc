@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -59,7 +61,9 @@ class Keys {
 // they come and a table at the end
 class Screen {
  public:
-  explicit Screen(const Listener& listener) : listener_(listener) {}
+  // @param from where messages come from, and who looks at them beside
+  Screen(const Listener& listener, std::string from)
+      : listener_(listener), from_(std::move(from)) {}
 
   void show(StreamTable& table, double seconds, std::int64_t now) {
     take_events(table);
@@ -121,8 +125,8 @@ class Screen {
       below = joint_ == 0 ? "joints with the largest torque; keys 1 to 8: that joint"
                           : fmt::format("joint {}; key 0: those with the largest torque", joint_);
     }
-    Lines all = lines_of(
-        fmt::format("{}  {:.0f} s\n{}\n{}\n{}\n", listener_.url(), seconds, below, body, end));
+    Lines all =
+        lines_of(fmt::format("{}  {:.0f} s\n{}\n{}\n{}\n", from_, seconds, below, body, end));
     const std::size_t room = rows > all.size() ? rows - all.size() : 0;
     all.insert(all.end(), events_.end() - std::min<std::ptrdiff_t>(room, events_.size()),
                events_.end());
@@ -142,6 +146,7 @@ class Screen {
   }
 
   const Listener& listener_;
+  std::string from_;
   bool terminal_ = is_terminal(STDOUT_FILENO);
   Keys keys_;
   int joint_ = 0;     // from 1; 0: that with the largest torque
@@ -152,17 +157,23 @@ class Screen {
 }  // namespace
 
 int run_listen(const Options& o) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Interrupt interrupt;
+  auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return microseconds_since(begin); };
   StreamTable table;
   Viewers viewers(o.page, o.plotjuggler);
+  if (o.url.starts_with("file://") && viewers.wait_for_page()) {
+    say(o.url + viewers.where() + "; the log begins when a browser shows it; Ctrl-C ends");
+    while (viewers.wait_for_page() && !over(interrupt, begin, o.pace.duration))
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    begin = std::chrono::steady_clock::now();
+  }
   Listener listener(o.url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
     table.take(channel, sender, now(), m);
     viewers.take(channel, m);
   });
-  const Interrupt interrupt;
   say(fmt::format("listening to TAUEXT_* at {}{}; Ctrl-C ends", listener.url(), viewers.where()));
-  Screen screen(listener);
+  Screen screen(listener, listener.url() + viewers.where());
   bool ended = false, broken = false, at_end = false;
   while (!broken && !ended) {
     ended = over(interrupt, begin, o.pace.duration);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -78,8 +79,12 @@ std::vector<ResultFile> read_results(const std::string& path) {
   std::vector<ResultFile> results;
   try {
     for (const Json& r :
-         parse_json(text.substr(begin + kBegin.size(), end - begin - kBegin.size())))
+         parse_json(text.substr(begin + kBegin.size(), end - begin - kBegin.size()))) {
       results.push_back(checked_result(r.at("name"), r.at("data").dump()));
+      std::string& name = results.back().name;
+      if (name == kOwnResults || name == kOwnTraces)
+        name = std::filesystem::path(path).stem().string() + ".json";
+    }
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: what it holds: {}", path, one_line(e.what())));
   }

@@ -10,6 +10,10 @@
 
 namespace tauext::report {
 
+/// What tauext-bench --report calls the two things that its page holds; whoever reads that page
+/// calls them by its name.
+inline constexpr const char *kOwnResults = "results.json", *kOwnTraces = "traces.json";
+
 /// The page of these results: it holds them as they are, and draws them.
 std::string page_of(const std::vector<ResultFile>& results);
 

@@ -11,11 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bench/run/scenario_touches.h"
 #include "bench/score/degradation.h"
 #include "bench/score/metrics.h"
 #include "mjcf/import/json_object.h"
-#include "mjcf/scenarios/touch.h"
-#include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -23,11 +22,6 @@ namespace {
 
 using Json = JsonObject::Json;
 using Object = JsonObject;
-
-template <class... Args>
-[[noreturn]] void fail(fmt::format_string<Args...> words, Args&&... args) {
-  throw std::invalid_argument(fmt::format(words, std::forward<Args>(args)...));
-}
 
 struct Wave {
   int joint;              // from 0
@@ -47,7 +41,7 @@ struct Load {
 
 int joint_of(const Object& o, int dof) {
   const double j = o.number("joint", 1, dof);
-  if (j != std::floor(j)) fail("{}: \"joint\" is {}, no whole number", o.where(), j);
+  if (j != std::floor(j)) refuse("{}: \"joint\" is {}, no whole number", o.where(), j);
   return static_cast<int>(j) - 1;
 }
 
@@ -60,7 +54,7 @@ std::vector<Moves<MinimumJerk>> moves_of(const Object& o, const Eigen::VectorXd&
     const Object point(j, where, {"t", "q"});
     const double t = point.number("t", 0, duration);
     if (!times.empty() && t <= times.back())
-      fail("{}: \"t\" is {:g}, and must be later than the one before", where, t);
+      refuse("{}: \"t\" is {:g}, and must be later than the one before", where, t);
     times.push_back(t);
     points.push_back(point.vector("q", static_cast<int>(home.size())));
   });
@@ -106,49 +100,16 @@ std::vector<Load> loads_of(const Object& o, int dof, double duration) {
              load.number_or("to", std::numeric_limits<double>::infinity(), 0, Object::kMost),
              load.flag("sweep")};
     if (one.from >= duration)
-      fail("{}: \"from\" is {:g}, the end of the scenario", where, one.from);
+      refuse("{}: \"from\" is {:g}, the end of the scenario", where, one.from);
     if (one.to <= one.from)
-      fail("{}: \"to\" is {:g}, and must be after \"from\", {:g}", where, one.to, one.from);
+      refuse("{}: \"to\" is {:g}, and must be after \"from\", {:g}", where, one.to, one.from);
     if (one.sweep && (load.has("w") || load.has("phase")))
-      fail("{}: a \"sweep\" has no \"w\" or \"phase\"", where);
+      refuse("{}: a \"sweep\" has no \"w\" or \"phase\"", where);
     if (one.sweep) one.to = std::min(one.to, duration);
     if (one.sweep && one.to - one.from < kShortestSweep)
-      fail("{}: a \"sweep\" of {:g} s is too short to measure a bandwidth; give it {} s or more",
-           where, one.to - one.from, kShortestSweep);
+      refuse("{}: a \"sweep\" of {:g} s is too short to measure a bandwidth; give it {} s or more",
+             where, one.to - one.from, kShortestSweep);
     all.push_back(one);
-  });
-  return all;
-}
-
-// what a word stands for
-template <class Choices>
-auto choice(const Object& o, const char* key, const std::string& word, const Choices& all) {
-  try {
-    return find_known(all, key, word, [](const auto& c) { return std::string(c.first); }).second;
-  } catch (const std::invalid_argument& e) {
-    fail("{}: {}", o.where(), e.what());
-  }
-}
-
-std::vector<Touch> touches_of(const Object& o, double duration) {
-  constexpr std::pair<const char*, TouchKind> kKinds[] = {
-      {"blow", TouchKind::kBlow}, {"push", TouchKind::kSlowPush}, {"clamp", TouchKind::kClamp}};
-  std::vector<Touch> all;
-  o.each("touches", [&](const Json& j, const std::string& where) {
-    const Object touch(j, where, {"kind", "t", "rise", "hold", "fall", "force"});
-    const std::string kind = touch.text("kind", "blow");
-    Touch t;
-    t.kind = choice(touch, "kind", kind, kKinds);
-    t.begin = touch.number("t", 0, duration);
-    t.rise = touch.number("rise", 1e-3, 1e3);
-    if (t.begin + t.rise > duration)
-      fail("{}: grows from {:g} to {:g} s, and the scenario ends at {:g} s", where, t.begin,
-           t.begin + t.rise, duration);
-    t.hold = touch.number_or("hold", 0, 0, Object::kMost);
-    t.fall = touch.number_or("fall", t.kind == TouchKind::kBlow ? 0 : t.rise, 0, 1e3);
-    t.force = touch.vector("force", 3);
-    if (t.force.isZero()) fail("{}: \"force\" is zero", where);
-    all.push_back(t);
   });
   return all;
 }
@@ -163,49 +124,47 @@ Response response_of(const Object& o) {
 }
 
 // there must be something to answer
-void check_question(const Object& o, Response asked, const std::vector<Load>& loads,
-                    const std::vector<Touch>& touches) {
+void check_question(const Object& o, Response asked, const std::vector<Load>& loads, bool touched) {
   const bool is_bandwidth = asked == Response::kBandwidth;
   const auto sweeps = [](const Load& l) { return l.sweep; };
   if (is_bandwidth &&
-      (loads.empty() || !touches.empty() || !std::all_of(loads.begin(), loads.end(), sweeps)))
-    fail(
+      (loads.empty() || touched || !std::all_of(loads.begin(), loads.end(), sweeps)))
+    refuse(
         "{}: \"asks\" is 'bandwidth', so there must be \"loads\", each with \"sweep\": true, and "
         "nothing else",
         o.where());
   const bool of_load = asked == Response::kStep || asked == Response::kLag;
-  if (of_load && loads.empty() && touches.empty())
-    fail("{}: \"asks\" is '{}', and there are no \"loads\" to answer", o.where(),
-         o.text("asks", ""));
+  if (of_load && loads.empty() && !touched)
+    refuse("{}: \"asks\" is '{}', and there are no \"loads\" to answer", o.where(),
+           o.text("asks", ""));
   const auto constant = [](const Load& l) { return l.wave.w == 0 && !l.sweep; };
-  if (asked == Response::kStep &&
-      (!touches.empty() || !std::all_of(loads.begin(), loads.end(), constant)))
-    fail("{}: \"asks\" is 'step', so there must be constant \"loads\", and nothing else",
-         o.where());
+  if (asked == Response::kStep && (touched || !std::all_of(loads.begin(), loads.end(), constant)))
+    refuse("{}: \"asks\" is 'step', so there must be constant \"loads\", and nothing else",
+           o.where());
   const auto changes = [&](const Load& l) {
     return l.from > 0 || l.to < o.number("duration", 0, Object::kMost) || l.sweep ||
            (asked == Response::kLag && l.wave.w > 0);
   };
-  if (of_load && touches.empty() && !std::any_of(loads.begin(), loads.end(), changes))
-    fail("{}: \"asks\" is '{}', and no load {}", o.where(), o.text("asks", ""),
-         asked == Response::kLag ? "changes" : "begins or ends within the scenario");
+  if (of_load && !touched && !std::any_of(loads.begin(), loads.end(), changes))
+    refuse("{}: \"asks\" is '{}', and no load {}", o.where(), o.text("asks", ""),
+           asked == Response::kLag ? "changes" : "begins or ends within the scenario");
   const double least = o.number_or("score_from", 0, 0, Object::kMost) + metrics::kLongestLag + 0.1;
   if (const double duration = o.number("duration", 0, Object::kMost);
       asked == Response::kLag && duration < least - 1e-9)
-    fail("{}: \"asks\" is 'lag', so \"duration\" must be {:g} or more, not {:g}", o.where(), least,
-         duration);
-  if (asked == Response::kDetection && touches.empty())
-    fail("{}: \"asks\" is 'detection', and there are no \"touches\"", o.where());
+    refuse("{}: \"asks\" is 'lag', so \"duration\" must be {:g} or more, not {:g}", o.where(),
+           least, duration);
+  if (asked == Response::kDetection && !touched)
+    refuse("{}: \"asks\" is 'detection', and there are no \"touches\" or \"regions\"", o.where());
 }
 
 Scenario scenario_of(const Json& json, const std::string& where, const Robot& robot) {
   const Object of(json, where,
                   {"name", "description", "duration", "score_from", "asks", "way_points", "sines",
-                   "loads", "touches", "degrade", "reaches_limits"});
+                   "loads", "touches", "regions", "degrade", "reaches_limits"});
   Scenario s = quiet();
   s.name = of.text("name", "");
   if (s.name.empty() || s.name.find_first_of("/+@ \t\n") != s.name.npos)
-    fail("{}: \"name\" is '{}', and must be a word without / + @", where, s.name);
+    refuse("{}: \"name\" is '{}', and must be a word without / + @", where, s.name);
   s.description = of.text("description", "of a file");
   s.duration = of.number("duration", 0.1, 3600);
   s.score_from = of.number_or("score_from", 0, 0, s.duration - 0.01);
@@ -224,7 +183,8 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
   };
   const std::vector<Load> loads = loads_of(of, robot.dof(), s.duration);
   const std::vector<Touch> touches = touches_of(of, s.duration);
-  check_question(of, s.response, loads, touches);
+  s.regions = regions_of(of, s.duration);
+  check_question(of, s.response, loads, !touches.empty() || !s.regions.empty());
   s.tau_ext = [loads](double t, int i) {
     double sum = 0;
     for (const Load& x : loads) {
@@ -237,7 +197,7 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     try {
       set_degradation(of.at("degrade").dump(), d);
     } catch (const std::invalid_argument& e) {
-      fail("{}: degrade: {}", of.where(), e.what());
+      refuse("{}: degrade: {}", of.where(), e.what());
     }
     s.sensors = d.sensors;
     s.model_error = d.model_error;
@@ -256,7 +216,7 @@ std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot
     file.each("scenarios", [&](const Json& j, const std::string& where) {
       all.push_back(scenario_of(j, where, robot));
     });
-    if (all.empty()) fail("{}: there is no scenario in it", path);
+    if (all.empty()) refuse("{}: there is no scenario in it", path);
     return all;
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(one_line(e.what()));

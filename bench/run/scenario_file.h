@@ -22,6 +22,12 @@ namespace tauext {
 ///                    { "joint": 3, "torque": 9, "from": 2, "to": 38, "sweep": true } ],
 ///         "touches": [ { "kind": "blow", "t": 7, "rise": 0.02, "force": [0, 0, 80] },
 ///                      { "kind": "push", "t": 8, "rise": 1, "hold": 1, "fall": 1, "force": [20, 0, 0] } ],
+///         "regions": [ { "region": "hand", "t": 3, "direction": [0, 0, 1], "speed": 0.25,
+///                        "at": ["link4", "link5", 0.5] },
+///                      { "region": "chest", "meeting": "grazing", "t": 5, "direction": [0, 0, 1],
+///                        "depth": 0.005, "rise": 0.03 },
+///                      { "region": "face", "meeting": "clamped", "t": 7, "direction": [0, 0, 1],
+///                        "force": 65, "rise": 0.2, "hold": 0.5, "fall": 0.2 } ],
 ///         "degrade": { "velocity_noise": 1e-3, "model_error": { "mass": 1.05 } },
 ///         "reaches_limits": false } ] }
 ///
@@ -30,8 +36,10 @@ namespace tauext {
 /// stays at its home (Robot::home). Loads have the sign of (3); a sweep is a sine from 0.5 to 300
 /// rad/s. A bandwidth is asked of sweeps alone, a step of constant loads alone, and a lag of
 /// scenarios that last 2.1 s or more beyond score_from. A joint whose truth stands still is not
-/// asked for its answer. Forces act on the arm at its end effector, in the world frame; blow and
-/// clamp count as collisions, push does not. What is degraded is what --degrade takes, and is used
+/// asked for its answer. Touches are forces on the arm at its end effector, in the world frame;
+/// blow and clamp count as collisions, push does not. Regions are masses on springs that meet the
+/// arm at a point (mjcf/scenarios/regions.h), and collisions all; "share_of_limit" may stand for
+/// "speed", and "stiffness_factor" be given. What is degraded is what --degrade takes, and is used
 /// unless the program was asked for other faults.
 /// @throws std::runtime_error naming file, scenario, key and value, and what is known or possible
 std::vector<Scenario> read_scenarios(const std::string& path, const Robot& robot);

@@ -177,8 +177,9 @@ void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Rep
     progress.show(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()));
   }
   AtomicFile file(*run.report);
-  file.write(report::page_of({checked_result("results.json", reporter.json()),
-                              checked_result("traces.json", traces.json(run_line(run.suite)))}));
+  file.write(
+      report::page_of({checked_result(report::kOwnResults, reporter.json()),
+                       checked_result(report::kOwnTraces, traces.json(run_line(run.suite)))}));
   file.commit();
   progress.clear();
   fmt::print(words_of(run), "\n{}: the report; open it in a browser\n", *run.report);

@@ -30,6 +30,13 @@ were marked while they held. named: share that was also called a clamping. faile
 an estimate was missing; they count like the others.
 )";
 
+constexpr const char* kRegionLegend = R"(
+Meetings with regions of a body (--regions): share that was marked until {:g} s after the contact
+[%], by the speed at which they met [m/s] or that at which the region's limit would be reached by so
+much; in the last column the share in which the limit was exceeded before anything was marked.
+The JSON has each region by itself.
+)";
+
 std::string percent(double part, double of) {
   return of == 0 ? "-" : fmt::format("{:.1f}", 100 * part / of);
 }
@@ -53,6 +60,41 @@ std::vector<TableWriter::Column> detection_columns() {
           {"clamping", "%"},
           {"named", "%"},
           {"failed", "runs"}};
+}
+
+// "0.10", "25%", .. without the regions
+std::vector<std::string> region_kinds() {
+  std::vector<std::string> all;
+  for (const RegionClass& c : region_classes()) {
+    if (std::count(all.begin(), all.end(), c.kind) == 0) all.push_back(c.kind);
+  }
+  return all;
+}
+
+// one condition's
+std::string region_table(std::vector<Cell>::const_iterator first,
+                         std::vector<Cell>::const_iterator last) {
+  std::vector<TableWriter::Column> columns = {{"estimator+detector", "", true}};
+  for (const std::string& kind : region_kinds()) columns.push_back({kind, "%"});
+  columns.push_back({"exceeded", "%"});
+  TableWriter table(columns);
+  for (; first != last; ++first) {
+    std::vector<std::string> row = {first->estimator + "+" + first->detector};
+    double exceeded = 0, all = 0;
+    for (const std::string& kind : region_kinds()) {
+      int found = 0, touches = 0;
+      for (std::size_t i = 0; i < first->regions.size(); ++i) {
+        const RegionCount& r = first->regions[i];
+        if (region_classes()[i].kind != kind) continue;
+        found += r.found, touches += r.touches;
+        exceeded += r.exceeded() * r.touches, all += r.touches;
+      }
+      row.push_back(percent(found, touches));
+    }
+    row.push_back(percent(exceeded, all));
+    table.add(row);
+  }
+  return table.format();
 }
 
 std::vector<std::string> cells_of(const Cell& c) {
@@ -82,10 +124,14 @@ std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
                        condition(runs, first->condition).description, first->blows, first->hours(),
                        first->brisk, first->clampings);
     TableWriter table(detection_columns());
+    const std::string of_regions = first->regions.empty() ? "" : region_table(first, last);
     for (; first != last; ++first) table.add(cells_of(*first));
     out += table.format();
+    if (!of_regions.empty()) out += "\n" + of_regions;
   }
-  return out + fmt::format(kDetectionLegend, metrics::kGrace);
+  const bool regions = !cells.empty() && !cells.front().regions.empty();
+  return out + fmt::format(kDetectionLegend, metrics::kGrace) +
+         (regions ? fmt::format(kRegionLegend, metrics::kGrace) : "");
 }
 
 Json number(double x) {
@@ -109,6 +155,34 @@ Json roc_of(const Cell& c) {
     roc.push_back(point);
   }
   return roc;
+}
+
+Json regions_of(const Cell& c) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < c.regions.size(); ++i) {
+    const RegionClass& of = region_classes()[i];
+    const RegionCount& r = c.regions[i];
+    if (r.touches == 0) continue;
+    const metrics::Interval recall = metrics::share_interval(r.found, r.touches);
+    Json j = {{"class", of.name},
+              {"region", of.region->name},
+              {"kind", of.kind},
+              {"limit_N", of.limit()},
+              {"touches", r.touches},
+              {"found", r.found},
+              {key_of(Metric::kRecall), static_cast<double>(r.found) / r.touches},
+              {key_of(Metric::kRecallLow), recall.low},
+              {key_of(Metric::kRecallHigh), recall.high},
+              {"delay_p50_s", number(quantile(r.delays, 0.5))},
+              {"delay_p95_s", number(quantile(r.delays, 0.95))},
+              {"exceeded", r.exceeded()}};
+    for (int k = 0; k <= 20; ++k) {
+      j["peak_of_limit_quantiles"].push_back(quantile(r.peaks, k / 20.));
+      j["until_found_of_limit_quantiles"].push_back(quantile(r.until_found, k / 20.));
+    }
+    all.push_back(j);
+  }
+  return all;
 }
 
 Json to_json(const Cell& c) {
@@ -146,6 +220,7 @@ Json to_json(const Cell& c) {
   j["clampings_flagged"] = c.clampings_flagged;
   j["clampings_named"] = c.clampings_named;
   j["roc"] = roc_of(c);
+  if (!c.regions.empty()) j["regions"] = regions_of(c);
   return j;
 }
 

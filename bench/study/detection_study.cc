@@ -35,6 +35,13 @@ std::vector<Job> jobs_of(const StudyRuns& study, const PlantKey& plant, const St
   add_jobs(study, plant, TouchKind::kBlow, o.first_seed, o.blows, jobs);
   add_jobs(study, plant, TouchKind::kBriskPush, o.first_seed, o.brisk_pushes, jobs);
   add_jobs(study, plant, TouchKind::kClamp, o.first_seed, o.clampings, jobs);
+  for (int c = 0; o.regions > 0 && c < static_cast<int>(region_classes().size()); ++c) {
+    Job job{plant, TouchKind::kSlowPush, o.first_seed, c};
+    for (int count = o.regions; count > 0; ++job.seed) {
+      jobs.push_back(job);
+      count -= static_cast<int>(meetings_of(study, job).size());
+    }
+  }
   const double scored = study.touched(TouchKind::kSlowPush, 1).duration - kScoreFrom;
   const int runs = static_cast<int>(std::ceil(o.hours * 3600 / scored - 1e-9));
   for (int i = 0; i < runs; ++i) jobs.push_back({plant, TouchKind::kSlowPush, o.first_seed + i});
@@ -74,12 +81,18 @@ class Study {
     Views views(std::move(truths), jobs);
     for (std::size_t c = 0; c < conditions_.size(); ++c) {
       const Condition& of = *conditions_[c];
-      if (plant_of(of) == jobs.front().plant) run(jobs, c, views.by(of.degradation.sensors));
+      if (plant_of(of) == jobs.front().plant) run(jobs, c, views);
     }
   }
 
   std::vector<Cell> cells() && {
-    for (Cell& c : cells_) std::sort(c.delays.begin(), c.delays.end());
+    for (Cell& c : cells_) {
+      std::sort(c.delays.begin(), c.delays.end());
+      for (RegionCount& r : c.regions) {
+        for (auto* values : {&r.delays, &r.peaks, &r.until_found})
+          std::sort(values->begin(), values->end());
+      }
+    }
     return std::move(cells_);
   }
 
@@ -101,7 +114,7 @@ class Study {
     for (std::size_t from = 0, n = 0; from < jobs_.size(); from += n) {
       for (n = 1; n < most && from + n < jobs_.size(); ++n) {
         const Job &a = jobs_[from], &b = jobs_[from + n];
-        if (a.plant != b.plant || a.kind != b.kind) break;
+        if (a.plant != b.plant || a.kind != b.kind || a.region != b.region) break;
       }
       batches_.emplace_back(&jobs_[from], n);
     }
@@ -112,11 +125,24 @@ class Study {
     return first == &jobs_.front() || (first - 1)->plant != first->plant;
   }
 
-  void run(std::span<const Job> jobs, std::size_t c, const std::vector<Trace>& seen) {
+  // what one run adds
+  Cell counted(const Job& job, const Answers& answers, const std::vector<double>& force) const {
+    Cell cell{.runs = 1};
+    if (job.region < 0) {
+      count(job.kind, answers, runs_.touches(job.kind, job.seed), cell);
+    } else {
+      const auto c = static_cast<std::size_t>(job.region);
+      cell.regions.resize(region_classes().size());
+      count_regions(region_classes()[c], answers, meetings_of(runs_, job), force, cell.regions[c]);
+    }
+    return cell;
+  }
+
+  void run(std::span<const Job> jobs, std::size_t c, Views& views) {
+    const Sensors& sensors = conditions_[c]->degradation.sensors;
+    const std::vector<Trace> seen = views.by(sensors);
     const std::unique_ptr<Session> session = believers_.at(conditions_[c]->believed)->session(seen);
-    std::vector<std::vector<Touch>> touches;
-    for (const Job& job : jobs) touches.push_back(runs_.touches(job.kind, job.seed));
-    const double noise = conditions_[c]->degradation.sensors.velocity_noise;
+    const double noise = sensors.velocity_noise;
     std::vector<Cell> adds;
     for (const std::string& e : estimators_) {
       const std::vector<std::string> why = session->estimate(e);
@@ -126,9 +152,8 @@ class Study {
       }
       for (const std::vector<Answers>& of_runs : session->answers(asked, kLevels, kScoreFrom)) {
         for (std::size_t i = 0; i < jobs.size(); ++i) {
-          Cell cell{.runs = 1, .failed_runs = !why[i].empty()};
-          count(jobs[i].kind, of_runs[i], touches[i], cell);
-          adds.push_back(std::move(cell));
+          adds.push_back(counted(jobs[i], of_runs[i], views.contact_force(i)));
+          adds.back().failed_runs = !why[i].empty();
         }
       }
     }
@@ -152,22 +177,24 @@ class Study {
 }  // namespace
 
 void check_study(const StudyOptions& o) {
-  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0)
+  if (o.blows < 0 || o.brisk_pushes < 0 || o.clampings < 0 || o.regions < 0)
     throw std::invalid_argument(
-        fmt::format("a study has 0 or more touches of each kind, not {} collisions, {} pushes and "
-                    "{} clampings",
-                    o.blows, o.brisk_pushes, o.clampings));
+        fmt::format("a study has 0 or more touches of each kind, not {} collisions, {} pushes, {} "
+                    "clampings and {} of regions",
+                    o.blows, o.brisk_pushes, o.clampings, o.regions));
   if (!(o.hours >= 0 && o.hours <= 1000))
     throw std::invalid_argument(fmt::format("a study has 0 to 1000 hours, not {}", o.hours));
-  if (o.blows + o.brisk_pushes + o.clampings == 0 && o.hours == 0) {
-    throw std::invalid_argument("nothing to try: 0 collisions, pushes, clampings and hours");
+  if (o.blows + o.brisk_pushes + o.clampings + o.regions == 0 && o.hours == 0) {
+    throw std::invalid_argument(
+        "nothing to try: 0 collisions, pushes, clampings, regions and hours");
   }
-  const double runs = std::max({o.blows, o.brisk_pushes, o.clampings}) + o.hours * 3600;
+  const double runs = std::max({o.blows, o.brisk_pushes, o.clampings, o.regions}) + o.hours * 3600;
   if (static_cast<double>(o.first_seed) + runs >= static_cast<double>(kTrainingSeed)) {
     throw std::invalid_argument(fmt::format(
         "seeds from {} on are for calibration: a test would know its training", kTrainingSeed));
   }
   const StudyRuns& of = touched_runs(o.robot);
+  if (o.regions > 0) of.points();  // which may throw
   chosen_conditions(of, o.conditions, {});
   chosen_estimators(robot(of.robot), o.estimators);
   chosen_detectors(robot(of.robot), o.detectors);

@@ -28,6 +28,7 @@ struct StudyOptions {
   int blows = 500;                      ///< at least so many for each condition
   int brisk_pushes = 100;               ///< at least so many for each condition
   int clampings = 100;                  ///< at least so many for each condition
+  int regions = 0;   ///< at least so many meetings of each of region_classes(), likewise
   double hours = 1;  ///< [h] of slow pushes and free motion, at least, for each condition
   std::uint64_t first_seed = 1;          ///< of the runs: first_seed, first_seed + 1, ...
   int threads = 0;                       ///< 0: one a core

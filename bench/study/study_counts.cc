@@ -2,6 +2,8 @@
 #include "bench/study/study_counts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "bench/score/detection_metrics.h"
 #include "bench/study/study_runs.h"
@@ -87,7 +89,53 @@ void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& tou
   }
 }
 
+double RegionCount::exceeded() const {
+  const auto over =
+      std::count_if(until_found.begin(), until_found.end(), [](double share) { return share > 1; });
+  return touches == 0 ? 0 : static_cast<double>(over) / touches;
+}
+
+void count_regions(const RegionClass& of, const Answers& answers,
+                   const std::vector<RegionTouch>& touches, const std::vector<double>& force,
+                   RegionCount& to) {
+  const auto sample = [&](double t) {
+    return std::min(static_cast<std::size_t>(std::lround(std::max(t, 0.) * 1e3)), force.size());
+  };
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const double begin = touches[i].begin;
+    const std::size_t from = sample(begin);
+    const std::size_t next = i + 1 < touches.size() ? sample(touches[i + 1].begin) : force.size();
+    std::size_t end = next;  // of the contact
+    while (end > from && force[end - 1] == 0) --end;
+    const double last = static_cast<double>(end) * 1e-3 + metrics::kGrace;
+    const auto mark = std::find_if(answers.marks.begin(), answers.marks.end(),
+                                   [&](const Mark& m) { return m.t >= begin && m.t <= last; });
+    const auto largest = [&](std::size_t until) {
+      double most = 0;
+      for (std::size_t k = from; k < until; ++k) most = std::max(most, force[k]);
+      return most / of.limit();
+    };
+    ++to.touches;
+    to.peaks.push_back(largest(end));
+    const bool found = mark != answers.marks.end();
+    to.until_found.push_back(found ? largest(std::min(sample(mark->t) + 1, end)) : largest(end));
+    if (!found) continue;
+    ++to.found;
+    to.delays.push_back(mark->t - begin);
+  }
+}
+
 void add(const Cell& run, Cell& sum) {
+  sum.regions.resize(std::max(sum.regions.size(), run.regions.size()));
+  for (std::size_t i = 0; i < run.regions.size(); ++i) {
+    const RegionCount& r = run.regions[i];
+    RegionCount& s = sum.regions[i];
+    s.touches += r.touches;
+    s.found += r.found;
+    s.delays.insert(s.delays.end(), r.delays.begin(), r.delays.end());
+    s.peaks.insert(s.peaks.end(), r.peaks.begin(), r.peaks.end());
+    s.until_found.insert(s.until_found.end(), r.until_found.begin(), r.until_found.end());
+  }
   sum.runs += run.runs;
   sum.failed_runs += run.failed_runs;
   sum.blows += run.blows;

@@ -8,12 +8,24 @@
 #include <vector>
 
 #include "bench/roster/session/session.h"
+#include "mjcf/scenarios/region_runs.h"
 #include "mjcf/scenarios/touch.h"
 
 namespace tauext::study {
 
 /// Multiples of the detector's threshold at which its score is judged, too.
 inline constexpr std::array kLevels = {0.125, 0.25, 0.5, 0.71, 1.0, 1.41, 2.0, 4.0, 8.0};
+
+/// What became of meetings of one of region_classes().
+struct RegionCount {
+  int touches = 0, found = 0;       ///< found: by a mark until metrics::kGrace after the contact
+  std::vector<double> delays;       ///< [s] from the begin of one that was found to its mark
+  std::vector<double> peaks;        ///< [1] of the limit: the largest force of each
+  std::vector<double> until_found;  ///< [1] of the limit: the same until the mark, if there was one
+
+  /// [1] of the touches in which the limit was exceeded before anything was marked.
+  double exceeded() const;
+};
 
 /// One estimator and detector, by specification, under one condition.
 struct Cell {
@@ -32,6 +44,8 @@ struct Cell {
   std::array<int, kLevels.size()> detected_at{};  ///< with thresholds times kLevels
   std::array<int, kLevels.size()> alarms_at{};    ///< likewise
 
+  std::vector<RegionCount> regions;  ///< by region_classes(); or empty
+
   /// [h] without a touch.
   double hours() const { return static_cast<double>(quiet_samples) * 1e-3 / 3600; }
   /// [1] of the blows.
@@ -41,6 +55,12 @@ struct Cell {
 /// Counts a run of that kind: what a detector said of it, against the touches that were there. Its
 /// rises are through kLevels.
 void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& touches, Cell& cell);
+
+/// Counts a run of meetings of that class.
+/// @param force [N] on the arm at each sample, 1 kHz
+void count_regions(const RegionClass& of, const Answers& answers,
+                   const std::vector<RegionTouch>& touches, const std::vector<double>& force,
+                   RegionCount& to);
 
 /// Adds a run to the sum; the names in `sum` stay.
 void add(const Cell& run, Cell& sum);

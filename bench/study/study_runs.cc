@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -62,6 +63,10 @@ StudyRuns runs_of_wallmobot3() {
   r.believer = wallmobot3_believing;
   r.touched = touched_wallmobot3;
   r.touches = touches_of_wallmobot3;
+  r.points = []() -> const TouchPoints& {
+    static const TouchPoints all(wallmobot3_with_panel(0), Eigen::VectorXd::Zero(3));
+    return all;
+  };
   return r;
 }
 
@@ -97,6 +102,14 @@ StudyRuns runs_of_any(const Robot& r) {
   };
   runs.touches = [scale](TouchKind kind, std::uint64_t seed) {
     return touches_of(scale, kind, seed);
+  };
+  struct Made {
+    std::once_flag once;
+    std::optional<TouchPoints> points;
+  };
+  runs.points = [&r, home = scale.home, made = std::make_shared<Made>()]() -> const TouchPoints& {
+    std::call_once(made->once, [&] { made->points.emplace(r.load_for(quiet()), home); });
+    return *made->points;
   };
   return runs;
 }
@@ -154,7 +167,17 @@ std::vector<std::string> competitors(const Robot& r) {
 }
 
 std::uint64_t sensors_seed(const Job& job) {
+  if (job.region >= 0) return static_cast<std::uint64_t>(job.region + 1) * 100'000'000 + job.seed;
   return 4 * job.seed + static_cast<std::uint64_t>(job.kind);
+}
+
+Scenario scenario_of(const StudyRuns& runs, const Job& job) {
+  Scenario s = runs.touched(job.kind, job.seed);
+  if (job.region < 0) return s;
+  s.force = quiet().force;
+  s.contact = quiet().contact;
+  s.regions = meetings_of(runs, job);
+  return s;
 }
 
 }  // namespace
@@ -175,15 +198,20 @@ const Condition& condition(const StudyRuns& runs, const std::string& name) {
   return find_known(runs.conditions, "condition", name, [](const auto& c) { return c.name; });
 }
 
+std::vector<RegionTouch> meetings_of(const StudyRuns& runs, const Job& job) {
+  return runs.points().draw(static_cast<std::size_t>(job.region), job.seed, kScoreFrom,
+                            quiet().duration);
+}
+
 std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model) {
   std::vector<Scenario> scenarios;
-  for (const Job& job : jobs) scenarios.push_back(runs.touched(job.kind, job.seed));
+  for (const Job& job : jobs) scenarios.push_back(scenario_of(runs, job));
   return robot(runs.robot).simulate(model, scenarios);
 }
 
 void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
                            const Trace& truth) {
-  const double off = difference(simulate(model, runs.touched(job.kind, job.seed)), truth);
+  const double off = difference(simulate(model, scenario_of(runs, job)), truth);
   if (off < 1e-9) return;
   throw std::runtime_error(
       fmt::format("{}: the run of seed {} differs by {:.2g} from MuJoCo's, and 1e-9 is allowed",
@@ -200,6 +228,7 @@ Views::Views(std::vector<Trace> truths, std::span<const Job> jobs) {
     Trace& t = truths[i];
     seeds_.push_back(sensors_seed(jobs[i]));
     drawn_.push_back(velocity_noise(t.dof(), seeds_.back()));
+    forces_.push_back(std::move(t.contact_force));
     readings_.push_back({.t = std::move(t.t),
                          .q = std::move(t.q),
                          .qd = std::move(t.qd),

@@ -16,6 +16,7 @@
 #include "bench/roster/robot.h"
 #include "bench/score/degradation.h"
 #include "mjcf/plant/model.h"
+#include "mjcf/scenarios/region_runs.h"
 #include "mjcf/scenarios/touch.h"
 
 namespace tauext::study {
@@ -53,6 +54,8 @@ struct StudyRuns {
   std::function<std::shared_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it
   std::function<Scenario(TouchKind, std::uint64_t seed)> touched;      ///< a run with touches
   std::function<std::vector<Touch>(TouchKind, std::uint64_t seed)> touches;  ///< those in that run
+  /// Where regions of a body touch it; made when it is first asked for, and may throw.
+  std::function<const TouchPoints&()> points;
 
   // of the reliability study
   std::function<Scenario(std::uint64_t seed)> blow;    ///< a run with one blow
@@ -76,7 +79,11 @@ struct Job {
   PlantKey plant;      ///< the robot
   TouchKind kind;      ///< what touches it
   std::uint64_t seed;  ///< of the touches
+  int region = -1;     ///< of region_classes(), which meet it instead of `kind`; -1: none do
 };
+
+/// Of a job with a region: its meetings, of which the first begins at kScoreFrom or later.
+std::vector<RegionTouch> meetings_of(const StudyRuns& runs, const Job& job);
 
 /// The true traces of runs of one robot.
 std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model);
@@ -98,9 +105,12 @@ class Views {
 
   /// What they see of each run, without its truth.
   std::vector<Trace> by(const Sensors& sensors);
+  /// [N] on the arm at each sample of that run.
+  const std::vector<double>& contact_force(std::size_t run) const { return forces_[run]; }
 
  private:
-  std::vector<Trace> readings_;       // what can be measured
+  std::vector<Trace> readings_;  // what can be measured
+  std::vector<std::vector<double>> forces_;
   std::vector<std::uint64_t> seeds_;  // of the sensors
   std::vector<std::vector<Normals>> drawn_;
 };

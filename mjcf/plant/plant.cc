@@ -202,10 +202,13 @@ double Plant::contact_force() const {
   return sum;
 }
 
-BodyPoint Plant::carried_site(const std::string& name) const {
-  const int id = mj_name2id(model_.get(), mjOBJ_SITE, name.c_str());
-  if (id < 0) throw std::invalid_argument(fmt::format("the robot has no site '{}'", name));
-  return {model_->site_bodyid[id], Vector3d::Map(model_->site_pos + 3 * id)};
+BodyPoint Plant::place(const std::string& name) const {
+  if (name == kEndEffector) return end_effector_;
+  if (const int id = mj_name2id(model_.get(), mjOBJ_SITE, name.c_str()); id >= 0)
+    return {model_->site_bodyid[id], Vector3d::Map(model_->site_pos + 3 * id), name};
+  if (const int id = mj_name2id(model_.get(), mjOBJ_BODY, name.c_str()); id >= 0)
+    return {id, Vector3d::Zero(), name};
+  throw std::invalid_argument(fmt::format("the robot has no site or body '{}'", name));
 }
 
 Vector3d Plant::position(const BodyPoint& c) const {
@@ -220,29 +223,17 @@ MatrixXd Plant::jacobian(const BodyPoint& c) const {
   return J;
 }
 
-Point Plant::moving(const BodyPoint& c) const {
+Point Plant::point(const BodyPoint& c) const {
   return {position(c), jacobian(c) * view(data_->qvel, model_->nv)};
 }
 
-VectorXd Plant::tau_ext_at(const BodyPoint& c, const Vector3d& f) const {
+VectorXd Plant::tau_ext_of(const Vector3d& f, const BodyPoint& c) const {
   const VectorXd force = jacobian(c).transpose() * f;
   return -of_arm(force.data());
 }
 
-Point Plant::site(const std::string& name) const {
-  return moving(carried_site(name));
-}
-
 MatrixXd Plant::end_effector_jacobian() const {
   return jacobian(end_effector_)(Eigen::all, layout_.arm) * layout_.T;
-}
-
-VectorXd Plant::tau_ext_of(const Vector3d& f) const {
-  return tau_ext_at(end_effector_, f);
-}
-
-VectorXd Plant::tau_ext_of(const Vector3d& f, const std::string& site) const {
-  return tau_ext_at(carried_site(site), f);
 }
 
 void Plant::step(double h) {

@@ -61,11 +61,17 @@ class Plant {
   /// Sum of the normal forces of the contacts on the arm [N].
   double contact_force() const;
 
-  /// A site of the arm.
-  /// @throws std::invalid_argument for an unknown site
-  Point site(const std::string& name) const;
+  /// A point of the arm that a body carries.
+  using Place = BodyPoint;
+  /// A site, the origin of a body, or kEndEffector.
+  /// @throws std::invalid_argument for an unknown name
+  Place place(const std::string& name) const;
+  /// Where such a point is.
+  Point point(const Place& c) const;
+  /// place(name), there.
+  Point site(const std::string& name) const { return point(place(name)); }
   /// The point that touches the outside: end_effector_of in layout.h.
-  Point end_effector() const { return moving(end_effector_); }
+  Point end_effector() const { return point(end_effector_); }
   /// Its Jacobian [m per joint coordinate] in the world frame.
   Eigen::MatrixXd end_effector_jacobian() const;
 
@@ -78,10 +84,11 @@ class Plant {
   bool is_tied() const { return is_tied_; }
 
   /// tau_ext = -J^T f [N m] of a force f [N, world frame] that acts on the arm at its end effector.
-  Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f) const;
-  /// The same at a site.
-  /// @throws std::invalid_argument for an unknown site
-  Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f, const std::string& site) const;
+  Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f) const {
+    return tau_ext_of(f, end_effector_);
+  }
+  /// The same at another point.
+  Eigen::VectorXd tau_ext_of(const Eigen::Vector3d& f, const Place& c) const;
 
   /// Hangs the load on the end effector, below it and moving with it, its tether stretched by its
   /// weight. @throws std::invalid_argument without the scene "load"
@@ -100,12 +107,9 @@ class Plant {
 
   void put_arm(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
   void apply_to_load();
-  BodyPoint carried_site(const std::string& name) const;
   Eigen::Vector3d position(const BodyPoint& c) const;
   Eigen::MatrixXd jacobian(const BodyPoint& c) const;  // by MuJoCo's degrees of freedom
-  Point moving(const BodyPoint& c) const;
-  Eigen::VectorXd tau_ext_at(const BodyPoint& c, const Eigen::Vector3d& f) const;
-  Eigen::VectorXd of_arm(const double* force) const;  // a generalised force, in joint coordinates
+  Eigen::VectorXd of_arm(const double* force) const;   // a generalised force, in joint coordinates
   template <class Counts>
   Eigen::VectorXd constraint_force(Counts&& counts) const;
 

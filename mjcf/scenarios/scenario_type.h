@@ -14,6 +14,7 @@
 #include "mjcf/plant/model_error.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/scenarios/motion.h"
+#include "mjcf/scenarios/regions.h"
 #include "mjcf/trace/sensors.h"
 
 namespace tauext {
@@ -61,6 +62,7 @@ struct Scenario {
   std::function<Eigen::Vector3d(double, const Point&)> force;
   /// Whether a collision acts, the end effector being there; the obstacle's adds to it.
   std::function<bool(double, const Point&)> contact;
+  std::vector<RegionTouch> regions;  ///< of a person's body that the arm meets, in their order
   std::string scene;            ///< what stands around the arm: a name of mjcf/scene_*.xml, or ""
   std::optional<Load> load;     ///< with the scene "load"
   bool reaches_limits = false;  ///< of joints, whose torque is tau_ext then; else they end the run

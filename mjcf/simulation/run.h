@@ -14,6 +14,7 @@
 #include "mjcf/scenarios/motion.h"
 #include "mjcf/scenarios/scenario_type.h"
 #include "mjcf/simulation/recording.h"
+#include "mjcf/simulation/region_contact.h"
 #include "mjcf/trace/sensors.h"
 #include "mjcf/trace/trace.h"
 
@@ -93,6 +94,7 @@ class Run {
         control_(tracking(s, r)),
         stream_(sensors, plant_.dof(), plant_.screws()),
         load_(s.load),
+        regions_(s.regions, plant_),
         trace_(empty_trace(plant_.dof(), static_cast<int>(std::lround(s.duration / r.Ts)))) {
     trace_.screws = plant_.screws();
     const Motion<Vector> start = s.start_on_reference ? reference(0) : at_rest(Vector::Zero(dof()));
@@ -112,6 +114,17 @@ class Run {
 
   int size() const { return trace_.size(); }
   P& plant() { return plant_; }
+  // whether this step is its own, not one beside others
+  bool steps_alone() const { return regions_.is_coupled(); }
+  void step() {
+    try {
+      if (regions_.is_coupled())
+        return regions_.step(plant_, plant_.tau(), rest_, t_, r_.Ts, r_.substeps);
+      for (int i = 0; i < r_.substeps; ++i) plant_.step(r_.Ts / r_.substeps);
+    } catch (const std::runtime_error& e) {
+      fail_step(s_, r_, e.what());
+    }
+  }
 
   // false if the plant got lost
   bool sample(int k, const Supervisor& supervisor) {
@@ -155,6 +168,10 @@ class Run {
     force_ = s_.force(t, tip_);
     only_force_ = only_force_ && tau_ext.isZero(0) && !s_.load;
     if (!force_.isZero(0)) tau_ext += plant_.tau_ext_of(force_);
+    t_ = t, rest_ = tau_ext;
+    regions_.look(plant_, t);
+    pressed_with_ = regions_.force(plant_, t);
+    if (pressed_with_ > 0) tau_ext += regions_.tau_ext_of(plant_, pressed_with_);
     if (s_.floats && !stopped_) {
       plant_.set_input(plant_.bias(), tau_ext);
     } else {
@@ -174,8 +191,8 @@ class Run {
     trace_.friction.col(k) = plant_.friction();
     const bool touched = s_.contact(trace_.t[k], tip_);
     const double by_contacts = plant_.contact_force();
-    only_force_ = only_force_ && stops.isZero(0) && by_contacts == 0;
-    trace_.contact_force[k] = by_contacts + (touched ? force_.norm() : 0);
+    only_force_ = only_force_ && stops.isZero(0) && by_contacts == 0 && pressed_with_ == 0;
+    trace_.contact_force[k] = by_contacts + pressed_with_ + (touched ? force_.norm() : 0);
     trace_.contact[k] = touched || trace_.contact_force[k] > 0;
   }
 
@@ -201,23 +218,19 @@ class Run {
     trace_.stopped_at = k;
   }
 
-  void step() {
-    try {
-      for (int i = 0; i < r_.substeps; ++i) plant_.step(r_.Ts / r_.substeps);
-    } catch (const std::runtime_error& e) {
-      fail_step(s_, r_, e.what());
-    }
-  }
-
   P plant_;
   const Scenario& s_;
   const Recording& r_;
   Tracking control_;
   SensorStream stream_;
   LoadHandler load_;
+  RegionContact<P> regions_;
   Trace trace_;
   Point tip_{};                    // the end effector
   Eigen::Vector3d force_;          // [N] of the scenario, there
+  double pressed_with_ = 0;        // [N] of a region, somewhere
+  Vector rest_;                    // [N m] tau_ext without it
+  double t_ = 0;                   // [s] of the last sample
   bool only_force_ = true;         // makes tau_ext
   std::optional<Vector> stopped_;  // where a mark stopped the arm
 };

@@ -58,9 +58,10 @@ class TreeMotion {
   virtual void accelerate(TreeState& s) const = 0;  ///< sets qdd, where only torques are new
   /// h [s] on, with these torques, of as many runs as there are; looks.
   virtual void step(std::span<TreeState* const> runs, double h) const = 0;
-  virtual Point end_effector(const TreeState& s) const = 0;  ///< in the axes of the tree
-  /// -J^T f [N m] of a force f [N] on the arm at its end effector.
-  virtual TreeState::Vector tau_ext_of(const TreeState& s, const Vec<3>& f) const = 0;
+  virtual Point point(const TreeState& s, const ArmPoint& at) const = 0;  ///< in the tree's axes
+  /// -J^T f [N m] of a force f [N] on the arm at that point.
+  virtual TreeState::Vector tau_ext_of(const TreeState& s, const ArmPoint& at,
+                                       const Vec<3>& f) const = 0;
 };
 
 /// Of N joints, of which none follows another; W runs at once, in the lanes of a SIMD register. (W
@@ -72,7 +73,6 @@ class TreeMotionOf final : public TreeMotion {
   explicit TreeMotionOf(const PlainArm& arm)
       : arm_(model_of(arm.tree)),
         arms_(arm_.template with<Pack<W>>()),
-        end_(arm.tree.point(kEndEffector)),
         most_(arm.dry.most),
         D_(arm.dry.D),
         rate_(arm.dry.rate),
@@ -105,14 +105,15 @@ class TreeMotionOf final : public TreeMotion {
     put(x, s);
   }
 
-  Point end_effector(const TreeState& s) const override {
+  Point point(const TreeState& s, const ArmPoint& at) const override {
     Vec<3> position;
-    const auto J = jacobian(fixed(s.q), &position);
+    const auto J = jacobian(fixed(s.q), at, &position);
     return {position, J * fixed(s.qd)};
   }
 
-  TreeState::Vector tau_ext_of(const TreeState& s, const Vec<3>& f) const override {
-    return -jacobian(fixed(s.q)).transpose() * f;
+  TreeState::Vector tau_ext_of(const TreeState& s, const ArmPoint& at,
+                               const Vec<3>& f) const override {
+    return -jacobian(fixed(s.q), at).transpose() * f;
   }
 
  private:
@@ -246,15 +247,15 @@ class TreeMotionOf final : public TreeMotion {
     }
   }
 
-  Eigen::Matrix<double, 3, N> jacobian(const Vec<N>& q, Vec<3>* position = nullptr) const {
-    return arm_.jacobian(q, end_.joint, end_.place, position).template topRows<3>();
+  Eigen::Matrix<double, 3, N> jacobian(const Vec<N>& q, const ArmPoint& at,
+                                       Vec<3>* position = nullptr) const {
+    return arm_.jacobian(q, at.joint, at.place, position).template topRows<3>();
   }
 
   TreeModel<N> arm_;
   TreeModel<N, Pack<W>> arms_;  // the same of W runs
-  ArmPoint end_;
-  Vec<N> most_, D_, rate_;  // of SolverFriction
-  Mat<N> T_;                // of the tree's joints by q
+  Vec<N> most_, D_, rate_;      // of SolverFriction
+  Mat<N> T_;                    // of the tree's joints by q
   bool is_dry_;
 };
 

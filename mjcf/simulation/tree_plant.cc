@@ -12,6 +12,7 @@ TreePlant::TreePlant(PlainArm arm, std::shared_ptr<const TreeMotion> motion)
     : arm_(std::move(arm)),
       motion_(std::move(motion)),
       s_(arm_.tree.dof()),
+      end_(arm_.tree.point(kEndEffector)),
       least_(arm_.least),
       most_(arm_.most),
       drho_(arm_.tree.drho),
@@ -40,10 +41,14 @@ void TreePlant::step(std::span<TreePlant* const> all, double h) {
   }
 }
 
-Point TreePlant::end_effector() const {
-  Point end = motion_->end_effector(s_);
-  end.position += arm_.tree.base;
-  return end;
+ArmPoint TreePlant::place(const std::string& name) const {
+  return arm_.tree.point(name);
+}
+
+Point TreePlant::point(const ArmPoint& at) const {
+  Point there = motion_->point(s_, at);
+  there.position += arm_.tree.base;
+  return there;
 }
 
 bool TreePlant::is_lost() const {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mjcf/plant/plant.h"
@@ -44,9 +45,16 @@ class TreePlant {
   const Vector& friction() const { return s_.friction; }     ///< F [N m]
   double contact_force() const { return 0; }                 ///< [N] nothing touches it
 
-  Point end_effector() const;  ///< the point that touches the outside
+  using Place = ArmPoint;                             ///< a point of the arm
+  Place place(const std::string& name) const;         ///< ArmTree::point, with its errors
+  Point point(const Place& at) const;                 ///< where it is
+  Point end_effector() const { return point(end_); }  ///< the point that touches the outside
   /// -J^T f [N m] of a force f [N, world frame] on the arm at its end effector.
-  Vector tau_ext_of(const Eigen::Vector3d& f) const { return motion_->tau_ext_of(s_, f); }
+  Vector tau_ext_of(const Eigen::Vector3d& f) const { return tau_ext_of(f, end_); }
+  /// The same at another point.
+  Vector tau_ext_of(const Eigen::Vector3d& f, const Place& at) const {
+    return motion_->tau_ext_of(s_, at, f);
+  }
 
   /// Whether MuJoCo has to take over: near a limit of a joint, or far from anywhere.
   bool is_lost() const;
@@ -63,6 +71,7 @@ class TreePlant {
   PlainArm arm_;
   std::shared_ptr<const TreeMotion> motion_;
   TreeState s_;
+  ArmPoint end_;
   Vector least_, most_;      // [N m] what the motors can do
   TreeState::Matrix drho_;   // of the tree
   Vector lowest_, highest_;  // [rad] or [m] of rho - rho0

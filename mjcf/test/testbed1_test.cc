@@ -57,7 +57,8 @@ TEST(Testbed1Mjcf, AWeightAtItsTipIsEquation35) {
   for (const double q : {-0.4, 0., 0.5}) {
     plant.set_state(vec(q), vec(0));
     const double expected = 3.3 * 9.81 * 0.70 * std::cos(q);
-    EXPECT_NEAR(plant.tau_ext_of({0, 0, -3.3 * 9.81}, "end_effector")[0], expected, 1e-12);
+    EXPECT_NEAR(plant.tau_ext_of({0, 0, -3.3 * 9.81}, plant.place("end_effector"))[0], expected,
+                1e-12);
   }
 }
 

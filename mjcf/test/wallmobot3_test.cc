@@ -119,7 +119,7 @@ TEST_F(WallMoBot3Mjcf, AForceOnTheArmIsMinusJTransposeF) {
     const Vec<3> q = vector(2), f(vector(100));
     plant.set_state(q, Vec<3>::Zero());
     const Vec<3> expected = -arm.jacobian(q).transpose() * Vec<3>(f[0], f[2], 0);
-    EXPECT_LT((plant.tau_ext_of(f, "end_effector") - expected).norm(), 1e-10);
+    EXPECT_LT((plant.tau_ext_of(f, plant.place("end_effector")) - expected).norm(), 1e-10);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -90,6 +91,7 @@ class PageServer::Server {
   }
 
   const std::string& url() const { return url_; }
+  bool is_watched() const { return watched_; }
   void put(std::string_view channel, Bytes message) {
     const std::lock_guard lock(mutex_);
     if (pending_.size() > kMostWaiting) return;  // nobody could take it
@@ -196,6 +198,7 @@ class PageServer::Server {
         std::make_shared<Viewer>(std::move(socket), kMostWaiting,
                                  [this](const std::shared_ptr<Viewer>& v) { viewers_.erase(v); });
     viewers_.insert(viewer);
+    watched_ = true;
     viewer->accept(request);
   }
 
@@ -238,6 +241,7 @@ class PageServer::Server {
   const std::map<std::string, File, std::less<>> files_ = files();
   std::set<std::shared_ptr<Viewer>> viewers_;
   int visits_ = 0;
+  std::atomic<bool> watched_ = false;
   std::mutex mutex_;
   std::string pending_;  // messages since the last frame
   std::thread thread_;   // last: it uses the others
@@ -247,6 +251,9 @@ PageServer::PageServer(int port) : server_(std::make_unique<Server>(port)) {}
 PageServer::~PageServer() = default;
 const std::string& PageServer::url() const {
   return server_->url();
+}
+bool PageServer::is_watched() const {
+  return server_->is_watched();
 }
 void PageServer::put(std::string_view channel, Bytes message) {
   server_->put(channel, message);

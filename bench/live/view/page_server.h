@@ -34,6 +34,7 @@ class PageServer {
   PageServer& operator=(const PageServer&) = delete;
 
   const std::string& url() const;  ///< of the page
+  bool is_watched() const;         ///< whether a page has ever asked for the stream
   /// Sends a message to all pages. From any thread; waits for none of them.
   void put(std::string_view channel, Bytes message);
 

@@ -23,7 +23,8 @@ class Viewers {
     if (!plotjuggler.empty()) plotjuggler_.emplace(plotjuggler);
   }
 
-  bool any() const { return page_ || plotjuggler_; }  ///< whether somebody looks
+  bool wait_for_page() const { return page_ && !page_->is_watched(); }  ///< nobody has opened it
+  bool any() const { return page_ || plotjuggler_; }                    ///< whether somebody looks
   /// ", page at http://.., JSON to ..", or "".
   std::string where() const {
     return (page_ ? ", page at " + page_->url() : "") +

@@ -83,6 +83,11 @@ function time_plot(parent, {title, unit, width, height, data, series, x_range, f
       label: s.label, stroke: s.color, dash: s.dash, width: s.width || 1.2, show: s.show !== false, points: {show: false}, spanGaps: true,
       value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(digits)}))),
     hooks: {draw: [(u) => over && draw_over(u, ...over())],
-      setSelect: [(u) => select && u.select.width > 0 && select(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'))]},
+      setSelect: [(u) => {
+        if (!select || !(u.select.width > 0)) return;
+        const {left, width: wide} = u.select;
+        u.setSelect({left: 0, top: 0, width: 0, height: 0}, false);  // or its bar stays
+        select(u.posToVal(left, 'x'), u.posToVal(left + wide, 'x'));
+      }]},
   }, data, parent);
 }

@@ -34,7 +34,13 @@ for (const f of of_kind('suite')) {
   });
 }
 const SUITES = [...new Set(ENTRIES.map((e) => e.file))];
-const label_of = (e) => e.who + (SUITES.length > 1 ? ` [${e.file.name.replace(/\.json$/, '')}]` : '');
+const bare = (file) => file.name.replace('.json', '');
+const label_of = (e) => e.who + (SUITES.length > 1 ? ` [${bare(e.file)}]` : '');
+// what a suite's runs depend on beside the build: seed, faults, model errors
+const conditions_of = (file) => (/MuJoCo [\d.]+[,;] ([^]*)$/.exec(file.data.context.tauext || '') || ['', 'unknown conditions'])[1].replace('\n', ', ');
+const DIFFERENT = new Set(SUITES.map(conditions_of)).size > 1
+  ? 'These files were not made under the same conditions, so their accuracy cannot be compared: ' + SUITES.map((f) => `${bare(f)}: ${conditions_of(f)}`).join('; ') + '. '
+  : '';
 const GROUPS = [...new Set(ENTRIES.map((e) => e.group))];
 const competes = (e) => !BASELINES.includes(e.estimator) && !e.row.error_occurred;
 const value_of = (e, key) => e.row.error_occurred ? undefined : e.row[key];
@@ -64,7 +70,7 @@ const ratio_text = (r) => r < 9.995 ? r.toFixed(2) : r < 99.95 ? r.toFixed(1) : 
 function heat_cell(e, best, key, values) {
   if (!e) return element('td', {class: 'none', title: 'not in the file'}, '–');
   const m = METRICS.get(key), x = value_of(e, key), r = ratio_of(e, best, key);
-  const open = () => show_run(e.group, e.estimator);
+  const open = () => show_run(e);
   const cell = {class: 'run' + (e === best ? ' best' : ''), tabindex: 0, onclick: open, onkeydown: (k) => k.key === 'Enter' && open()};
   const paint = (t) => `background: color-mix(in srgb, #dd7a2f ${(100 * t).toFixed(0)}%, #eaf3fa)`;
   if (e.row.error_occurred) return element('td', {...cell, style: paint(1), title: e.row.error_message}, 'failed');
@@ -89,7 +95,7 @@ function heat_map() {
       return element('tr', {}, element('td', {}, g), ...who.map((w) => heat_cell(here.find((e) => label_of(e) === w), best, key, values)));
     });
     place.replaceChildren(element('table', {id: 'heat'}, element('thead', {}, head), element('tbody', {}, ...rows)));
-    about.textContent = `${m.meaning} ${values ? 'Of the worst joint.' : 'Of the worst joint, as a multiple of the best of its row, in bold (where that is 0, the values).'} `
+    about.textContent = DIFFERENT + `${m.meaning} ${values ? 'Of the worst joint.' : 'Of the worst joint, as a multiple of the best of its row, in bold (where that is 0, the values).'} `
       + 'A click opens the run. zero, truth and delayed_truth do not compete.';
   };
   section('map', 'Scenarios and estimators', '', about,
@@ -115,6 +121,7 @@ function table_buttons(place, name) {
 function ranking() {
   const key = 'rmse_Nm', shown = entries_for(key).filter((e) => !BASELINES.includes(e.estimator));
   const worth = new Map();  // by label
+  const median = (times) => quantile([...times].sort((x, y) => x - y), .5);
   for (const g of GROUPS) {
     const here = shown.filter((e) => e.group === g), best = best_of(here, key);
     if (!best || !(value_of(best, key) > 0)) continue;
@@ -123,16 +130,16 @@ function ranking() {
     const charged = Math.max(...known, zero ? value_of(zero, key) / value_of(best, key) : 1);
     for (const w of new Set(shown.map(label_of))) {
       const e = here.find((x) => label_of(x) === w), r = e && ratio_of(e, best, key);
-      const all = worth.get(w) || {sum: 0, n: 0, failed: 0, missing: 0, times: [], of: shown.find((x) => label_of(x) === w)};
+      const all = worth.get(w) || {sum: 0, n: 0, failed: 0, missing: 0, slow: [], of: shown.find((x) => label_of(x) === w)};
       all.sum += Math.log(r ?? charged), ++all.n;
       all.failed += Boolean(e && r === undefined), all.missing += !e;
-      if (e) all.times.push(...e.times);
+      const beside = here.filter((x) => e && x.file === e.file && x.times.length).map((x) => median(x.times));
+      if (e && e.times.length) all.slow.push(Math.log(median(e.times) / Math.min(...beside)));
       worth.set(w, all);
     }
   }
-  const rows = [...worth].map(([who, a]) => ({who, ...a, score: Math.exp(a.sum / a.n), ns: quantile(a.times.sort((x, y) => x - y), .5)}));
+  const rows = [...worth].map(([who, a]) => ({who, ...a, score: Math.exp(a.sum / a.n), slow: Math.exp(a.slow.reduce((x, y) => x + y, 0) / a.slow.length)}));
   rows.sort((a, b) => a.score - b.score);
-  const fastest = (file) => Math.min(...rows.filter((r) => r.of.file === file && r.ns > 0).map((r) => r.ns));
   const place = element('div', {class: 'wide'}, element('table', {id: 'ranking'},
     element('thead', {}, element('tr', {}, ...['estimator', 'rmse, of the best', 'scenarios', 'failed', 'missing', 'time, of its file', 'submitter', 'known limitations', 'version']
       .map((t, i) => element('th', {class: i > 5 && 'text'}, t)))),
@@ -140,16 +147,18 @@ function ranking() {
       const c = r.of.file.data.context, text = (t) => element('td', {class: 'text'}, t || '–');
       return element('tr', {}, element('td', {}, r.who), element('td', {}, r.score.toFixed(2)), element('td', {}, String(r.n)),
         element('td', {}, String(r.failed)), element('td', {}, String(r.missing)),
-        element('td', {}, r.ns > 0 ? ratio_text(r.ns / fastest(r.of.file)) : '–'), text(c.submitter), text(c.limitations),
+        element('td', {}, r.slow > 0 ? ratio_text(r.slow) : '–'), text(c.submitter), text(c.limitations),
         text((/^tauext \S+/.exec(c.tauext || '') || [''])[0].replace(/,$/, '') + (c.commit ? ' ' + c.commit : '')));
     }))));
-  section('ranking-of-all', 'Ranking', 'By the geometric mean over all scenarios of an estimator\'s rmse as a multiple of the best one\'s. A scenario that failed or is '
-    + 'missing counts as its worst, and as an estimate of 0 if that is worse. Times are those of one file, as multiples of its fastest step: two machines cannot be compared.',
+  section('ranking-of-all', 'Ranking', DIFFERENT + 'By the geometric mean over all scenarios of an estimator\'s rmse as a multiple of the best one\'s. A scenario that failed or is '
+    + 'missing counts as its worst, and as an estimate of 0 if that is worse. Times are within one file, too: the geometric mean of a step\'s time as a multiple of the fastest one\'s in the same scenario; two machines cannot be compared.',
     ...table_buttons(place, 'ranking'), place);
 }
 
 // ---- (b) and (c): traces
-const TRACES = of_kind('traces').flatMap((f) => f.data.groups);
+const TRACED = of_kind('traces');
+const run_name = (group, file) => group + (TRACED.length > 1 ? ` [${bare(file)}]` : '');
+const TRACES = TRACED.flatMap((f) => f.data.groups.map((g) => ({...g, name: run_name(g.name, f)})));
 function decoded(joint) {
   const bytes = Uint8Array.from(atob(joint.values), (c) => c.charCodeAt(0));
   const range = joint.high - joint.low;
@@ -194,10 +203,11 @@ function runs() {
       element('button', {onclick: () => zoom(t[0], t.at(-1))}, 'whole run'),
       ...g.contacts.slice(0, 8).map(([from, to]) => element('button', {onclick: () => zoom(from - .1, Math.max(to, from + .5) + .1)}, `contact at ${Number(from.toPrecision(4))} s`)));
   };
-  show_run = (g, estimator) => {
-    if (!TRACES.some((x) => x.name === g)) return;
-    group = g, hidden = new Set(TRACES.find((x) => x.name === g).series.map((s) => s.name));
-    focus = estimator;
+  show_run = (entry) => {
+    const g = TRACES.find((x) => x.name === run_name(entry.group, entry.file));
+    if (!g) return;
+    group = g.name, hidden = new Set(g.series.map((s) => s.name));
+    focus = entry.estimator;
     draw();
     document.getElementById('runs').scrollIntoView();
   };
@@ -208,7 +218,7 @@ function runs() {
 }
 
 function step_answers() {
-  const steps = TRACES.filter((g) => g.name.endsWith('/step'));
+  const steps = TRACES.filter((g) => /\/step( \[|$)/.test(g.name));
   if (steps.length === 0) return;
   const places = steps.flatMap((g) => g.series[0].joints.map((truth, j) => {
     const keep = kept(g.t), t = keep(g.t), of_truth = keep(decoded(truth)), end = of_truth.at(-1);
@@ -258,9 +268,9 @@ function chart({title, x, y, width = 690, height = 360, rows}, draw) {
         'stroke-width': width_of, 'stroke-dasharray': dash.join(' '), 'clip-path': 'inset(0)'}, name && element('title', {}, name)));
       if (name) names.push([name, color, dash]);
     },
-    point: ([a, b], {color, hollow}, name, text, data = {}) => {
+    point: ([a, b], {color, hollow, r = 4.5}, name, text, data = {}) => {
       if (!inside([a, b])) return;
-      plot.append(element('circle', {cx: px(a), cy: py(b), r: 4.5, fill: hollow ? 'none' : color, stroke: color, 'stroke-width': 1.6, ...data}, element('title', {}, name)));
+      plot.append(element('circle', {cx: px(a), cy: py(b), r, fill: hollow ? 'none' : color, stroke: color, 'stroke-width': 1.6, ...data}, element('title', {}, name)));
       if (!text) return;
       const wide = 6.7 * text.length, free = (dy) => !texts.some(([x0, y0, w]) => Math.abs(y0 - py(b) - dy) < 12 && px(a) < x0 + w && x0 < px(a) + wide);
       const dy = [0, 13, -13, 26, -26, 39, 52].find(free) ?? 0;
@@ -345,6 +355,35 @@ function detection() {
   }
 }
 
+function meetings() {
+  for (const f of of_kind('study').filter((x) => x.data.cells.some((c) => c.regions))) {
+    const cells = f.data.cells.map((c, i) => ({...c, at: `${f.at}/cells/${i}`})).filter((c) => c.regions);
+    const name_of = (c) => `${c.condition}: ${c.estimator}+${c.detector}`, place = element('div'), all = (of) => [...new Set(of)];
+    const draw = (chosen) => {
+      const r = chosen.regions, kinds = all(r.map((x) => x.kind));
+      const cell = (k) => k < 0 ? element('td', {class: 'none'}, '–')
+        : element('td', {'data-json': `${chosen.at}/regions/${k}/recall`, title: `${r[k].found} of ${r[k].touches}; 95 %: ${r[k].recall_low.toFixed(3)} to ${r[k].recall_high.toFixed(3)}`}, r[k].recall.toFixed(METRICS.get('recall').digits));
+      const table = element('div', {class: 'wide'}, element('table', {}, element('thead', {}, element('tr', {}, element('th', {}, 'found [1]'), ...kinds.map((k) => element('th', {}, k)))),
+        element('tbody', {}, ...all(r.map((x) => x.region)).map((region) => element('tr', {}, element('td', {}, region),
+          ...kinds.map((kind) => cell(r.findIndex((x) => x.region === region && x.kind === kind))))))));
+      const most = Math.max(1.1, ...r.map((x) => x.until_found_of_limit_quantiles[20]));
+      const figure = chart({title: 'largest force until the mark', rows: r.map((x) => x.class), x: {label: 'force / limit of the region [1]', range: [0, most]}}, (c) => {
+        r.forEach((x, i) => {
+          const q = x.until_found_of_limit_quantiles;
+          c.line([[q[0], i], [q[20], i]], look(0));
+          c.box(q[5], q[15], i, look(0), 9, `${x.class}: median ${q[10].toPrecision(3)}, half of them ${q[5].toPrecision(3)} to ${q[15].toPrecision(3)}, at most ${q[20].toPrecision(3)}`);
+        });
+        c.line([[1, -.5], [1, r.length - .5]], {color: 'var(--truth)', dash: [4, 4]});
+      });
+      place.replaceChildren(...table_buttons(table, 'regions'), table, figure);
+    };
+    section('regions' + f.at.replace(/\D/g, ''), `Regions of a body: ${f.name}`, 'Meetings of the arm with a part of a person: the share that was found, by speed [m/s], share of the limit, grazing or clamped; and what was pressed '
+      + 'until the mark, or at most where there was none. Boxes hold half of the meetings, lines all of them; beyond 1 the limit was exceeded first.',
+      select('condition and pair', cells.map(name_of), undefined, (n) => draw(cells.find((c) => name_of(c) === n))), place);
+    draw(cells[0]);
+  }
+}
+
 // ---- (f) cost
 function costs() {
   const figures = SUITES.map((file) => {
@@ -365,29 +404,34 @@ function costs() {
 // ---- (g) seeds
 function seeds() {
   for (const f of of_kind('seeds')) {
-    const keys = [...new Set(f.data.rows.map((r) => r.metric))], place = element('div', {class: 'pair'});
-    const draw = (key) => {
-      const m = METRICS.get(key) || {title: key, unit: ''}, rows = f.data.rows.filter((r) => r.metric === key);
+    const group_of = (r) => r.entry.split('/').slice(0, 2).join('/');
+    const keys = [...new Set(f.data.rows.map((r) => r.metric))], groups = [...new Set(f.data.rows.map(group_of))];
+    let key = keys[0], group = groups[0];
+    const place = element('div', {class: 'pair'});
+    const draw = () => {
+      const m = METRICS.get(key) || {title: key, unit: ''}, rows = f.data.rows.filter((r) => r.metric === key && group_of(r) === group);
+      if (rows.length === 0) return place.replaceChildren(element('p', {}, `no values of ${m.title} in ${group}`));
       const values = rows.map((r) => String(r.by_seed ?? '').split(' ').map(Number).filter(Number.isFinite).sort((a, b) => a - b));
-      const boxes = chart({title: `${m.title} at each seed`, rows: rows.map((r) => r.entry), x: {label: `${m.title} [${m.unit || '1'}]`, range: spread_of(values.flat())}}, (c) => rows.forEach((r, i) => {
+      const boxes = chart({title: `${m.title} at each seed`, rows: rows.map((r) => r.entry.split('/').slice(2).join('/')), x: {label: `${m.title} [${m.unit || '1'}]`, range: spread_of(values.flat())}}, (c) => rows.forEach((r, i) => {
         if (values[i].length === 0) return;
         const [low, q1, q2, q3, high] = [0, .25, .5, .75, 1].map((q) => quantile(values[i], q));
         c.line([[low, i], [high, i]], look(0));
         c.box(q1, q3, i, look(0), 11, `${r.entry}: ${low.toPrecision(4)}, quartiles ${q1.toPrecision(4)}, ${q2.toPrecision(4)}, ${q3.toPrecision(4)}, ${high.toPrecision(4)}${r.never ? `; never at ${r.never} seeds` : ''}`);
-        c.point([q2, i], look(1), `${r.entry}: median ${q2.toPrecision(4)}`);
+        c.point([q2, i], {...look(1), r: 2}, `${r.entry}: median ${q2.toPrecision(4)}`);
       }));
       const pairs = rows.filter((r) => Number.isFinite(r.difference));
-      const differences = pairs.length === 0 ? undefined : chart({title: `${m.title}: less that of ${pairs[0].against.split('/').pop()}, at the same seed`, rows: pairs.map((r) => r.entry),
+      const differences = pairs.length === 0 ? undefined : chart({title: `${m.title}: less that of ${pairs[0].against.split('/').pop()}, at the same seed`, rows: pairs.map((r) => r.entry.split('/').slice(2).join('/')),
         x: {label: `difference [${m.unit || '1'}], mean and 95 % interval`, range: spread_of([0, ...pairs.flatMap((r) => [r.difference_low ?? r.difference, r.difference_high ?? r.difference])])}}, (c) => pairs.forEach((r, i) => {
         c.line([[0, i - .5], [0, i + .5]], {color: 'var(--truth)'});
         if (Number.isFinite(r.difference_low)) c.line([[r.difference_low, i], [r.difference_high, i]], look(0), undefined, 3);
-        c.point([r.difference, i], look(0), `${r.entry}: ${r.difference}`);
+        c.point([r.difference, i], {...look(0), r: 2.5}, `${r.entry}: ${r.difference}`);
       }));
       place.replaceChildren(boxes, ...(differences ? [differences] : []));
     };
     section('seeds' + f.at.replace(/\D/g, ''), `Seeds: ${f.name}`, 'Boxes hold half of the seeds, lines all of them; the mark is the median.',
-      select('metric', keys.map((k) => (METRICS.get(k) || {title: k}).title), undefined, (t) => draw(keys.find((k) => (METRICS.get(k) || {title: k}).title === t))), place);
-    draw(keys[0]);
+      select('scenario', groups, group, (g) => { group = g; draw(); }),
+      select('metric', keys.map((k) => (METRICS.get(k) || {title: k}).title), undefined, (t) => { key = keys.find((k) => (METRICS.get(k) || {title: k}).title === t); draw(); }), place);
+    draw();
   }
 }
 
@@ -424,6 +468,6 @@ function provenance() {
 if (ENTRIES.length) heat_map(), ranking();
 requestAnimationFrame(() => setTimeout(() => {  // what takes longer, once something is seen
   if (TRACES.length) runs(), step_answers();
-  trade_offs(), detection(), costs(), seeds(), history_of_gate(), provenance();
+  trade_offs(), detection(), meetings(), costs(), seeds(), history_of_gate(), provenance();
   document.body.dataset.done = 'yes';
 }));

@@ -49,6 +49,68 @@ TEST(DetectionStudy, TriesAtLeastWhatItWasAskedFor) {
   }
 }
 
+StudyOptions of_regions() {
+  StudyOptions o = small();
+  o.blows = o.brisk_pushes = o.clampings = 0;
+  o.hours = 0;
+  o.regions = 4;
+  return o;
+}
+
+TEST(DetectionStudy, MeetsEachKindOfRegion) {
+  const std::vector<Cell> all = detection_study(of_regions(), {});
+  ASSERT_EQ(all.size(), 2u);
+  for (const Cell& c : all) {
+    EXPECT_EQ(c.failed_runs, 0);
+    EXPECT_EQ(c.blows, 0);
+    ASSERT_EQ(c.regions.size(), region_classes().size());
+    for (std::size_t i = 0; i < c.regions.size(); ++i) {
+      const RegionCount& r = c.regions[i];
+      const RegionClass& of = region_classes()[i];
+      EXPECT_GE(r.touches, 4) << of.name;
+      ASSERT_EQ(r.peaks.size(), static_cast<std::size_t>(r.touches));
+      ASSERT_EQ(r.until_found.size(), r.peaks.size());
+      EXPECT_EQ(r.delays.size(), static_cast<std::size_t>(r.found));
+      EXPECT_LE(r.until_found.back(), r.peaks.back() + 1e-12);
+      // of a speed that is a share of the limit, the peak is: the arm gives way while it is pushed
+      if (of.share_of_limit > 0) {
+        EXPECT_NEAR(r.peaks.front(), of.share_of_limit, 0.2 * of.share_of_limit) << of.name;
+        EXPECT_NEAR(r.peaks.back(), of.share_of_limit, 0.2 * of.share_of_limit) << of.name;
+      }
+      if (of.meeting == Meeting::kClamped) {
+        EXPECT_NEAR(r.peaks.front(), 1, 1e-9) << of.name;
+      }
+    }
+  }
+  const auto json = nlohmann::json::parse(study_json("", all, {}));
+  const auto& hand = json.at("cells")[0].at("regions")[0];
+  EXPECT_EQ(hand.at("class"), "hand_0.10");
+  EXPECT_EQ(hand.at("limit_N"), 280);
+  EXPECT_EQ(hand.at("touches"), all[0].regions[0].touches);
+  EXPECT_NE(format_study("", all, TableFormat::kText).find("exceeded"), std::string::npos);
+}
+
+TEST(DetectionStudy, OfRegionsCountsTheFirstMarkAndWhatWasPressedUntilThen) {
+  const RegionClass& of = region_classes()[0];  // 280 N
+  std::vector<double> force(3000, 0.);
+  for (int k = 0; k < 40; ++k) force[static_cast<std::size_t>(1001 + k)] = 10. * k;  // to 390 N
+  RegionTouch touch{.begin = 1};
+  Answers answers;
+  answers.marks = {{0.5, Contact::kCollision}, {1.011, Contact::kCollision}, {1.02, {}}};
+  RegionCount r;
+  count_regions(of, answers, {touch}, force, r);
+  EXPECT_EQ(r.found, 1);
+  EXPECT_NEAR(r.delays.at(0), 0.011, 1e-12);
+  EXPECT_NEAR(r.until_found.at(0), 100 / 280., 1e-12);
+  EXPECT_NEAR(r.peaks.at(0), 390 / 280., 1e-12);
+  EXPECT_EQ(r.exceeded(), 0);
+  answers.marks = {{1.3, Contact::kCollision}};  // 0.26 s after the contact
+  count_regions(of, answers, {touch}, force, r);
+  EXPECT_EQ(r.found, 1);
+  EXPECT_EQ(r.touches, 2);
+  EXPECT_EQ(r.exceeded(), 0.5);
+}
+
 TEST(DetectionStudy, DoesNotDependOnTheNumberOfThreads) {
   StudyOptions o = small();
   o.threads = 3;

@@ -79,9 +79,9 @@ TEST(Plant, TurnsAMuJoCoWarningIntoAnError) {
 TEST(Plant, UnknownSiteIsNamed) {
   Plant plant(load_robot("wallmobot3"));
   EXPECT_EQ(error_of([&] {
-              plant.tau_ext_of({1, 0, 0}, "elbow");
+              plant.tau_ext_of({1, 0, 0}, plant.place("elbow"));
             }),
-            "the robot has no site 'elbow'");
+            "the robot has no site or body 'elbow'");
 }
 
 // two arms that an equality constraint couples, with dry friction; the tip of one rests on the
