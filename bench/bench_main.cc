@@ -84,6 +84,9 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   const bool suite = !study && !listing && !golden && !commands;
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   if (f.report) report::require_page(*f.report, "--report");
+  if (f.report && f.report == f.out)
+    throw std::invalid_argument(
+        fmt::format("--report and --benchmark_out are both {}: a page and JSON", *f.report));
   require_mode(app, f.report.has_value(), "--report", {"--wrench"});
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
   const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
@@ -119,6 +122,9 @@ int run(const CLI::App& app, Flags& flags) {
   }
   const std::string filter = benchmark::GetBenchmarkFilter();
   const bool all = filter.empty() || filter == "." || filter == "all";
+  const std::string pattern = filter.starts_with('-') ? filter.substr(1) : filter;
+  if (const std::string trouble = regular_expression(pattern); !trouble.empty())
+    throw std::invalid_argument(fmt::format("--benchmark_filter={}: {}", filter, trouble));
   if (flags.seeds && !flags.golden) flags.studies.seeds = seeds_of(*flags.seeds);
   const bool study = wants_study(flags.studies);
   require_mode_of_flags(app, flags, study, all);
@@ -186,6 +192,19 @@ Arguments take_benchmark_flags(int argc, char** argv, Flags& flags) {
   return a;
 }
 
+// of what Google Benchmark has left
+void refuse_unknown_benchmark_flags(const Arguments& rest) {
+  for (int i = 1; i < rest.count; ++i) {
+    const std::string_view flag = rest.pointers[i];
+    if (!flag.starts_with("--benchmark_")) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: {}", flag,
+        flag.starts_with("--benchmark_context=")
+            ? "KEY=VALUE,KEY=VALUE, and no value has a comma"
+            : "Google Benchmark has no such flag, or not that value of it; see --help"));
+  }
+}
+
 void add_selection_flags(CLI::App& app, Flags& flags) {
   app.add_option("--robot", flags.studies.robot,
                  "only this one, or that of an MJCF or URDF file (with --lock REGEX)")
@@ -212,7 +231,8 @@ void add_output_flags(CLI::App& app, Flags& flags) {
       ->type_name("1-30");
   app.add_option("--against", flags.studies.against)->group("");
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
-  app.add_option("--report", flags.report, "write all of it as a page for a browser, with traces")
+  app.add_option("--report", flags.report,
+                 "a page of all of it, with traces; --wrench SITE adds forces")
       ->type_name("FILE.html");
   app.add_option("--wrench", flags.wrench)->group("")->check(not_empty);
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")
@@ -259,6 +279,7 @@ int bench_main(int argc, char** argv) {
       "  --benchmark_filter=REGEX --benchmark_out=FILE (JSON) --benchmark_min_time=0.05\n"
       "  --benchmark_repetitions=N --benchmark_format=console|json");
   Arguments rest = take_benchmark_flags(argc, argv, flags);
+  app.preparse_callback([&](std::size_t) { refuse_unknown_benchmark_flags(rest); });
   return run_program(app, rest.count, rest.pointers.data(), [&] {
     if (flags.out_format && *flags.out_format != "json") {
       throw std::invalid_argument(

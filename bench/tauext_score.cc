@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "bench/logs/read_log.h"
@@ -113,6 +115,10 @@ void require_flags(const CLI::App& app, const Flags& f) {
   require_mode(app, !f.ours.empty(), "--estimator", {"--detector", "--thresholds"});
   if (!f.thresholds.empty() && f.detector.empty())
     throw std::invalid_argument("--thresholds needs a --detector");
+  const std::string kind = std::filesystem::path(f.out).extension();
+  if (!kind.empty() && kind != ".json")
+    throw std::invalid_argument(
+        fmt::format("--out {}: it writes JSON, FILE.json; --format is that of the table", f.out));
   refuse_twice("estimator", f.ours);
   refuse_twice("log", f.logs);
 }
@@ -162,6 +168,8 @@ Recorded recorded(const Flags& f) {
 int score(const CLI::App& app, const Flags& f) {
   require_flags(app, f);
   const TableFormat format = table_format(f.format);
+  std::optional<AtomicFile> out;
+  if (!f.out.empty()) out.emplace(f.out);
   const Recorded all = recorded(f);
   std::vector<Row> rows;
   if (!f.files.empty()) add_files(f, all.runs.front(), rows);
@@ -170,12 +178,12 @@ int score(const CLI::App& app, const Flags& f) {
                                  [](const RecordedLog& l) { return l.trace.has_truth(); });
   std::vector<Metric> also;
   if (!truth) also = {Metric::kRecall, Metric::kFalseAlarmsPerHour};
-  fmt::print("{}", format_table(rows, format, also));
-  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
-  if (!f.out.empty()) {
-    AtomicFile file(f.out);
-    file.write(results_json(rows, provenance("run " + all.runs.front().group)));
-    file.commit();
+  std::FILE* const tables = f.out == "-" ? stderr : stdout;  // where JSON stands alone
+  fmt::print(tables, "{}", format_table(rows, format, also));
+  if (format == TableFormat::kText) fmt::print(tables, "\n{}", table_legend(rows, also));
+  if (out) {
+    out->write(results_json(rows, provenance("run " + all.runs.front().group)));
+    out->commit();
   }
   const bool good =
       std::all_of(rows.begin(), rows.end(), [](const Row& r) { return r.score.error.empty(); });

@@ -11,9 +11,9 @@
 
 namespace tauext::live {
 
-Outlet::Outlet(const Options& o, double rate)
+Outlet::Outlet(const Options& o, const std::string& title, double rate)
     : streams_(streams_of(o.estimators, o.detector, o.wrench)),
-      viewers_(std::make_shared<Viewers>(o.page, o.plotjuggler)) {
+      viewers_(std::make_shared<Viewers>(o.page, o.plotjuggler, title)) {
   if (o.stream) {
     refuse_input_as_log(lcm_url(o.url));
     transport_ = std::make_shared<Transport>(o.url);

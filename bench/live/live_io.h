@@ -26,7 +26,7 @@ class Outlet {
  public:
   /// @param rate [1/s] of sample time
   /// @throws std::invalid_argument for a URL or a rate that cannot be
-  Outlet(const Options& options, double rate);
+  Outlet(const Options& options, const std::string& title, double rate);
 
   LiveStream* stream() { return stream_ ? &*stream_ : nullptr; }
   /// Where it goes, in words.

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "bench/live/view/viewers.h"
 #include "bench/program/program.h"
 #include "lcmtypes/listener.h"
+#include "lcmtypes/log.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::live {
@@ -69,21 +71,25 @@ class Screen {
     take_events(table);
     bool pressed = false;
     while (const char key = keys_.next()) {
-      if (key >= '0' && key < '1' + kMaxJoints) joint_ = key - '0', pressed = true;
+      if (key >= '0' && key <= '0' + table.joints()) joint_ = key - '0', pressed = true;
     }
-    if (!terminal_ || (seconds - shown_ < kEvery && !pressed)) return;
-    shown_ = seconds;
-    fmt::print("\033[H\033[2J{}", text(table, seconds, now));
-    std::fflush(stdout);
+    if (terminal_ && (pressed || seconds - shown_ >= kEvery)) draw(table, seconds, now);
   }
-  void close(StreamTable& table, std::int64_t now) {
+  void close(StreamTable& table, double seconds, std::int64_t now) {
     take_events(table);
-    fmt::print("{}{}", terminal_ ? "\n" : table.format(now), table.totals(listener_.refused()));
+    if (terminal_) return draw(table, seconds, now);
+    fmt::print("{}{}", table.format(now), table.totals(listener_.refused()));
   }
 
  private:
   static constexpr double kEvery = 0.2;  // [s]
   using Lines = std::vector<std::string>;
+
+  void draw(const StreamTable& table, double seconds, std::int64_t now) {
+    shown_ = seconds;
+    fmt::print("\033[H\033[2J{}", text(table, seconds, now));
+    std::fflush(stdout);
+  }
 
   static Lines lines_of(const std::string& text) {
     Lines all;
@@ -122,8 +128,15 @@ class Screen {
     };
     if (!fits(body)) {
       body = table.format_small(now, joint_);
-      below = joint_ == 0 ? "joints with the largest torque; keys 1 to 8: that joint"
+      below = joint_ == 0 ? fmt::format("joints with the largest torque; keys 1 to {}: that joint",
+                                        table.joints())
                           : fmt::format("joint {}; key 0: those with the largest torque", joint_);
+      if (const std::string forces = table.format_forces(now, true); !forces.empty()) {
+        if (fits(body + "\n" + forces))
+          body += "\n" + forces;
+        else
+          below += "; forces need more rows";
+      }
     }
     Lines all =
         lines_of(fmt::format("{}  {:.0f} s\n{}\n{}\n{}\n", from_, seconds, below, body, end));
@@ -154,6 +167,21 @@ class Screen {
   Lines events_;
 };
 
+// the path of a log that is listened to; "" for a network
+std::string log_of(const std::string& url) {
+  constexpr std::string_view kScheme = "file://";
+  if (!url.starts_with(kScheme)) return "";
+  return url.substr(kScheme.size(), url.find('?') - kScheme.size());
+}
+
+// what LCM passes over in silence
+void say_faults(const std::string& log) {
+  const LogFaults faults = read_log(log, [](const LogEvent&) {});
+  if (faults.truncated) return say(log + ": its last message is cut off");
+  if (faults.junk_bytes > 0)
+    say(fmt::format("{}: {} bytes between messages are none", log, faults.junk_bytes));
+}
+
 }  // namespace
 
 int run_listen(const Options& o) {
@@ -161,10 +189,12 @@ int run_listen(const Options& o) {
   auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return microseconds_since(begin); };
   StreamTable table;
-  Viewers viewers(o.page, o.plotjuggler);
-  if (o.url.starts_with("file://") && viewers.wait_for_page()) {
+  const std::string log = log_of(o.url);
+  if (LogEvent first; !log.empty()) LogEvents(log).next(first);  // or says why not
+  Viewers viewers(o.page, o.plotjuggler, lcm_url(o.url));
+  if (!log.empty() && viewers.page_is_unseen()) {
     say(o.url + viewers.where() + "; the log begins when a browser shows it; Ctrl-C ends");
-    while (viewers.wait_for_page() && !over(interrupt, begin, o.pace.duration))
+    while (viewers.page_is_unseen() && !over(interrupt, begin, o.pace.duration))
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     begin = std::chrono::steady_clock::now();
   }
@@ -181,12 +211,13 @@ int run_listen(const Options& o) {
       listener.wait(50);  // what has come by then is taken
     } catch (const std::runtime_error& e) {
       broken = true;
-      at_end = listener.url().starts_with("file://");  // a log is over
+      at_end = !log.empty();  // it is over
       if (!at_end) say(e.what());
     }
     screen.show(table, seconds_since(begin), now());
   }
-  screen.close(table, now());
+  screen.close(table, seconds_since(begin), now());
+  if (at_end) say_faults(log);
   return table.account().used > 0 && (!broken || at_end) ? kGood : kAnswerIsNo;
 }
 

@@ -50,13 +50,15 @@ DetectorsOf thresholds_of(const Options& o) {
   };
 }
 
-// the samples to play: simulated with everything that reacts in it, or read
-RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
-  if (!o.from.empty()) {
-    RecordedLog log = read_any_log(o.from, {o.channel, o.columns, true});
-    r.make_torques(log.trace);
-    return log;
-  }
+// the samples to play: read
+RecordedLog read_samples(const Options& o, const Robot& r) {
+  RecordedLog log = read_any_log(o.from, {o.channel, o.columns, true});
+  r.make_torques(log.trace);
+  return log;
+}
+
+// or simulated, with everything that reacts in it
+RecordedLog simulate_samples(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {
@@ -70,7 +72,7 @@ RecordedLog recorded_log(const Options& o, const Robot& r, const DetectorsOf& th
 }
 
 std::string title_of(const Options& o) {
-  return o.robot + "/" +
+  return robot(with_lock(o.robot, o.lock)).label() + "/" +
          (!o.subscribe.empty() ? o.subscribe
           : !o.from.empty()    ? o.from
                                : o.scenario);
@@ -137,13 +139,15 @@ class Loop {
 int run_recorded(const Options& o) {
   const Robot& r = checked_robot(o);
   const DetectorsOf thresholds = thresholds_of(o);
-  const RecordedLog log = recorded_log(o, r, thresholds);
+  const auto forces = forces_of(o, r);
+  RecordedLog log;
+  if (!o.from.empty()) log = read_samples(o, r);         // before anything is written
+  std::unique_ptr<Realtime> first = realtime_of(o, 1);   // who sends comes behind the loop
+  Outlet outlet(o, title_of(o), o.rate / o.pace.speed);  // a rate of the clock's seconds
+  first.reset();
+  if (o.from.empty()) log = simulate_samples(o, r, thresholds);
   const Trace& trace = log.trace;
   const std::vector<Reading> readings = readings_of(trace);
-  std::unique_ptr<Realtime> first = realtime_of(o, 1);  // who sends comes behind the loop
-  Outlet outlet(o, o.rate / o.pace.speed);              // a rate of the clock's seconds
-  first.reset();
-  const auto forces = forces_of(o, r);
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds, trace, outlet.stream(),
                             forces.get());
   const Interrupt interrupt;
@@ -170,8 +174,8 @@ int run_recorded(const Options& o) {
 
 int run_subscribed(const Options& o) {
   const Robot& r = checked_robot(o);
-  Outlet outlet(o, o.rate);
   const auto forces = forces_of(o, r);
+  Outlet outlet(o, title_of(o), o.rate);
   LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(), outlet.stream(),
                             forces.get());
   LiveReport report;

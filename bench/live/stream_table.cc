@@ -39,6 +39,12 @@ std::string torque(bool known, double x) {
   return known ? fmt::format("{:.3f}", x) : "-";
 }
 
+// [N], or from 3 on [N m]; "-" for a component of which less than half is seen
+std::string seen(const force_t& f, int component) {
+  const double value = component < 3 ? f.force[component] : f.moment[component - 3];
+  return f.seen[component] < 0.5 ? "-" : fmt::format("{:.3f}", value);
+}
+
 }  // namespace
 
 std::int64_t StreamTable::Channel::rate(std::int64_t now) const {
@@ -165,26 +171,20 @@ void StreamTable::take_summary(const summary_t& s, const Envelope& e) {
   events_.push_back(line);
 }
 
-void StreamTable::end(Channel& c, std::int64_t sent) {
-  c.sequence.end(sent);
-  c.senders.end();
-}
-
 // the last messages may have been lost, too
 void StreamTable::take_end(const summary_t& s, const Envelope& e) {
+  const auto end = [&](Channel& c, const std::string& estimator) {
+    const auto sent = messages_of(s, estimator);
+    if (!sent || !c.senders.is_ours(e.sender)) return;
+    c.sequence.end(*sent);
+    c.senders.end();
+  };
   for (auto& [name, c] : channels_) {
-    if (!name.starts_with(kEstimateChannel) || !c.senders.is_ours(e.sender)) continue;
-    const std::string estimator = name.substr(std::strlen(kEstimateChannel));
-    if (const auto sent = messages_of(s, estimator)) end(c, *sent);
+    if (name.starts_with(kEstimateChannel)) end(c, name.substr(std::strlen(kEstimateChannel)));
   }
-  for (auto& [name, c] : forces_) {
-    if (!c.senders.is_ours(e.sender)) continue;
-    if (const auto sent = messages_of(s, c.force.estimator)) end(c, *sent);
-  }
+  for (auto& [name, c] : forces_) end(c, c.force.estimator);
   for (auto& [pair, c] : pairs_) {
-    if (!s.entry.ends_with("/" + pair) || !c.senders.is_ours(e.sender)) continue;
-    const auto sent = messages_of(s, pair.substr(0, pair.find('+')));
-    if (sent) end(c, *sent);
+    if (s.entry.ends_with("/" + pair)) end(c, pair.substr(0, pair.find('+')));
   }
 }
 
@@ -217,7 +217,7 @@ std::string StreamTable::format(std::int64_t now) const {
                  says ? status_name(e.status) : "", says ? fmt::format("{:.1f}", e.step_us) : ""});
     }
   }
-  return table.format() + (forces_.empty() ? "" : "\n" + format_forces(now));
+  return table.format() + (forces_.empty() ? "" : "\n" + format_forces(now, false));
 }
 
 std::string StreamTable::format_small(std::int64_t now, int joint) const {
@@ -247,29 +247,32 @@ std::string StreamTable::format_small(std::int64_t now, int joint) const {
   return table.format();
 }
 
-std::string StreamTable::format_forces(std::int64_t now) const {
-  TableWriter table({{"force", "", true, 28},
-                     {"rate", "1/s", false, 6},
-                     {"lost", "", false, 6},
-                     {"x", "N", false, 9},
-                     {"y", "N", false, 9},
-                     {"z", "N", false, 9},
-                     {"largest", "N", false, 9},
-                     {"about x", "N m", false, 9},
-                     {"y", "N m", false, 9},
-                     {"z", "N m", false, 9},
-                     {"link", "", false, 5}});
+int StreamTable::joints() const {
+  int most = 0;
+  for (const auto& [name, c] : channels_) most = std::max(most, static_cast<int>(c.newest.n));
+  return most;
+}
+
+std::string StreamTable::format_forces(std::int64_t now, bool small) const {
+  if (forces_.empty()) return "";
+  const std::size_t width = small ? 8 : 9, widest = small ? 22 : 28;
+  std::vector<TableWriter::Column> columns = {{"force", "", true, widest},
+                                              {"rate", "1/s", false, 4}};
+  if (!small) columns.push_back({"lost", "", false, 6});
+  for (const char* axis : {"x", "y", "z", "largest"}) columns.push_back({axis, "N", false, width});
+  if (!small) {
+    for (const char* axis : {"about x", "y", "z"}) columns.push_back({axis, "N m", false, width});
+  }
+  columns.push_back({"link", "", false, 4});
+  TableWriter table(columns);
   for (const auto& [name, c] : forces_) {
     const force_t& f = c.force;
-    constexpr double kSeen = 0.5;  // less of a component is shown as -
-    const auto shown = [&f](double value, int component) {
-      return f.seen[component] < kSeen ? "-" : fmt::format("{:.3f}", value);
-    };
-    std::vector<std::string> cells = {name, fmt::to_string(c.rate(now)),
-                                      fmt::to_string(c.sequence.counts().lost)};
-    for (int i = 0; i < 3; ++i) cells.push_back(shown(f.force[i], i));
+    std::vector<std::string> cells = {small ? shortened(name, widest) : name,
+                                      fmt::to_string(c.rate(now))};
+    if (!small) cells.push_back(fmt::to_string(c.sequence.counts().lost));
+    for (int i = 0; i < 3; ++i) cells.push_back(seen(f, i));
     cells.push_back(fmt::format("{:.3f}", f.force_max));
-    for (int i = 0; i < 3; ++i) cells.push_back(shown(f.moment[i], 3 + i));
+    for (int i = 3; i < 6 && !small; ++i) cells.push_back(seen(f, i));
     cells.push_back(f.link > 0 ? fmt::to_string(f.link) : "-");
     table.add(std::move(cells));
   }

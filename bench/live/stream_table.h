@@ -28,6 +28,10 @@ class StreamTable {
   /// A row for each estimator, in at most 80 columns: of one joint.
   /// @param joint from 1; 0: of each estimator that with the largest torque
   std::string format_small(std::int64_t now, int joint) const;
+  /// A row for each estimator's force; "" if there is none.
+  /// @param small in at most 80 columns, without moments
+  std::string format_forces(std::int64_t now, bool small) const;
+  int joints() const;  ///< of the channel that has most
   /// What became of each message of all channels, and why.
   std::string totals(const GroupSocket::Counts& refused) const;
 
@@ -60,10 +64,8 @@ class StreamTable {
   Channel* accept(Channels& all, const Envelope& e, std::int64_t seq);
   void take_detection(const detection_t& d, const Envelope& e);
   void take_force(const force_t& f, const Envelope& e);
-  std::string format_forces(std::int64_t now) const;
   void take_summary(const summary_t& s, const Envelope& e);
   void take_end(const summary_t& s, const Envelope& e);
-  static void end(Channel& c, std::int64_t sent);
 
   Channels channels_;
   Channels pairs_;   // detections, by estimator and detector

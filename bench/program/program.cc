@@ -76,7 +76,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     }
     return code;
   } catch (const CLI::ParseError& e) {
-    say(fmt::format("{0}: {1}\n{0}: see {0} --help", app.get_name(), e.what()));
+    say(fmt::format("{0}: {1}; see {0} --help", app.get_name(), one_line(e.what())));
     return kCouldNotRun;
   } catch (const std::exception& e) {
     say(fmt::format("{}: {}", app.get_name(), e.what()));
@@ -111,6 +111,7 @@ std::string whole_number(const std::string& text) {
 }
 
 std::string not_empty(const std::string& text) {
+  if (text.starts_with("--")) return text + " is a flag, and its value is missing";
   return text.empty() ? "its value is empty; leave it out" : "";
 }
 

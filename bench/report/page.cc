@@ -39,6 +39,8 @@ std::string metrics_json() {
                    {"better", m.better == Better::kLess   ? -1
                               : m.better == Better::kMore ? 1
                                                           : 0},
+                   {"joints", m.joints != WorstJoint::kNone},
+                   {"never_is_best", m.is(MetricRow::kNeverIsBest)},
                    {"table", m.is(MetricRow::kTable)},
                    {"star", m.is(MetricRow::kStar)},
                    {"meaning", m.meaning}});
@@ -74,8 +76,10 @@ std::vector<ResultFile> read_results(const std::string& path) {
   if (!path.ends_with(".html")) return {checked_result(path, text)};
   const std::size_t begin = text.find(kBegin);
   const std::size_t end = begin == text.npos ? begin : text.find("</script>", begin);
-  if (end == text.npos)
+  if (begin == text.npos)
     throw std::runtime_error(path + ": no report of tauext-report, which would hold its results");
+  if (!text.ends_with("</html>\n"))
+    throw std::runtime_error(path + ": a report whose end is missing; write or copy it again");
   std::vector<ResultFile> results;
   try {
     for (const Json& r :

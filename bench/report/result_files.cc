@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -58,8 +59,8 @@ void validate(const Json& j, const Json& of_kind, const std::string& name) {
   std::string value = j.at(Json::json_pointer(where)).dump();
   if (value.size() > 60) value = value.substr(0, 57) + "...";
   throw std::runtime_error(
-      fmt::format("{}: {} is {}: {}; tauext-report --schema says what it must be", name, where,
-                  value, one_line(why)));
+      fmt::format("{}: {} is {}: {}; tauext-report --schema says what it must be", name,
+                  where.empty() ? "all of it" : where, value, one_line(why)));
 }
 
 // what the schema can't say of traces: each signal has as many values as there are times
@@ -84,10 +85,21 @@ void require_whole_traces(const Json& j, const std::string& name) {
 }
 
 // of a history, which is a line for each commit
-std::string object_of_lines(std::string rows) {
-  rows.resize(rows.find_last_not_of('\n') + 1);
-  for (char& c : rows) c = c == '\n' ? ',' : c;
-  return fmt::format(R"({{"format":"tauext-history-1","context":{{}},"rows":[{}]}})", rows);
+nlohmann::ordered_json object_of_lines(const std::string& text) {
+  auto rows = nlohmann::ordered_json::array();
+  std::istringstream in(text);
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    try {
+      ++number;
+      rows.push_back(parse_json(line));
+    } catch (const std::exception& e) {
+      throw std::runtime_error(fmt::format("its line {}: {}", number, e.what()));
+    }
+  }
+  return {{"format", "tauext-history-1"},
+          {"context", nlohmann::ordered_json::object()},
+          {"rows", rows}};
 }
 
 }  // namespace
@@ -96,9 +108,13 @@ std::string results_schema() {
   auto schema = nlohmann::ordered_json::parse(report::assets().at("results.schema.json"));
   auto& row = schema["definitions"]["suite"]["properties"]["benchmarks"]["items"];
   for (const MetricRow& m : kMetrics) {
-    row["properties"][std::string(m.key)] = {{"type", "number"}, {"description", m.meaning}};
+    nlohmann::ordered_json type = {{"type", "number"}};
+    const bool size = m.unit == "N m" || m.unit == "N" || m.unit == "ns";  // times may be negative
+    if (size && m.better == Better::kLess) type["minimum"] = 0;
     if (m.joints != WorstJoint::kNone)
-      row["patternProperties"][fmt::format("^{}_joint[1-9]$", m.key)]["type"] = "number";
+      row["patternProperties"][fmt::format("^{}_joint[1-9]$", m.key)] = type;
+    type["description"] = m.meaning;
+    row["properties"][std::string(m.key)] = type;
   }
   return schema.dump(1) + "\n";
 }
@@ -107,7 +123,7 @@ ResultFile checked_result(const std::string& path, const std::string& text) {
   static const Json kinds = Json::parse(results_schema())["definitions"];
   std::string smallest;
   try {
-    smallest = parse_json(path.ends_with(".jsonl") ? object_of_lines(text) : text).dump();
+    smallest = path.ends_with(".jsonl") ? object_of_lines(text).dump() : parse_json(text).dump();
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, one_line(e.what())));
   }

@@ -154,6 +154,7 @@ void Traces::close() {
   }
   const std::vector<int> edges = bucket_edges(signals);
   Json j = {{"name", group_}, {"t", Json::array()}};
+  if (!site_.empty()) j["site"] = site_;
   // a bucket's first and last sample, at which its extremes are drawn
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     j["t"].push_back(t_[static_cast<std::size_t>(edges[i])]);

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/score/suite.h"
@@ -34,6 +35,8 @@ Drawn draw(const Eigen::VectorXd& signal, const std::vector<int>& edges);
 /// Entries one after the other, as "tauext-traces-1" (bench/report/README.md).
 class Traces {
  public:
+  /// @param site where forces are looked for; "": nowhere
+  explicit Traces(std::string site = "") : site_(std::move(site)) {}
   /// Those of a group come together.
   /// @param forces what makes a force, and with 6 joints or more a moment, of each tau_ext, to be
   ///   shown beside it; nullptr: none
@@ -53,7 +56,7 @@ class Traces {
   };
   void close();  // writes the group
 
-  std::string group_, groups_;
+  std::string site_, group_, groups_;
   std::vector<double> t_;
   std::vector<std::uint8_t> contact_;
   std::vector<Series> series_;

@@ -152,7 +152,8 @@ void add_study_flags(CLI::App& app, StudyFlags& f) {
 bool wants_study(const StudyFlags& f) {
   if (f.studies() == 0 && f.out) {
     throw std::invalid_argument(
-        "--out goes with --seeds, --reliability, --equal-bandwidth or --pareto");
+        "--out goes with --seeds, --reliability, --equal-bandwidth or --pareto; the suite has "
+        "--benchmark_out=FILE and --report FILE.html");
   }
   if (format_of(f) != TableFormat::kText && f.studies() > 1) {
     throw std::invalid_argument(

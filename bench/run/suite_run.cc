@@ -170,7 +170,7 @@ Forces forces_of(const SuiteRun& run, const Rows& rows) {
 void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Reporter& reporter,
                   const Forces& forces) {
   Progress progress("drawing");
-  report::Traces traces;
+  report::Traces traces(run.wrench);
   for (const Row& row : rows) {
     if (row.score.error.empty())
       traces.add(row.entry, suite.run(row.entry), forces.at(row.entry.robot().name()).get());

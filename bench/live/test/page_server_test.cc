@@ -75,7 +75,7 @@ class Pages : public testing::Test {
     c.half_close();
     return c.hear();
   }
-  PageServer server_{0};
+  PageServer server_{0, "wallmobot3/step"};
   std::string host_ = server_.url().substr(7);  // behind http://
   std::array<std::byte, 5> message_{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4},
                                     std::byte{5}};
@@ -83,12 +83,14 @@ class Pages : public testing::Test {
 
 TEST_F(Pages, AreServedToTheirOwnAddressAlone) {
   EXPECT_EQ(answer(get("/", host_)).find("HTTP/1.1 200 OK"), 0u);
-  EXPECT_NE(answer(get("/types.json", host_)).find("estimate_t"), std::string::npos);
+  const std::string stream = answer(get("/stream.json", host_));
+  EXPECT_NE(stream.find("estimate_t"), std::string::npos);
+  EXPECT_NE(stream.find("\"title\":\"wallmobot3/step\""), std::string::npos) << stream;
   EXPECT_EQ(answer(get("/", "evil.example")).find("HTTP/1.1 403"), 0u);
   EXPECT_EQ(answer(get("/", host_, "Host: evil.example\r\n")).find("HTTP/1.1 403"), 0u) << "two";
   EXPECT_EQ(answer(get("/stream", host_, upgrade("http://evil.example"))).find("HTTP/1.1 403"), 0u);
   EXPECT_EQ(answer("POST / HTTP/1.1\r\nHost: " + host_ + "\r\n\r\n").find("HTTP/1.1 405"), 0u);
-  EXPECT_THROW(PageServer(std::stoi(host_.substr(host_.find(':') + 1))), std::runtime_error);
+  EXPECT_THROW(PageServer(std::stoi(host_.substr(host_.find(':') + 1)), ""), std::runtime_error);
 }
 
 TEST_F(Pages, GetEachMessageInOrderAsItIs) {

@@ -139,6 +139,12 @@ TEST(StreamTableTest, ForcesAreARowEachAndNoneIsLostUnseen) {
   for (const char* cell : {" 12.500 ", " - ", " -30.000 ", " 40.000 "}) {
     EXPECT_TRUE(has(text, cell)) << cell << " in\n" << text;
   }
+  const std::string small = table.format_forces(0, true);
+  for (const char* cell : {"mo2 at end_effector", " 12.500 ", " - ", " -30.000 ", " 40.000 "}) {
+    EXPECT_TRUE(has(small, cell)) << cell << " in\n" << small;
+  }
+  EXPECT_LE(small.find('\n', small.find("mo2")) - small.find("mo2"), 80u) << small;
+  EXPECT_EQ(table.joints(), 3);
   summary_t s = summary();
   s.entry = "arm/step/mo2";
   s.published = 100;  // estimates, and as many forces

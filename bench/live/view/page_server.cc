@@ -40,12 +40,12 @@ struct Visit {
   Answer answer;
 };
 
-// what the page decodes messages by
-std::string types_json() {
-  nlohmann::json all;
-  const auto add = [&all](const char* name, std::int64_t hash) {
-    all[name] = {{"hash", fmt::format("{:016x}", static_cast<std::uint64_t>(hash))},
-                 {"text", report::assets().at(std::string(name) + ".lcm")}};
+// what the page is headed with, and decodes messages by
+std::string stream_json(const std::string& title) {
+  nlohmann::json all = {{"title", title}};
+  const auto add = [&types = all["types"]](const char* name, std::int64_t hash) {
+    types[name] = {{"hash", fmt::format("{:016x}", static_cast<std::uint64_t>(hash))},
+                   {"text", report::assets().at(std::string(name) + ".lcm")}};
   };
   add("estimate_t", estimate_t::getHash());
   add("detection_t", detection_t::getHash());
@@ -58,7 +58,7 @@ std::string types_json() {
 struct File {
   std::string type, text;
 };
-std::map<std::string, File, std::less<>> files() {
+std::map<std::string, File, std::less<>> files(const std::string& title) {
   const auto& page = report::assets();
   std::map<std::string, File, std::less<>> all;
   all["/"] = {"text/html", page.at("live.html")};
@@ -66,7 +66,7 @@ std::map<std::string, File, std::less<>> files() {
     all[std::string("/") + name] = {"text/javascript", page.at(name)};
   for (const char* name : {"common.css", "uplot/uPlot.min.css"})
     all[std::string("/") + name] = {"text/css", page.at(name)};
-  all["/types.json"] = {"application/json", types_json()};
+  all["/stream.json"] = {"application/json", stream_json(title)};
   return all;
 }
 
@@ -74,7 +74,8 @@ std::map<std::string, File, std::less<>> files() {
 
 class PageServer::Server {
  public:
-  explicit Server(int port) : acceptor_(listening(port)), port_(acceptor_.local_endpoint().port()) {
+  Server(int port, const std::string& title)
+      : acceptor_(listening(port)), port_(acceptor_.local_endpoint().port()), files_(files(title)) {
     for (const char* name : {"127.0.0.1", "localhost"}) {
       hosts_.insert(fmt::format("{}:{}", name, port_));
       if (port_ == 80) hosts_.insert(name);  // as a browser says it
@@ -238,7 +239,7 @@ class PageServer::Server {
   int port_;
   std::set<std::string, std::less<>> hosts_;
   std::string url_;
-  const std::map<std::string, File, std::less<>> files_ = files();
+  const std::map<std::string, File, std::less<>> files_;
   std::set<std::shared_ptr<Viewer>> viewers_;
   int visits_ = 0;
   std::atomic<bool> watched_ = false;
@@ -247,7 +248,8 @@ class PageServer::Server {
   std::thread thread_;   // last: it uses the others
 };
 
-PageServer::PageServer(int port) : server_(std::make_unique<Server>(port)) {}
+PageServer::PageServer(int port, const std::string& title)
+    : server_(std::make_unique<Server>(port, title)) {}
 PageServer::~PageServer() = default;
 const std::string& PageServer::url() const {
   return server_->url();

@@ -26,8 +26,9 @@ class PageServer {
   static constexpr std::size_t kMostPages = 8;            ///< at once
 
   /// @param port 0: any that is free
+  /// @param title what it shows, like wallmobot3/contact
   /// @throws std::runtime_error if nothing can listen there, with the remedy
-  explicit PageServer(int port);
+  PageServer(int port, const std::string& title);
   /// Sends what is left, for up to half a second.
   ~PageServer();
   PageServer(const PageServer&) = delete;

@@ -17,14 +17,15 @@ class Viewers {
  public:
   /// @param page port of the page, 0 for any; none: no page
   /// @param plotjuggler HOST:PORT; "": none
+  /// @param title what is shown, for the page
   /// @throws as PageServer and PlotJuggler
-  Viewers(std::optional<int> page, const std::string& plotjuggler) {
-    if (page) page_.emplace(*page);
+  Viewers(std::optional<int> page, const std::string& plotjuggler, const std::string& title) {
+    if (page) page_.emplace(*page, title);
     if (!plotjuggler.empty()) plotjuggler_.emplace(plotjuggler);
   }
 
-  bool wait_for_page() const { return page_ && !page_->is_watched(); }  ///< nobody has opened it
-  bool any() const { return page_ || plotjuggler_; }                    ///< whether somebody looks
+  bool page_is_unseen() const { return page_ && !page_->is_watched(); }  ///< nobody has opened it
+  bool any() const { return page_ || plotjuggler_; }                     ///< whether somebody looks
   /// ", page at http://.., JSON to ..", or "".
   std::string where() const {
     return (page_ ? ", page at " + page_->url() : "") +

@@ -16,6 +16,9 @@ function element(name, attributes = {}, ...children) {
 const COLORS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a6d3b', '#7f7f7f'];
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3]];
 const look = (i) => ({color: COLORS[i % 8], dash: DASHES[Math.floor(i / 8) % 4]});
+// a piece of a line, for a list of names
+const sample_of = ({color, dash = []}) => element('svg', {width: 26, height: 10},
+  element('line', {x1: 0, x2: 24, y1: 5, y2: 5, stroke: color, 'stroke-width': 2, 'stroke-dasharray': dash.join(' ')}));
 const themed = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function select(label, options, chosen, change) {
@@ -75,10 +78,10 @@ function time_plot(parent, {title, unit, width, height, data, series, x_range, f
   const digits = Math.min(9, Math.max(0, Math.ceil(1 - Math.log10(floor))));  // of values at the cursor: a tenth of the floor
   const axis = {stroke: themed('--text'), grid: {stroke: themed('--line'), width: .5}, ticks: {stroke: themed('--line')}};
   return new uPlot({
-    title, width, height, bands,
+    title, width, height, bands, legend: {markers: {width: 2, dash: (u, i) => i && series[i - 1].dash?.length ? 'dashed' : 'solid'}},
     cursor: {dataIdx: (u, s, i) => nearest(u.data[s], i), sync: sync && {key: sync}, drag: {x: true, y: false, setScale: !select}},
     scales: {x: {time: false, range: x_range}, y: {range: (u, low, high) => low === null ? [-1, 1] : range_of(low, high, floor)}},
-    axes: [{...axis, label: 't [s]', labelSize: 18, size: 34}, {...axis, label: unit, labelSize: 18, size: 68, values: (u, all) => all.map((v) => Number(v.toPrecision(6)).toString())}],
+    axes: [{...axis, label: 't [s]', labelSize: 18, size: 34}, {...axis, label: unit, labelSize: 18, size: 76, values: (u, all) => all.map((v) => Number(v.toPrecision(6)).toString())}],
     series: [{label: 't [s]', value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(3)}].concat(series.map((s) => ({
       label: s.label, stroke: s.color, dash: s.dash, width: s.width || 1.2, show: s.show !== false, points: {show: false}, spanGaps: true,
       value: (u, v) => v === null || v === undefined ? '–' : v.toFixed(digits)}))),

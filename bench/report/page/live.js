@@ -93,14 +93,14 @@ class Rows {
 }
 
 // ---- what has come: rows by quantity and then by whose they are
-const QUANTITIES = {tau_ext: 'N m', force: 'N', moment: 'N m', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
-const FLOORS = {tau_ext: 0.02, force: 0.1, moment: 0.02, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
+const QUANTITIES = {tau_ext: 'N m', force: 'N', moment: 'N m', link: '1', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
+const FLOORS = {tau_ext: 0.02, force: 0.1, moment: 0.02, link: 1, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
 const MEASURED = ['q', 'qd', 'tau'], WRENCH = ['force', 'moment'];
 const seen = {messages: 0, lost: 0, late: 0, rejected: 0, frames: 0, text: ''};
-let all, next, marks, contacts, newest, oldest, leads;  // leads: the channel whose measurements are shown
+let all, next, marks, contacts, newest, oldest, leads, site;  // leads: the channel whose measurements are shown; site: of forces
 function forget() {
   all = Object.fromEntries(Object.keys(QUANTITIES).map((quantity) => [quantity, new Map()]));
-  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity, leads = '';
+  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity, leads = '', site = '';
 }
 forget();
 function keep(quantity, who, t, low, high = low) {
@@ -135,7 +135,9 @@ function take(channel, m) {
     return;
   }
   if (m.type === 'force_t') {
+    site = m.site || 'end_effector';
     keep('force', m.estimator, t, m.force);
+    keep('link', m.estimator, t, [m.link]);
     if (all.moment.size || m.moment.some((x) => x !== 0)) keep('moment', m.estimator, t, m.moment);
     return;
   }
@@ -188,8 +190,9 @@ function lay_out() {
   for (let j = 0; j < joints; ++j) plot(`joint ${j + 1}`, 'tau_ext', names.map((w) => ({rows: all.tau_ext.get(w), j, label: w, style: style_of(w)})));
   for (const quantity of WRENCH.filter((w) => all[w].size)) {
     for (const [j, axis] of ['x', 'y', 'z'].entries())
-      plot(`${quantity} ${axis}`, quantity, [...all[quantity]].map(([w, rows]) => ({rows, j, label: w, style: style_of(w)})));
+      plot(`${quantity} ${axis} at ${site}, axes of the base`, quantity, [...all[quantity]].map(([w, rows]) => ({rows, j, label: w, style: style_of(w)})));
   }
+  if (all.link.size) plot('link touched, 0: none', 'link', [...all.link].map(([w, rows]) => ({rows, j: 0, label: w, style: style_of(w)})));
   const pairs = [...all.statistic.keys()];
   const threshold = {rows: {points: (j, from, step, count) => new Array(2 * count).fill(1)}, label: 'threshold', style: {color: themed('--quiet'), dash: [4, 4]}};
   if (pairs.length) plot('statistics of detectors', 'statistic', [threshold, ...pairs.map((w) => ({rows: all.statistic.get(w), j: 0, label: w, style: style_of(w)}))]);
@@ -256,7 +259,8 @@ setInterval(() => {
     + `${seen.late} late, ${seen.rejected} rejected`;
   before = seen.messages;
 }, 1000);
-fetch('/types.json').then((r) => r.json()).then((types) => {
+fetch('/stream.json').then((r) => r.json()).then(({title, types}) => {
+  document.title = document.querySelector('h1').textContent = `${title}: tauext live`;
   for (const [name, t] of Object.entries(types)) TYPES.set(t.hash, type_of(name, t)), TYPES.set(name, TYPES.get(t.hash));
   connect();
   draw();

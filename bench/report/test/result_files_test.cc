@@ -28,15 +28,20 @@ TEST(ResultFiles, SayWhichElementIsWrong) {
   expect_error("[1]", "no file of results: \"format\" is not there, and must be one of ");
   expect_error(R"({"format": "tauext-seeds-2"})",
                "no file of results: \"format\" is \"tauext-seeds-2\"");
-  expect_error(R"({"benchmarks": []})",
-               " is {\"benchmarks\":[]}: Missing required property 'context'");
+  expect_error(
+      R"({"benchmarks": [{"name": "a/b/c"}]})",
+      "all of it is {\"benchmarks\":[{\"name\":\"a/b/c\"}]}: Missing required property 'context'");
+  expect_error(R"({"context": {}, "benchmarks": []})", "/benchmarks is []: ");
+  expect_error(R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm": -1}]})",
+               "/benchmarks/0/rmse_Nm is -1: ");
   expect_error(R"({"context": {}, "benchmarks": [{"name": "a/b/c"}, {"name": "a/b"}]})",
                "/benchmarks/1/name is \"a/b\": ");
   expect_error(R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm": "7"}]})",
                "/benchmarks/0/rmse_Nm is \"7\": ");
   expect_error(R"({"context": {}, "benchmarks": [{"name": "a/b/c", "rmse_Nm_joint2": []}]})",
                "/benchmarks/0/rmse_Nm_joint2 is []: ");
-  expect_error(R"({"context": {"submitter": 7}, "benchmarks": []})", "/context/submitter is 7: ");
+  expect_error(R"({"context": {"submitter": 7}, "benchmarks": [{"name": "a/b/c"}]})",
+               "/context/submitter is 7: ");
   expect_error(R"({"context": {}, "benchmarks": [], "benchmarks": []})", "the key");
   expect_error(R"({"format": "tauext-traces-1", "context": {}, "groups": [{"name": "a/b", "t": [],
                    "contacts": [], "marks": [], "series": [{"name": "truth", "joints":
@@ -70,6 +75,15 @@ TEST(ResultFiles, TheSchemaKnowsEveryMetric) {
   EXPECT_EQ(row["properties"]["rmse_Nm"]["type"], "number");
   EXPECT_EQ(row["properties"]["delay_s"]["type"], "number");
   EXPECT_TRUE(row["patternProperties"].contains("^rmse_Nm_joint[1-9]$"));
+}
+
+TEST(ResultFiles, OfAHistoryTheLineThatIsBrokenIsNamed) {
+  try {
+    checked_result("h.jsonl", "{\"a\": 1}\n{\"b\":\n");
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_EQ(std::string(e.what()).find("h.jsonl: its line 2: "), 0u) << e.what();
+  }
 }
 
 TEST(ResultFiles, NumbersAreThoseOfTheFile) {
