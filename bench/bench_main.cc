@@ -85,8 +85,9 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   if (f.report) report::require_page(*f.report, "--report");
   if (f.report && f.report == f.out)
-    throw std::invalid_argument(
-        fmt::format("--report and --benchmark_out are both {}: a page and JSON", *f.report));
+    throw std::invalid_argument(fmt::format(
+        "--report and --benchmark_out both name {}; the page and the JSON need two files",
+        *f.report));
   require_mode(app, f.report.has_value(), "--report", {"--wrench"});
   require_mode(app, suite || study, "the suite and the studies", {"--format"});
   const bool tuned = f.studies.equal_bandwidth || f.studies.pareto;
@@ -192,7 +193,7 @@ Arguments take_benchmark_flags(int argc, char** argv, Flags& flags) {
   return a;
 }
 
-// of what Google Benchmark has left
+// Google Benchmark has taken its own flags out: what still begins so is wrong
 void refuse_unknown_benchmark_flags(const Arguments& rest) {
   for (int i = 1; i < rest.count; ++i) {
     const std::string_view flag = rest.pointers[i];
@@ -200,8 +201,8 @@ void refuse_unknown_benchmark_flags(const Arguments& rest) {
     throw std::invalid_argument(fmt::format(
         "{}: {}", flag,
         flag.starts_with("--benchmark_context=")
-            ? "KEY=VALUE,KEY=VALUE, and no value has a comma"
-            : "Google Benchmark has no such flag, or not that value of it; see --help"));
+            ? "write KEY=VALUE,KEY=VALUE; a value cannot contain a comma"
+            : "Google Benchmark does not know this flag, or not with this value; see --help"));
   }
 }
 
@@ -232,7 +233,7 @@ void add_output_flags(CLI::App& app, Flags& flags) {
   app.add_option("--against", flags.studies.against)->group("");
   app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
   app.add_option("--report", flags.report,
-                 "a page of all of it, with traces; --wrench SITE adds forces")
+                 "a page for a browser, with traces; --wrench SITE adds forces")
       ->type_name("FILE.html");
   app.add_option("--wrench", flags.wrench)->group("")->check(not_empty);
   app.add_option("--lcm", flags.lcm, "publish each entry's summary as it finishes")

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,14 +43,18 @@ void list_conditions(const std::string& robot_name) {
   TableWriter table({{"condition", "", true}, {"what is so", "", true}});
   for (const study::Condition& c : runs.conditions) {
     const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
-    table.add({c.name, c.description + (trained ? " (trained on)" : "")});
+    table.add({c.name, c.description + (trained           ? " (trained on)"
+                                        : c.trains_itself ? " (trained on itself)"
+                                                          : "")});
   }
   fmt::print("{}\n{}", table.format(), list_fields(&robot(runs.robot)));
 }
 
-Thresholds calibrated(const Flags& f) {
-  Progress progress("calibrating");
+// @param condition that is trained on; "": what --train says, or those of the robot
+Thresholds calibrated(const Flags& f, const std::string& condition = "") {
+  Progress progress(condition.empty() ? "calibrating" : "calibrating on " + condition);
   study::CalibrationOptions o = f.calibration;
+  if (!condition.empty()) o.conditions = {condition};
   o.robot = f.study.robot;
   o.estimators = f.study.estimators;
   o.detectors = f.study.detectors;
@@ -101,10 +106,41 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   return thresholds;
 }
 
-std::vector<study::Cell> studied(study::StudyOptions o, const Thresholds& thresholds) {
-  Progress progress("studying");
-  o.progress = progress.callback();
-  return study::detection_study(o, thresholds);
+// what was counted, and of thresholds where they come from
+struct Studied {
+  std::vector<study::Cell> cells;
+  Thresholds thresholds;
+
+  // these conditions by thresholds of their own
+  void add(study::StudyOptions o, const std::vector<std::string>& conditions, const Thresholds& t) {
+    if (conditions.empty()) return;
+    Progress progress("studying");
+    o.progress = progress.callback();
+    o.conditions = conditions;
+    std::vector<study::Cell> more = study::detection_study(o, t);
+    std::move(more.begin(), more.end(), std::back_inserter(cells));
+    thresholds.margin = t.margin;
+    thresholds.trained_on += (thresholds.trained_on.empty() ? "" : "; ") + t.trained_on;
+  }
+};
+
+Studied studied(const Flags& f) {
+  const study::StudyRuns& runs = study::touched_runs(f.study.robot);
+  std::vector<std::string> together;
+  std::vector<std::string> alone;  // each by itself
+  for (const std::string& name : study::chosen_conditions(runs, f.study.conditions, runs.usual)) {
+    const bool itself = f.thresholds.empty() && f.calibration.conditions.empty() &&
+                        study::condition(runs, name).trains_itself;
+    (itself ? alone : together).push_back(name);
+  }
+  Studied all;
+  if (!f.thresholds.empty()) {
+    all.add(f.study, together, read_thresholds(f.thresholds));
+  } else if (!together.empty()) {
+    all.add(f.study, together, calibrated(f));
+  }
+  for (const std::string& name : alone) all.add(f.study, {name}, calibrated(f, name));
+  return all;
 }
 
 // an unwritable path should not cost a run
@@ -126,11 +162,9 @@ int run_calibration(const Flags& f) {
 int run_study(const Flags& f) {
   const TableFormat format = table_format(f.format);
   study::check_study(f.study);  // before calibration takes its time
-  Thresholds thresholds;
-  if (!f.thresholds.empty()) thresholds = read_thresholds(f.thresholds);
+  if (!f.thresholds.empty()) read_thresholds(f.thresholds);
   if (!f.out.empty()) require_writable(f.out);
-  if (f.thresholds.empty()) thresholds = calibrated(f);
-  const std::vector<study::Cell> cells = studied(f.study, thresholds);
+  const auto [cells, thresholds] = studied(f);
   // a table for a program stands alone; so does a study on standard output
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
   fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n",

@@ -74,16 +74,6 @@ Supervisor supervisor_of(const Robot& robot, const std::string& stop) {
   return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
 }
 
-// every n-th sample; what was held between them is then read at instants
-Trace thinned(const Trace& trace, int every) {
-  if (every == 1) return trace;
-  std::vector<int> kept;
-  for (int k = 0; k < trace.size(); k += every) kept.push_back(k);
-  Trace thin = select_samples(trace, kept);
-  thin.torque_at_instants = true;
-  return thin;
-}
-
 // in the layout that is asked for, or as its name ends
 void write(const Trace& trace, const Flags& f, const Robot& r) {
   if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), f.out);
@@ -109,7 +99,7 @@ int record_set(const Flags& f) {
   const std::vector<std::uint64_t> seeds = seeds_of(f.seeds);
   study::Condition condition;
   condition.panel = runs.carries;
-  condition.degradation = {f.sensors, f.model_error};
+  condition.degradation = {f.sensors, f.model_error, f.recording.drives};
   const study::PlantKey plant = study::plant_of(condition);
   const Model model = runs.model(plant);
   for (const std::uint64_t seed : seeds) {
@@ -130,7 +120,7 @@ int record_set(const Flags& f) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       const Trace trace = study::measured(truths[k], f.sensors, jobs[k]);
       write_npz(fmt::format("{}/{}_{:04}.npz", f.out, kKinds[k].first, seed),
-                thinned(trace, f.every));
+                study::thinned(trace, f.every));
     }
   };
   parallel_for(static_cast<int>(seeds.size()), 0, record, progress.callback());
@@ -174,7 +164,7 @@ int run(const CLI::App& app, const Flags& f) {
   const Supervisor supervisor = supervisor_of(r, f.stop);
   const Trace trace =
       measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
-  const Trace thin = thinned(trace, f.every);
+  const Trace thin = study::thinned(trace, f.every);
   write(thin, f, r);
   if (bag && std::count(thin.contact.begin(), thin.contact.end(), 0) < thin.size())
     say(f.out + ": joint_state has no place for labels of contacts, so they are left out");

@@ -118,7 +118,9 @@ void require_flags(const CLI::App& app, const Flags& f) {
   const std::string kind = std::filesystem::path(f.out).extension();
   if (!kind.empty() && kind != ".json")
     throw std::invalid_argument(
-        fmt::format("--out {}: it writes JSON, FILE.json; --format is that of the table", f.out));
+        fmt::format("--out {}: the file is JSON, so its name ends in .json; --format is that of "
+                    "the printed table",
+                    f.out));
   refuse_twice("estimator", f.ours);
   refuse_twice("log", f.logs);
 }
@@ -178,7 +180,7 @@ int score(const CLI::App& app, const Flags& f) {
                                  [](const RecordedLog& l) { return l.trace.has_truth(); });
   std::vector<Metric> also;
   if (!truth) also = {Metric::kRecall, Metric::kFalseAlarmsPerHour};
-  std::FILE* const tables = f.out == "-" ? stderr : stdout;  // where JSON stands alone
+  std::FILE* const tables = f.out == "-" ? stderr : stdout;  // standard output is for JSON alone
   fmt::print(tables, "{}", format_table(rows, format, also));
   if (format == TableFormat::kText) fmt::print(tables, "\n{}", table_legend(rows, also));
   if (out) {

@@ -212,7 +212,7 @@ int run(const CLI::App& app, Flags& f) {
   const TableFormat format = table_format(f.format);
   require_mode(app, f.logs.empty(), "simulated runs, not with --log",
                {"--scenario", "--scenarios", "--seeds", "--test_seeds", "--sensors", "--loadcell",
-                "--model_error"});
+                "--model_error", "--drives"});
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   r.check(f.pair.estimator, f.pair.detector);
@@ -242,7 +242,7 @@ int run(const CLI::App& app, Flags& f) {
     const Tuned t = tune(o);
     print_found(t, o.minimize, words);
     fmt::print(words, "\nOn seeds that no tuning has seen, {}:\n\n",
-               describe({f.suite.sensors, f.suite.model_error}));
+               describe({f.suite.sensors, f.suite.model_error, f.suite.recording.drives}));
     fmt::print("{}", format_seeds(test.rows({t.start, t.best}), name_of(t.start), format));
     return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
   }

@@ -77,6 +77,12 @@ std::string scheme_of(const std::string& url) {
       "{}: an LCM URL begins with udpm://, tcpq://, memq:// or file://, like {}", url, kDefault));
 }
 
+std::string log_of(const std::string& url) {
+  constexpr std::string_view kScheme = "file://";
+  if (!url.starts_with(kScheme)) return "";
+  return url.substr(kScheme.size(), url.find('?') - kScheme.size());
+}
+
 GroupUrl group_url(const std::string& url) {
   if (scheme_of(url) != "udpm") throw std::invalid_argument(url + ": not udpm://");
   const std::size_t question = url.find('?');

@@ -17,6 +17,9 @@ std::string lcm_url(const std::string& url);
 /// @throws std::invalid_argument for any other
 std::string scheme_of(const std::string& url);
 
+/// The path of a log, of file://PATH or file://PATH?..; "" of another URL.
+std::string log_of(const std::string& url);
+
 /// A udpm:// URL.
 struct GroupUrl {
   sockaddr_in place{};                   ///< multicast group and port

@@ -75,11 +75,10 @@ Transport::Transport(const std::string& url)
     lcm_ = open_lcm(url_, trouble_);
     return;
   }
-  const auto question = url_.find('?');
-  if (question == std::string::npos || url_.substr(question) != "?mode=w") {
+  if (!url_.ends_with("?mode=w") || url_.find('?') != url_.rfind('?')) {
     throw std::invalid_argument(fmt::format("{}: to write a log add ?mode=w", url_));
   }
-  log_ = new_log(url_.substr(7, question - 7));  // behind file://
+  log_ = new_log(log_of(url_));
 }
 
 bool Transport::publish(const char* channel, Bytes message) noexcept {

@@ -2,13 +2,16 @@
 #include "mjcf/record.h"
 
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/tree.h"
 #include "mjcf/simulation/run.h"
 
 namespace tauext {
 
 Trace simulate(const Model& model, const Scenario& scenario, const Recording& recording,
                const Sensors& sensors, const Supervisor& supervisor) {
-  return detail::Run<Plant>(Plant(model), scenario, recording, sensors)(supervisor).value();
+  const bool scaled = recording.drives.any() || !sensors.torque.ideal();
+  const Eigen::VectorXd usual = scaled ? tree_of(model).usual_torque : Eigen::VectorXd();
+  return detail::Run<Plant>(Plant(model), scenario, recording, sensors, usual)(supervisor).value();
 }
 
 Trace record(const Model& model, const Scenario& scenario, const Sensors& sensors,

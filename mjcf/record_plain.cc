@@ -24,24 +24,37 @@ bool holds_for(const PlainArm& arm, const Recording& r) {
   return arm.dry.most.isZero(0) || arm.timestep == r.Ts / r.substeps;
 }
 
+// those with as many steps in a sample step at once
+void step_together(std::vector<detail::Run<TreePlant>*> runs, double Ts) {
+  std::vector<TreePlant*> plants;
+  while (!runs.empty()) {
+    const int parts = runs.front()->parts();
+    const auto others = std::stable_partition(
+        runs.begin(), runs.end(), [parts](const auto* run) { return run->parts() == parts; });
+    plants.clear();
+    for (auto run = runs.begin(); run != others; ++run) plants.push_back(&(*run)->plant());
+    for (int i = 0; i < parts; ++i) {
+      for (auto run = runs.begin(); run != others; ++run) (*run)->push(Ts / parts);
+      TreePlant::step(plants, Ts / parts);
+      for (auto run = runs.begin(); run != others; ++run) (*run)->move(Ts / parts);
+    }
+    runs.erase(runs.begin(), others);
+  }
+}
+
 // nothing of a run that got lost
 std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant>> runs,
                                                const Recording& r) {
   const Supervisor nobody;
   std::vector<bool> lost(runs.size());
-  std::vector<TreePlant*> going;
+  std::vector<detail::Run<TreePlant>*> going;
   for (int k = 0; k < runs.front().size(); ++k) {
     going.clear();
     for (std::size_t i = 0; i < runs.size(); ++i) {
       lost[i] = lost[i] || !runs[i].sample(k, nobody);
-      if (lost[i]) continue;
-      if (runs[i].steps_alone()) {
-        runs[i].step();
-      } else {
-        going.push_back(&runs[i].plant());
-      }
+      if (!lost[i]) going.push_back(&runs[i]);
     }
-    for (int i = 0; i < r.substeps; ++i) TreePlant::step(going, r.Ts / r.substeps);
+    step_together(going, r.Ts);
   }
   std::vector<std::optional<Trace>> traces(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -63,7 +76,7 @@ std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> 
     for (n = 0; from + n < scenarios.size(); ++n) {
       const Scenario& s = scenarios[from + n];
       if (!dynamics || !is_plain(s) || s.duration != scenarios[from].duration) break;
-      runs.emplace_back(TreePlant(*arm, dynamics), s, recording, Sensors());
+      runs.emplace_back(TreePlant(*arm, dynamics), s, recording, Sensors(), arm->tree.usual_torque);
     }
     std::vector<std::optional<Trace>> done;
     if (!runs.empty()) done = run_together(std::move(runs), recording);

@@ -167,19 +167,15 @@ class Screen {
   Lines events_;
 };
 
-// the path of a log that is listened to; "" for a network
-std::string log_of(const std::string& url) {
-  constexpr std::string_view kScheme = "file://";
-  if (!url.starts_with(kScheme)) return "";
-  return url.substr(kScheme.size(), url.find('?') - kScheme.size());
-}
-
-// what LCM passes over in silence
+// what LCM does not say: its reader stops where bytes are none of a message
 void say_faults(const std::string& log) {
   const LogFaults faults = read_log(log, [](const LogEvent&) {});
-  if (faults.truncated) return say(log + ": its last message is cut off");
-  if (faults.junk_bytes > 0)
-    say(fmt::format("{}: {} bytes between messages are none", log, faults.junk_bytes));
+  if (faults.junk_stretches > (faults.truncated ? 1 : 0))
+    say(
+        fmt::format("{}: {} bytes belong to no message; what follows the first of them was not "
+                    "shown; tauext-replay passes over them",
+                    log, faults.junk_bytes));
+  if (faults.truncated) say(log + ": its last message is cut off");
 }
 
 }  // namespace
@@ -189,36 +185,37 @@ int run_listen(const Options& o) {
   auto begin = std::chrono::steady_clock::now();
   const auto now = [&] { return microseconds_since(begin); };
   StreamTable table;
-  const std::string log = log_of(o.url);
-  if (LogEvent first; !log.empty()) LogEvents(log).next(first);  // or says why not
-  Viewers viewers(o.page, o.plotjuggler, lcm_url(o.url));
+  const std::string url = lcm_url(o.url), log = log_of(url);
+  if (LogEvent first; !log.empty()) LogEvents(log).next(first);  // what is no log is refused
+  Viewers viewers(o.page, o.plotjuggler, url);
   if (!log.empty() && viewers.page_is_unseen()) {
-    say(o.url + viewers.where() + "; the log begins when a browser shows it; Ctrl-C ends");
+    say(url + viewers.where() + "; the log begins when a browser shows it; Ctrl-C ends");
     while (viewers.page_is_unseen() && !over(interrupt, begin, o.pace.duration))
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     begin = std::chrono::steady_clock::now();
   }
-  Listener listener(o.url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
+  Listener listener(url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
     table.take(channel, sender, now(), m);
     viewers.take(channel, m);
   });
   say(fmt::format("listening to TAUEXT_* at {}{}; Ctrl-C ends", listener.url(), viewers.where()));
   Screen screen(listener, listener.url() + viewers.where());
-  bool ended = false, broken = false, at_end = false;
-  while (!broken && !ended) {
+  bool ended = false, at_end = false;
+  std::string broken;  // why
+  while (broken.empty() && !ended) {
     ended = over(interrupt, begin, o.pace.duration);
     try {
       listener.wait(50);  // what has come by then is taken
     } catch (const std::runtime_error& e) {
-      broken = true;
+      broken = e.what();
       at_end = !log.empty();  // it is over
-      if (!at_end) say(e.what());
     }
     screen.show(table, seconds_since(begin), now());
   }
   screen.close(table, seconds_since(begin), now());
   if (at_end) say_faults(log);
-  return table.account().used > 0 && (!broken || at_end) ? kGood : kAnswerIsNo;
+  if (!broken.empty() && !at_end) say(broken);
+  return table.account().used > 0 && (broken.empty() || at_end) ? kGood : kAnswerIsNo;
 }
 
 }  // namespace tauext::live

@@ -34,6 +34,9 @@ using Clock = std::chrono::steady_clock;
 const Robot& checked_robot(const Options& o) {
   const Robot& r = robot(with_lock(o.robot, o.lock));
   for (const std::string& e : o.estimators) r.check(e, o.detector);
+  if (r.dof() > kMaxJoints)
+    throw std::invalid_argument(
+        fmt::format("{} has {} joints: a message holds {}", r.name(), r.dof(), kMaxJoints));
   return r;
 }
 
@@ -50,14 +53,14 @@ DetectorsOf thresholds_of(const Options& o) {
   };
 }
 
-// the samples to play: read
+// samples of a log, to be played
 RecordedLog read_samples(const Options& o, const Robot& r) {
   RecordedLog log = read_any_log(o.from, {o.channel, o.columns, true});
   r.make_torques(log.trace);
   return log;
 }
 
-// or simulated, with everything that reacts in it
+// samples of a simulation, in which a detector may stop the motor
 RecordedLog simulate_samples(const Options& o, const Robot& r, const DetectorsOf& thresholds) {
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
@@ -140,6 +143,7 @@ int run_recorded(const Options& o) {
   const Robot& r = checked_robot(o);
   const DetectorsOf thresholds = thresholds_of(o);
   const auto forces = forces_of(o, r);
+  if (o.from.empty()) scenario_of(r, o.scenario);  // or says that there is none
   RecordedLog log;
   if (!o.from.empty()) log = read_samples(o, r);         // before anything is written
   std::unique_ptr<Realtime> first = realtime_of(o, 1);   // who sends comes behind the loop

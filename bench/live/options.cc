@@ -35,7 +35,7 @@ void check(const Options& o, bool listen) {
   require(!o.subscribe.ends_with('*'), fmt::format("--subscribe {}: one channel", o.subscribe));
   require(!o.robot.empty(), "--robot is required");
   require(!o.estimators.empty(), "--estimator is required");
-  refuse_twice("estimator", o.estimators);
+  refuse_twice("estimator", o.estimators);  // before anything is simulated
   require(o.pace.speed >= 1e-3 && o.pace.speed <= 1e3,
           fmt::format("--speed {}: 0.001 to 1000", o.pace.speed));
   require(o.rate >= 0 && o.rate <= 1e6, fmt::format("--rate {}: 0 to 1e6 a second", o.rate));

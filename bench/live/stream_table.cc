@@ -34,15 +34,14 @@ std::string shortened(const std::string& name, std::size_t most) {
   return name.substr(0, most / 2 - 1) + "~" + name.substr(name.size() - most / 2);
 }
 
-// [N m]
-std::string torque(bool known, double x) {
+std::string number_or_dash(bool known, double x) {
   return known ? fmt::format("{:.3f}", x) : "-";
 }
 
 // [N], or from 3 on [N m]; "-" for a component of which less than half is seen
 std::string seen(const force_t& f, int component) {
   const double value = component < 3 ? f.force[component] : f.moment[component - 3];
-  return f.seen[component] < 0.5 ? "-" : fmt::format("{:.3f}", value);
+  return number_or_dash(f.seen[component] >= 0.5, value);
 }
 
 }  // namespace
@@ -154,7 +153,8 @@ void StreamTable::take_detection(const detection_t& d, const Envelope& e) {
 }
 
 void StreamTable::take_force(const force_t& f, const Envelope& e) {
-  const std::string name = printable_name(f.estimator) + " at " + printable_name(f.site);
+  const std::string name = printable_name(f.estimator) + " at " +
+                           (f.site.empty() ? "end_effector" : printable_name(f.site));
   Channel* const c = accept(forces_, {name, e.sender, e.arrived}, f.seq);
   if (c != nullptr) c->force = f;
 }
@@ -188,10 +188,6 @@ void StreamTable::take_end(const summary_t& s, const Envelope& e) {
   }
 }
 
-std::vector<std::string> StreamTable::events() {
-  return std::exchange(events_, {});
-}
-
 std::string StreamTable::format(std::int64_t now) const {
   TableWriter table({{"channel", "", true, 28},
                      {"rate", "1/s", false, 6},
@@ -211,9 +207,10 @@ std::string StreamTable::format(std::int64_t now) const {
                  says = first && c.estimate;  // what holds for all joints stands once
       table.add({first ? name : "", first ? fmt::to_string(recent) : "",
                  first ? fmt::to_string(c.sequence.counts().lost) : "", fmt::to_string(j + 1),
-                 torque(c.estimate, e.tau_ext_hat[j]), torque(c.estimate, e.tau_ext_hat_min[j]),
-                 torque(c.estimate, e.tau_ext_hat_max[j]),
-                 torque(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
+                 number_or_dash(c.estimate, e.tau_ext_hat[j]),
+                 number_or_dash(c.estimate, e.tau_ext_hat_min[j]),
+                 number_or_dash(c.estimate, e.tau_ext_hat_max[j]),
+                 number_or_dash(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
                  says ? status_name(e.status) : "", says ? fmt::format("{:.1f}", e.step_us) : ""});
     }
   }
@@ -239,9 +236,10 @@ std::string StreamTable::format_small(std::int64_t now, int joint) const {
     const std::size_t prefix =
         name.starts_with(kEstimateChannel) ? std::strlen(kEstimateChannel) : 0;
     table.add({shortened(name.substr(prefix), 12), fmt::to_string(c.rate(now)),
-               fmt::to_string(j + 1), torque(c.estimate, e.tau_ext_hat[j]),
-               torque(c.estimate, e.tau_ext_hat_min[j]), torque(c.estimate, e.tau_ext_hat_max[j]),
-               torque(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
+               fmt::to_string(j + 1), number_or_dash(c.estimate, e.tau_ext_hat[j]),
+               number_or_dash(c.estimate, e.tau_ext_hat_min[j]),
+               number_or_dash(c.estimate, e.tau_ext_hat_max[j]),
+               number_or_dash(e.reference != estimate_t::kNone, e.tau_ext_true[j]),
                c.estimate ? std::string(status_name(e.status)).substr(0, 10) : ""});
   }
   return table.format();

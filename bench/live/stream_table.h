@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/reading.h"
@@ -31,12 +32,12 @@ class StreamTable {
   /// A row for each estimator's force; "" if there is none.
   /// @param small in at most 80 columns, without moments
   std::string format_forces(std::int64_t now, bool small) const;
-  int joints() const;  ///< of the channel that has most
+  int joints() const;  ///< the largest number of any channel
   /// What became of each message of all channels, and why.
   std::string totals(const GroupSocket::Counts& refused) const;
 
   /// Lines that are events: marks, summaries, restarts and second senders since the last call.
-  std::vector<std::string> events();
+  std::vector<std::string> events() { return std::exchange(events_, {}); }
 
   Account account() const;  ///< of all channels
 

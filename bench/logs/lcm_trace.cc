@@ -71,9 +71,7 @@ bool is_lcm_log(const std::string& path) {
 }
 
 void refuse_input_as_log(const std::string& url) {
-  constexpr std::string_view kScheme = "file://";
-  if (!url.starts_with(kScheme)) return;
-  refuse_input(url.substr(kScheme.size(), url.find('?') - kScheme.size()));
+  if (const std::string log = log_of(url); !log.empty()) refuse_input(log);
 }
 
 }  // namespace tauext

@@ -111,7 +111,7 @@ std::string whole_number(const std::string& text) {
 }
 
 std::string not_empty(const std::string& text) {
-  if (text.starts_with("--")) return text + " is a flag, and its value is missing";
+  if (text.starts_with("--")) return "its value is missing; " + text + " is the next flag";
   return text.empty() ? "its value is empty; leave it out" : "";
 }
 

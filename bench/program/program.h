@@ -63,7 +63,8 @@ void add_robot_flags(CLI::App& app, std::string& robot, std::string& lock);
 /// @returns "" for a whole number from 0 to 2^64 - 1, else why not
 std::string whole_number(const std::string& text);
 
-/// A check for CLI11. @returns "" for any text that is not the next flag, else what is wrong
+/// A check for CLI11. @returns "" for a text that is a value; else says that it is empty, or is the
+/// next flag
 std::string not_empty(const std::string& text);
 
 /// A check for CLI11. @returns "" for a regular expression of std::regex, else why it is none

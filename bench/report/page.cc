@@ -75,10 +75,10 @@ std::vector<ResultFile> read_results(const std::string& path) {
   const std::string text = read_json_text(path);
   if (!path.ends_with(".html")) return {checked_result(path, text)};
   const std::size_t begin = text.find(kBegin);
-  const std::size_t end = begin == text.npos ? begin : text.find("</script>", begin);
   if (begin == text.npos)
     throw std::runtime_error(path + ": no report of tauext-report, which would hold its results");
-  if (!text.ends_with("</html>\n"))
+  const std::size_t end = text.find("</script>", begin);
+  if (end == text.npos || text.find("</html>", end) == text.npos)
     throw std::runtime_error(path + ": a report whose end is missing; write or copy it again");
   std::vector<ResultFile> results;
   try {

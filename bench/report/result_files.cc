@@ -90,11 +90,15 @@ nlohmann::ordered_json object_of_lines(const std::string& text) {
   std::istringstream in(text);
   int number = 0;
   for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == line.npos) continue;
     try {
-      ++number;
       rows.push_back(parse_json(line));
     } catch (const std::exception& e) {
-      throw std::runtime_error(fmt::format("its line {}: {}", number, e.what()));
+      constexpr std::string_view kOfOne = "at line 1, ";
+      std::string why = e.what();
+      if (const auto at = why.find(kOfOne); at != why.npos) why.erase(at, kOfOne.size());
+      throw std::runtime_error(fmt::format("line {}: {}", number, why));
     }
   }
   return {{"format", "tauext-history-1"},

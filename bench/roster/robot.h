@@ -99,8 +99,8 @@ class Robot {
 
   /// simulate_plain() (mjcf/record_plain.h): the truth of runs of this arm, or of one that is
   /// changed from it.
-  virtual std::vector<Trace> simulate(const Model& arm,
-                                      std::span<const Scenario> scenarios) const = 0;
+  virtual std::vector<Trace> simulate(const Model& arm, std::span<const Scenario> scenarios,
+                                      const Recording& recording) const = 0;
 
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
   virtual std::vector<std::string> detectors() const = 0;   ///< by name

@@ -108,9 +108,9 @@ class RobotOf final : public Robot {
     specifications_.push_back(text);
   }
 
-  std::vector<Trace> simulate(const Model& arm,
-                              std::span<const Scenario> scenarios) const override {
-    return simulate_plain<N>(arm, scenarios);
+  std::vector<Trace> simulate(const Model& arm, std::span<const Scenario> scenarios,
+                              const Recording& recording) const override {
+    return simulate_plain<N>(arm, scenarios, recording);
   }
 
   std::vector<std::string> estimators() const override {

@@ -18,10 +18,11 @@ namespace {
 // the flags of bench/run/recording_flags.h that set these
 std::string recording_flags(const SuiteOptions& o) {
   std::map<std::string, std::string> lists;  // of KEY=VALUE, by flag
-  std::istringstream items(describe({o.sensors, o.model_error}));
+  std::istringstream items(describe({o.sensors, o.model_error, o.recording.drives}));
   for (std::string item; items >> item;) {  // velocity_noise=0.001, or loadcell.noise=1
-    const auto dot = item.substr(0, item.find('=')).find('.');
-    const bool own = dot != std::string::npos;
+    const auto dot = item.find('.');
+    const bool own = item.starts_with("loadcell.") || item.starts_with("model_error.") ||
+                     item.starts_with("drives.");
     std::string& list = lists[own ? item.substr(0, dot) : "sensors"];
     list += (list.empty() ? "" : ",") + item.substr(own ? dot + 1 : 0);
   }

@@ -32,16 +32,18 @@ void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r)
   // first, so that flags have the last word
   app.add_option_function<std::string>(
          "--degrade",
-         [&s, &e](const std::string& path) {
-           Degradation d{s, e};
+         [&](const std::string& path) {
+           Degradation d{s, e, r.drives};
            read_degradation(path, d);
-           s = d.sensors, e = d.model_error;
+           s = d.sensors, e = d.model_error, r.drives = d.drives;
          },
-         "sensor faults and model errors of a JSON file")
-      ->type_name("FILE");
+         "faults of sensors and drives: light, typical, hard or a JSON file")
+      ->type_name("NAME|FILE");
   list("--sensors", s, "their faults: velocity_noise=1e-3,latency=0.002,dropped=0.01,..");
   list("--loadcell", s.loadcell, "faults of the loadcells, like noise=1,offset=5 [N]");
   list("--model_error", e, "what estimators do not know: mass=1.05,com=0.01,friction=2,..");
+  list("--drives", r.drives, "elastic joints and what rubs in them: stiffness=300,coulomb=0.01,..");
+  app.get_option("--drives")->group("");  // the help fits a screen: bench/score/README.md
   app.add_option("--velocity_noise", s.velocity_noise, "the same as in --sensors [rad/s]")
       ->capture_default_str();
   app.add_option("--encoder_step", s.encoder_step)->group("");  // likewise

@@ -199,6 +199,8 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     } catch (const std::invalid_argument& e) {
       refuse("{}: degrade: {}", of.where(), e.what());
     }
+    if (d.drives.any())
+      refuse("{}: degrade: drives are the robot's, not the scenario's: --drives", of.where());
     s.sensors = d.sensors;
     s.model_error = d.model_error;
   }

@@ -94,7 +94,8 @@ std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
   const std::vector<SeededRow> rows = score_over_seeds(o);
   const TableFormat format = format_of(f);
   const std::string table = format_seeds(rows, f.against, format);
-  const std::string degraded = describe({o.suite.sensors, o.suite.model_error});
+  const std::string degraded =
+      describe({o.suite.sensors, o.suite.model_error, o.suite.recording.drives});
   if (format == TableFormat::kText) return fmt::format("sensors: {}\n\n{}", degraded, table);
   return for_file(f, "tauext-seeds-1",
                   fmt::format("{} seeds from {}, {}", f.seeds.size(), f.seeds[0], degraded), table);

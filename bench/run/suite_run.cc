@@ -80,7 +80,7 @@ std::string run_line(const SuiteOptions& o) {
   std::string line = fmt::format("seed {}", o.sensors.seed);
   if (o.recording.Kp) line += fmt::format(", Kp {:g} 1/s^2", *o.recording.Kp);
   if (o.recording.Kd) line += fmt::format(", Kd {:g} 1/s", *o.recording.Kd);
-  const std::string degraded = describe({o.sensors, o.model_error});
+  const std::string degraded = describe({o.sensors, o.model_error, o.recording.drives});
   if (!degraded.empty()) line += "\ndegraded: " + degraded;
   return line;
 }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdint>
+#include <numbers>
 #include <stdexcept>
 #include <tuple>
 
@@ -30,6 +32,35 @@ struct FieldsOf<Loadcell> {
 };
 
 template <>
+struct FieldsOf<TorqueFaults> {
+  static constexpr auto list() {
+    using T = TorqueFaults;
+    return std::tuple(
+        Field{"gain", &T::gain, "1", 0, 0.9, "largest error of a sensor's gain"},
+        Field{"hysteresis", &T::hysteresis, "u", 0, 10, "width of the loop; u: what it is used to"},
+        Field{"ripple", &T::ripple, "u", 0, 10, "amplitude, a sine of the motor's position"},
+        Field{"waves", &T::waves, "1", 0, 1e5, "of the ripple in a turn of the joint"},
+        Field{"bias", &T::bias, "u", 0, 10, "largest offset of a sensor"},
+        Field{"noise", &T::noise, "u", 0, 10, "standard deviation, white"});
+  }
+};
+
+template <>
+struct FieldsOf<Drives> {
+  static constexpr auto list() {
+    using D = Drives;
+    return std::tuple(
+        Field{"stiffness", &D::stiffness, "u/rad", 0, 1e6, "of springs behind motors; 0: rigid"},
+        Field{"rotor", &D::rotor, "u s^2/rad", 1e-6, 10, "inertia of these motors"},
+        Field{"damping", &D::damping, "1", 0, 2, "of springs, as a share of the critical one"},
+        Field{"coulomb", &D::coulomb, "u", 0, 10, "dry friction"},
+        Field{"stribeck", &D::stribeck, "1", 0, 10, "how much more it is near rest"},
+        Field{"viscous", &D::viscous, "u s/rad", 0, 10, "viscous friction"},
+        Field{"drift", &D::drift, "1", 0, 1, "by which friction falls and rises in a run"});
+  }
+};
+
+template <>
 struct FieldsOf<Sensors> {
   static constexpr auto list() {
     using S = Sensors;
@@ -42,7 +73,7 @@ struct FieldsOf<Sensors> {
         Field{"jitter", &S::jitter, "s", 0, 1, "largest error of a time stamp"},
         Field{"dropped", &S::dropped, "1", 0, 0.99, "share of samples that are lost"},
         Field{"repeated", &S::repeated, "1", 0, 0.99, "share of samples with the values before"},
-        Nested{"loadcell", &S::loadcell});
+        Nested{"loadcell", &S::loadcell}, Nested{"torque", &S::torque});
   }
 };
 
@@ -97,12 +128,14 @@ Degradation from_json(const Json& document, Degradation d) {
   if (!document.is_object()) {
     throw std::invalid_argument("a JSON object is wanted, like {\"velocity_noise\": 1e-3}");
   }
-  KeyValues sensors, model_error;
+  KeyValues sensors, model_error, drives;
   for (const auto& [key, value] : document.items()) {
-    if (key == "loadcell") {
-      add_object(key, "loadcell.", value, sensors);
+    if (key == "loadcell" || key == "torque") {
+      add_object(key, key + ".", value, sensors);
     } else if (key == "model_error") {
       add_object(key, "", value, model_error);
+    } else if (key == "drives") {
+      add_object(key, "", value, drives);
     } else if (key == "seed") {
       if (!value.is_number_unsigned()) {
         throw std::invalid_argument(fmt::format("\"seed\" is {}, no whole number", value.dump()));
@@ -114,6 +147,7 @@ Degradation from_json(const Json& document, Degradation d) {
   }
   set_keys(sensors, "sensors", d.sensors);
   set_keys(model_error, "model_error", d.model_error);
+  set_keys(drives, "drives", d.drives);
   return d;
 }
 
@@ -143,11 +177,61 @@ void set_fields(const std::vector<std::string>& items, ModelError& e) {
   set_items(items, "model_error", e);
 }
 
+void set_fields(const std::vector<std::string>& items, Drives& d) {
+  set_items(items, "drives", d);
+}
+
 void set_degradation(const std::string& json, Degradation& d) {
   d = from_json(parse_json(json, true), d);  // comments are welcome
 }
 
+const std::vector<NamedDegradation>& named_degradations() {
+  constexpr double kTurnOf17Bits = 2 * std::numbers::pi / (1 << 17);  // [rad]
+  static const std::vector<NamedDegradation> all = {
+      {"light",
+       "a light arm's joints: little friction that nobody knows, rigid drives",
+       {.sensors = {.velocity_noise = 1e-4, .torque = {.noise = 0.0005}},
+        .drives = {.coulomb = 0.0012}}},
+      {"typical",
+       "elastic drives, 15 % of an industrial arm's friction unknown, mass 2 %",
+       {.sensors = {.velocity_noise = 1e-3,
+                    .encoder_step = kTurnOf17Bits,
+                    .torque = {.gain = 0.05,
+                               .hysteresis = 0.002,
+                               .ripple = 0.01,
+                               .bias = 0.005,
+                               .noise = 0.005},
+                    .tau_latency = 0.002},
+        .model_error = {.mass = 1.02},
+        .drives = {.stiffness = 200,
+                   .coulomb = 0.011,
+                   .stribeck = 0.3,
+                   .viscous = 0.019,
+                   .drift = 0.05}}},
+      {"hard",
+       "soft drives, half of that friction unknown and drifting, payload 5 %",
+       {.sensors = {.velocity_noise = 3e-3,
+                    .encoder_step = kTurnOf17Bits,
+                    .torque = {.gain = 0.12,
+                               .hysteresis = 0.002,
+                               .ripple = 0.03,
+                               .bias = 0.015,
+                               .noise = 0.02},
+                    .tau_latency = 0.008},
+        .model_error = {.mass = 1.05},
+        .drives = {
+            .stiffness = 60, .coulomb = 0.037, .stribeck = 0.3, .viscous = 0.062, .drift = 0.2}}}};
+  return all;
+}
+
 void read_degradation(const std::string& path, Degradation& d) {
+  for (const NamedDegradation& named : named_degradations()) {
+    if (named.name != path) continue;
+    const std::uint64_t seed = d.sensors.seed;
+    d = named.degradation;
+    d.sensors.seed = seed;
+    return;
+  }
   const Json json = read_json(path, true);
   try {
     d = from_json(json, d);
@@ -161,6 +245,7 @@ std::string describe(const Degradation& d) {
   for_each_field<Sensors>([&](const auto& f) { add_changed(f, "", d.sensors, all); });
   for_each_field<ModelError>(
       [&](const auto& f) { add_changed(f, "model_error.", d.model_error, all); });
+  for_each_field<Drives>([&](const auto& f) { add_changed(f, "drives.", d.drives, all); });
   return fmt::format("{}", fmt::join(all, " "));
 }
 

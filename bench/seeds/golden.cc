@@ -106,7 +106,7 @@ class Golden {
     const auto described = [&](const std::string& how) {
       Sensors sensors = suite_options(how).sensors;
       sensors.seed = o_.seeds.front();
-      return describe({sensors, o_.suite.model_error});
+      return describe({sensors, o_.suite.model_error, o_.suite.recording.drives});
     };
     std::string out = fmt::format(
         "# tauext golden metrics 2\n# mujoco: {}\n# sensors: {}\n{}# contacts: {}\n# built: {}\n"

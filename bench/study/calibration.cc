@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -228,7 +229,10 @@ Thresholds calibrate(const CalibrationOptions& o) {
   const StudyRuns& runs = touched_runs(o.robot);
   const Robot& r = robot(runs.robot);
   const std::vector<std::string> names = chosen_conditions(runs, o.conditions, runs.training);
-  const std::vector<double> velocity_noises = {1e-4, 1e-3};
+  std::set<double> noises = {1e-4, 1e-3};
+  for (const std::string& name : names)
+    noises.insert(condition(runs, name).degradation.sensors.velocity_noise);
+  const std::vector<double> velocity_noises(noises.begin(), noises.end());
   std::map<double, std::shared_ptr<const Robot>> believers;
   for (const std::string& name : names) {
     const double believed = condition(runs, name).believed;
@@ -252,7 +256,7 @@ Thresholds calibrate(const CalibrationOptions& o) {
     for (std::size_t set = 0; set < velocity_noises.size(); ++set) {
       Sensors sensors = c.degradation.sensors;
       sensors.velocity_noise = velocity_noises[set];
-      const std::vector<Trace> seen = views.by(sensors);
+      const std::vector<Trace> seen = views.by(sensors, c.every);
       look({set, *believers.at(c.believed), seen, which, ""});
     }
   };

@@ -14,9 +14,6 @@
 
 namespace tauext::study {
 
-/// The first seed of calibration; test seeds stay below.
-inline constexpr std::uint64_t kTrainingSeed = 1'000'000;
-
 /// How thresholds are set.
 struct CalibrationOptions {
   std::string robot;    ///< "" for the first one that has runs

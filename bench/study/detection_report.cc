@@ -176,9 +176,12 @@ Json regions_of(const Cell& c) {
               {"delay_p50_s", number(quantile(r.delays, 0.5))},
               {"delay_p95_s", number(quantile(r.delays, 0.95))},
               {"exceeded", r.exceeded()}};
+    const auto rounded = [](double x) {
+      return std::round(x * 1e5) / 1e5;
+    };  // a file of 1 MB, not 10
     for (int k = 0; k <= 20; ++k) {
-      j["peak_of_limit_quantiles"].push_back(quantile(r.peaks, k / 20.));
-      j["until_found_of_limit_quantiles"].push_back(quantile(r.until_found, k / 20.));
+      j["peak_of_limit_quantiles"].push_back(rounded(quantile(r.peaks, k / 20.)));
+      j["until_found_of_limit_quantiles"].push_back(rounded(quantile(r.until_found, k / 20.)));
     }
     all.push_back(j);
   }
@@ -208,7 +211,7 @@ Json to_json(const Cell& c) {
   j["stray_marks"] = c.stray;
   j["quiet_h"] = c.hours();
   j[key_of(Metric::kFalseAlarms)] = c.alarms;
-  j["quiet_time_in_alarm_h"] = static_cast<double>(c.alarmed_samples) * 1e-3 / 3600;
+  j["quiet_time_in_alarm_h"] = static_cast<double>(c.alarmed_samples) * c.Ts / 3600;
   j["false_alarms_called_collision"] = c.collision_alarms;
   if (c.quiet_samples > 0) {
     j[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms / c.hours();

@@ -42,7 +42,7 @@ std::vector<Job> jobs_of(const StudyRuns& study, const PlantKey& plant, const St
       count -= static_cast<int>(meetings_of(study, job).size());
     }
   }
-  const double scored = study.touched(TouchKind::kSlowPush, 1).duration - kScoreFrom;
+  const double scored = study.touched(TouchKind::kSlowPush, 1, plant.motions).duration - kScoreFrom;
   const int runs = static_cast<int>(std::ceil(o.hours * 3600 / scored - 1e-9));
   for (int i = 0; i < runs; ++i) jobs.push_back({plant, TouchKind::kSlowPush, o.first_seed + i});
   return jobs;
@@ -59,7 +59,7 @@ class Study {
     for (const std::string& e : estimators_) {  // before it takes its time
       for (const std::string& d : detectors_) trained_for(thresholds, runs_.robot, 0, e, d);
     }
-    for (const std::string& name : chosen_conditions(runs_, o.conditions, condition_names(runs_))) {
+    for (const std::string& name : chosen_conditions(runs_, o.conditions, runs_.usual)) {
       add_condition(condition(runs_, name));
     }
     for (auto& [plant, model] : models_) {
@@ -103,7 +103,8 @@ class Study {
     models_.try_emplace(plant_of(c), nullptr);
     for (const std::string& e : estimators_) {
       for (const std::string& d : detectors_) {
-        cells_.push_back({.condition = c.name, .estimator = e, .detector = d});
+        cells_.push_back(
+            {.condition = c.name, .estimator = e, .detector = d, .Ts = 1e-3 * c.every});
       }
     }
   }
@@ -140,7 +141,7 @@ class Study {
 
   void run(std::span<const Job> jobs, std::size_t c, Views& views) {
     const Sensors& sensors = conditions_[c]->degradation.sensors;
-    const std::vector<Trace> seen = views.by(sensors);
+    const std::vector<Trace> seen = views.by(sensors, conditions_[c]->every);
     const std::unique_ptr<Session> session = believers_.at(conditions_[c]->believed)->session(seen);
     const double noise = sensors.velocity_noise;
     std::vector<Cell> adds;

@@ -81,7 +81,7 @@ std::string text(const Tried& tried) {
 moves or rests, and {:.2g} h of a hand that moves the arm
 {}
 )",
-      drawn_runs(tried.trials.robot).robot, describe({tried.trials.sensors, {}}),
+      drawn_runs(tried.trials.robot).robot, describe({tried.trials.sensors, {}, {}}),
       tried.trials.blows, tried.rows.empty() ? 0 : tried.rows[0].hours, table.format());
 }
 

@@ -30,11 +30,12 @@ struct RegionCount {
 /// One estimator and detector, by specification, under one condition.
 struct Cell {
   std::string condition, estimator, detector;  ///< what was counted
+  double Ts = 1e-3;                            ///< [s] from one sample that is seen to the next
   int runs = 0, failed_runs = 0;     ///< failed: an estimate was missing (any status but ok)
   int blows = 0, detected = 0;       ///< by a mark until metrics::kGrace after the blow
   int stray = 0;                     ///< marks in these runs outside such windows
   std::vector<double> delays;        ///< [s] from a detected blow's begin to its mark, sorted
-  long quiet_samples = 0;            ///< of slow pushes and free motion, at 1 kHz
+  long quiet_samples = 0;            ///< of slow pushes and free motion
   long alarmed_samples = 0;          ///< of them, where the score is 1 or more
   int alarms = 0;                    ///< marks in them
   int collision_alarms = 0;          ///< those that say collision
@@ -47,7 +48,7 @@ struct Cell {
   std::vector<RegionCount> regions;  ///< by region_classes(); or empty
 
   /// [h] without a touch.
-  double hours() const { return static_cast<double>(quiet_samples) * 1e-3 / 3600; }
+  double hours() const { return static_cast<double>(quiet_samples) * Ts / 3600; }
   /// [1] of the blows.
   double recall() const { return blows == 0 ? 0 : static_cast<double>(detected) / blows; }
 };

@@ -24,21 +24,36 @@ namespace tauext::study {
 namespace {
 
 Degradation noisy(double velocity_noise) {
-  Degradation d;
-  d.sensors.velocity_noise = velocity_noise;
-  return d;
+  return {.sensors = {.velocity_noise = velocity_noise}};
 }
 
-Degradation hysteresis() {
-  Degradation d = noisy(1e-4);
-  d.sensors.loadcell.hysteresis = 0.002;  // of 3000 N m
-  return d;
+// what is tried unless others are named are the conditions so far
+void add_honest(StudyRuns& r) {
+  for (const Condition& c : r.conditions) r.usual.push_back(c.name);
+  for (const int every : {1, 4}) {
+    const char *of_name = every == 1 ? "" : "_250hz", *at = every == 1 ? "" : "; at 250 Hz";
+    for (const auto& [name, description, faults] : named_degradations()) {
+      if (every == 1 || faults.drives.elastic())
+        r.conditions.push_back({name + of_name, description + at, r.carries, r.carries, faults,
+                                Motions::kBrisk, every, true});
+    }
+  }
 }
 
-Degradation dry_friction() {
-  Degradation d = noisy(1e-4);
-  d.model_error.friction = 5;  // [N m]
-  return d;
+Scenario moved(Scenario s, Motions motions, const Eigen::VectorXd& home,
+               const Eigen::VectorXd& reach, std::uint64_t seed) {
+  if (motions == Motions::kSlow) return s;
+  s.reference = brisk_motion(home, reach, seed, seed >= kTrainingSeed);
+  s.start_on_reference = true;
+  return s;
+}
+
+Degradation hysteresis() {  // of 3000 N m
+  return {.sensors = {.velocity_noise = 1e-4, .loadcell = {.hysteresis = 0.002}}};
+}
+
+Degradation dry_friction() {  // 5 N m
+  return {.sensors = {.velocity_noise = 1e-4}, .model_error = {.friction = 5}};
 }
 
 StudyRuns runs_of_wallmobot3() {
@@ -61,12 +76,16 @@ StudyRuns runs_of_wallmobot3() {
   r.training = {"known_0", "known_50", "known_150", "unknown_50", "unknown_150"};
   r.model = [](const PlantKey& p) { return with_errors(wallmobot3_with_panel(p.panel), p.error); };
   r.believer = wallmobot3_believing;
-  r.touched = touched_wallmobot3;
+  r.touched = [](TouchKind kind, std::uint64_t seed, Motions m) {
+    const Eigen::Vector3d home = Eigen::Vector3d::Zero(), reach = home.array() + 0.5;
+    return moved(touched_wallmobot3(kind, seed), m, home, reach, seed);
+  };
   r.touches = touches_of_wallmobot3;
   r.points = []() -> const TouchPoints& {
     static const TouchPoints all(wallmobot3_with_panel(0), Eigen::VectorXd::Zero(3));
     return all;
   };
+  add_honest(r);
   return r;
 }
 
@@ -97,8 +116,8 @@ StudyRuns runs_of_any(const Robot& r) {
         fmt::format("{}: no force on its end effector moves it: nothing to detect", r.name()));
   runs.model = [&r](const PlantKey& p) { return r.load_for(quiet(), p.error); };
   runs.believer = [&r](double) { return std::shared_ptr<const Robot>(&r, [](const Robot*) {}); };
-  runs.touched = [scale](TouchKind kind, std::uint64_t seed) {
-    return touched_arm(scale, kind, seed);
+  runs.touched = [scale](TouchKind kind, std::uint64_t seed, Motions m) {
+    return moved(touched_arm(scale, kind, seed), m, scale.home, scale.reach, seed);
   };
   runs.touches = [scale](TouchKind kind, std::uint64_t seed) {
     return touches_of(scale, kind, seed);
@@ -111,6 +130,7 @@ StudyRuns runs_of_any(const Robot& r) {
     std::call_once(made->once, [&] { made->points.emplace(r.load_for(quiet()), home); });
     return *made->points;
   };
+  add_honest(runs);
   return runs;
 }
 
@@ -172,7 +192,7 @@ std::uint64_t sensors_seed(const Job& job) {
 }
 
 Scenario scenario_of(const StudyRuns& runs, const Job& job) {
-  Scenario s = runs.touched(job.kind, job.seed);
+  Scenario s = runs.touched(job.kind, job.seed, job.plant.motions);
   if (job.region < 0) return s;
   s.force = quiet().force;
   s.contact = quiet().contact;
@@ -183,7 +203,7 @@ Scenario scenario_of(const StudyRuns& runs, const Job& job) {
 }  // namespace
 
 PlantKey plant_of(const Condition& c) {
-  return {c.panel, c.degradation.model_error};
+  return {c.panel, c.degradation.model_error, c.degradation.drives, c.motions};
 }
 
 const StudyRuns& touched_runs(const std::string& robot) {
@@ -206,16 +226,26 @@ std::vector<RegionTouch> meetings_of(const StudyRuns& runs, const Job& job) {
 std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model) {
   std::vector<Scenario> scenarios;
   for (const Job& job : jobs) scenarios.push_back(scenario_of(runs, job));
-  return robot(runs.robot).simulate(model, scenarios);
+  return robot(runs.robot).simulate(model, scenarios, {.drives = jobs.front().plant.drives});
 }
 
 void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
                            const Trace& truth) {
-  const double off = difference(simulate(model, scenario_of(runs, job)), truth);
+  const Trace by_mujoco = simulate(model, scenario_of(runs, job), {.drives = job.plant.drives});
+  const double off = difference(by_mujoco, truth);
   if (off < 1e-9) return;
   throw std::runtime_error(
       fmt::format("{}: the run of seed {} differs by {:.2g} from MuJoCo's, and 1e-9 is allowed",
                   runs.robot, job.seed, off));
+}
+
+Trace thinned(const Trace& trace, int n) {
+  if (n == 1) return trace;
+  std::vector<int> kept;
+  for (int k = 0; k < trace.size(); k += n) kept.push_back(k);
+  Trace thin = select_samples(trace, kept);
+  thin.torque_at_instants = true;
+  return thin;
 }
 
 Trace measured(const Trace& truth, Sensors sensors, const Job& job) {
@@ -229,29 +259,25 @@ Views::Views(std::vector<Trace> truths, std::span<const Job> jobs) {
     seeds_.push_back(sensors_seed(jobs[i]));
     drawn_.push_back(velocity_noise(t.dof(), seeds_.back()));
     forces_.push_back(std::move(t.contact_force));
+    const bool elastic = t.motor_q.cols() > 0;
     readings_.push_back({.t = std::move(t.t),
-                         .q = std::move(t.q),
-                         .qd = std::move(t.qd),
+                         .q = std::move(elastic ? t.motor_q : t.q),
+                         .qd = std::move(elastic ? t.motor_qd : t.qd),
                          .tau = std::move(t.tau),
                          .torque_at_instants = t.torque_at_instants,
-                         .screws = std::move(t.screws)});
+                         .screws = std::move(t.screws),
+                         .usual_torque = std::move(t.usual_torque)});
   }
 }
 
-std::vector<Trace> Views::by(const Sensors& sensors) {
+std::vector<Trace> Views::by(const Sensors& sensors, int every) {
   std::vector<Trace> seen;
   Sensors mine = sensors;
   for (std::size_t i = 0; i < readings_.size(); ++i) {
     mine.seed = seeds_[i];
-    seen.push_back(measure(readings_[i], mine, drawn_[i]));
+    seen.push_back(thinned(measure(readings_[i], mine, drawn_[i]), every));
   }
   return seen;
-}
-
-std::vector<std::string> condition_names(const StudyRuns& runs) {
-  std::vector<std::string> names;
-  for (const Condition& c : runs.conditions) names.push_back(c.name);
-  return names;
 }
 
 std::vector<std::string> chosen_conditions(const StudyRuns& runs,

@@ -21,21 +21,35 @@
 
 namespace tauext::study {
 
+/// The first seed of calibration; test seeds stay below.
+inline constexpr std::uint64_t kTrainingSeed = 1'000'000;
+
 inline constexpr double kScoreFrom = 4;  ///< [s] an estimator has found an unknown panel by then
 inline constexpr double kStartUp = 3;    ///< [s] detectors stay silent
 
+/// How the arm of a study moves.
+enum class Motions : std::uint8_t {
+  kSlow,   ///< 0.1 rad about a pose
+  kBrisk,  ///< up to 2 rad/s: for training sines, else from place to place
+};
+
 /// What the robot carries, what its estimators believe it does, and how well it measures.
 struct Condition {
-  std::string name, description;  ///< a word, and a line
-  double panel = 0;               ///< [kg] carried
-  double believed = 0;            ///< [kg] in the estimators' model
-  Degradation degradation{};      ///< sensors' faults and model errors
+  std::string name, description;     ///< a word, and a line
+  double panel = 0;                  ///< [kg] carried
+  double believed = 0;               ///< [kg] in the estimators' model
+  Degradation degradation{};         ///< faults of sensors, models and drives
+  Motions motions = Motions::kSlow;  ///< how the arm moves
+  int every = 1;                     ///< of so many samples at 1 kHz one is seen
+  bool trains_itself = false;        ///< thresholds come from itself; else from StudyRuns::training
 };
 
 /// Conditions that differ in the sensors alone share their simulated runs.
 struct PlantKey {
   double panel;                                       ///< [kg]
   ModelError error;                                   ///< what the estimators do not know
+  Drives drives;                                      ///< likewise
+  Motions motions;                                    ///< how it moves
   auto operator<=>(const PlantKey&) const = default;  // NOLINT(modernize-use-nullptr): not ours
 };
 
@@ -49,10 +63,12 @@ struct StudyRuns {
 
   // of the detection study and of calibration
   std::vector<Condition> conditions;  ///< all that there are
+  std::vector<std::string> usual;     ///< those that are tried unless others are named
   std::vector<std::string> training;  ///< conditions for calibration unless others are named
   std::function<Model(const PlantKey&)> model;                         ///< the simulated robot
   std::function<std::shared_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it
-  std::function<Scenario(TouchKind, std::uint64_t seed)> touched;      ///< a run with touches
+  /// A run with touches.
+  std::function<Scenario(TouchKind, std::uint64_t seed, Motions)> touched;
   std::function<std::vector<Touch>(TouchKind, std::uint64_t seed)> touches;  ///< those in that run
   /// Where regions of a body touch it; made when it is first asked for, and may throw.
   std::function<const TouchPoints&()> points;
@@ -94,6 +110,9 @@ std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, c
 void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
                            const Trace& truth);
 
+/// Every n-th sample; what was held between them is then read at instants.
+Trace thinned(const Trace& trace, int n);
+
 /// What the sensors make of a run, with a seed of their own.
 Trace measured(const Trace& truth, Sensors sensors, const Job& job);
 
@@ -103,8 +122,8 @@ class Views {
   /// Of true traces of these jobs.
   Views(std::vector<Trace> truths, std::span<const Job> jobs);
 
-  /// What they see of each run, without its truth.
-  std::vector<Trace> by(const Sensors& sensors);
+  /// What they see of each run, without its truth: of `every` samples one.
+  std::vector<Trace> by(const Sensors& sensors, int every = 1);
   /// [N] on the arm at each sample of that run.
   const std::vector<double>& contact_force(std::size_t run) const { return forces_[run]; }
 
@@ -120,9 +139,6 @@ class Views {
 std::vector<std::string> chosen_conditions(const StudyRuns& runs,
                                            const std::vector<std::string>& asked,
                                            const std::vector<std::string>& otherwise);
-/// All names.
-std::vector<std::string> condition_names(const StudyRuns& runs);
-
 /// The specifications asked for, or every estimator but the baselines.
 /// @throws std::invalid_argument for an unknown name or key and for a value out of range
 std::vector<std::string> chosen_estimators(const Robot& r, const std::vector<std::string>& asked);

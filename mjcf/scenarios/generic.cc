@@ -214,6 +214,7 @@ ArmScale scale_of(const Model& model) {
   ArmScale scale;
   scale.home = r.middle + (r.half / 4).cwiseMin(0.4);
   scale.amplitude = (r.half / 16).cwiseMin(0.1);
+  scale.reach = (0.75 * (r.half + r.middle - scale.home)).cwiseMin(0.8);
   plant.set_state(scale.home, VectorXd::Zero(plant.dof()));
   const VectorXd way = (r.half / 8).cwiseMin(0.05);
   set_forces(plant, way, scale);

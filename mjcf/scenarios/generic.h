@@ -16,6 +16,7 @@ namespace tauext {
 struct ArmScale {
   Eigen::VectorXd home;       ///< a bent pose about the middle of the joints' ranges
   Eigen::VectorXd amplitude;  ///< of slow motions about it: 0.1 rad, or less in a short range
+  Eigen::VectorXd reach;      ///< of brisk ones: 0.8 rad, or three quarters of the way to a limit
   /// What each joint is used to: ArmTree::usual_torque, or three times what `force` does to it.
   Eigen::VectorXd usual_torque;
   /// Of loads on the joints: a fifth of usual_torque, or what moves a joint by 0.05 rad against the

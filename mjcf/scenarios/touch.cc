@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/scenarios/touch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -91,6 +92,74 @@ Scenario with_touches(Scenario s, const std::vector<Touch>& touches) {
 
 std::vector<Touch> touches_of_wallmobot3(TouchKind kind, std::uint64_t seed) {
   return draw_touches(kind, seed, kFirstTouch, quiet().duration);
+}
+
+namespace {
+
+constexpr double kMostSpeed = 2, kMostAcceleration = 10;  // [rad/s], [rad/s^2]
+
+struct TwoSines {
+  double middle, A[2], w[2], phase[2];
+
+  Reference operator()(double t) const {
+    Reference r{middle, 0, 0};
+    for (int i = 0; i < 2; ++i) {
+      const double at = w[i] * t + phase[i];
+      r.q += A[i] * std::sin(at);
+      r.qd += A[i] * w[i] * std::cos(at);
+      r.qdd -= A[i] * w[i] * w[i] * std::sin(at);
+    }
+    return r;
+  }
+};
+
+std::vector<TwoSines> drawn_sines(const Eigen::VectorXd& home, const Eigen::VectorXd& reach,
+                                  Random& random) {
+  std::vector<TwoSines> all;
+  for (Eigen::Index i = 0; i < home.size(); ++i) {
+    const double most = std::min(kMostSpeed / reach[i], std::sqrt(kMostAcceleration / reach[i]));
+    TwoSines s{.middle = home[i], .A = {0.6 * reach[i], 0.4 * reach[i]}, .w = {}, .phase = {}};
+    for (int k = 0; k < 2; ++k) {
+      s.w[k] = random.uniform(0.15, 1) * most;
+      s.phase[k] = random.uniform(0, 2 * std::numbers::pi);
+    }
+    all.push_back(s);
+  }
+  return all;
+}
+
+std::vector<Moves<MinimumJerk>> drawn_moves(const Eigen::VectorXd& home,
+                                            const Eigen::VectorXd& reach, Random& random) {
+  constexpr double kSpeed = 1.875, kAcceleration = 5.78;  // of minimum jerk: largest, of d / T^n
+  std::vector<std::vector<MinimumJerk>> moves(static_cast<std::size_t>(home.size()));
+  Eigen::VectorXd at = home;
+  for (double t = 0; t < quiet().duration;) {
+    Eigen::VectorXd to = home;
+    for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += reach[i] * random.uniform(-1, 1);
+    const double way = (to - at).cwiseAbs().maxCoeff();
+    const double T = std::max(kSpeed * way / random.uniform(0.5, kMostSpeed),
+                              std::sqrt(kAcceleration * way / kMostAcceleration));
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      moves[i].push_back({.begin = t, .duration = T, .from = at[k], .to = to[k]});
+    }
+    at = to;
+    t += T + random.uniform(0.2, 1);
+  }
+  return {moves.begin(), moves.end()};
+}
+
+}  // namespace
+
+std::function<Reference(double, int)> brisk_motion(const Eigen::VectorXd& home,
+                                                   const Eigen::VectorXd& reach, std::uint64_t seed,
+                                                   bool sines) {
+  Random random(seed, 997);
+  const auto of_joint = [](auto all) {
+    return [all](double t, int i) { return all[static_cast<std::size_t>(i)](t); };
+  };
+  if (sines) return of_joint(drawn_sines(home, reach, random));
+  return of_joint(drawn_moves(home, reach, random));
 }
 
 Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed) {

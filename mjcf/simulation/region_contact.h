@@ -60,27 +60,27 @@ class RegionContact {
            share * plant.tau_ext_of(f * now_->direction, to_[next_]);
   }
 
-  // From t over Ts [s], arm and region together, tau and all of tau_ext but this touch's held. The
-  // force is held over a part of it, at what it is in its middle: of second order, as leapfrog.
-  void step(P& plant, const Vector& tau, const Vector& rest, double t, double Ts, int substeps) {
-    const int parts = kParts * substeps;
-    const double h = Ts / parts;
-    for (int i = 0; i < parts; ++i) {
-      const Point arm = point(plant);
-      const double ahead = x_ - along(arm.position) + h / 2 * (v_ - along(arm.velocity));
-      const double f = spring(t + (i + 0.5) * h, ahead);
-      pressed_ = pressed_ || f > 0;
-      plant.set_input(tau, f > 0 ? Vector(rest + tau_ext_of(plant, f)) : rest);
-      plant.step(h);
-      const double a = -f / now_->region->mass;
-      x_ += h * (v_ + h / 2 * a);
-      v_ += h * a;
-    }
+  // Parts of h [s] that arm and region take together: of 0.1 ms, in which a hand's oscillation
+  // turns by 0.05 rad.
+  static int parts(double h) { return std::max(1, static_cast<int>(std::lround(h / 1e-4))); }
+
+  // [N] to be held from t on for h [s], a part: what it is in its middle, of second order, as
+  // leapfrog
+  double push(const P& plant, double t, double h) {
+    const Point arm = point(plant);
+    const double ahead = x_ - along(arm.position) + h / 2 * (v_ - along(arm.velocity));
+    f_ = spring(t + h / 2, ahead);
+    pressed_ = pressed_ || f_ > 0;
+    return f_;
+  }
+  // h [s] on
+  void move(double h) {
+    const double a = -f_ / now_->region->mass;
+    x_ += h * (v_ + h / 2 * a);
+    v_ += h * a;
   }
 
  private:
-  static constexpr int kParts = 10;  // of 0.1 ms: 0.05 of a radian of a hand's oscillation
-
   double along(const Eigen::Vector3d& v) const { return now_->direction.dot(v); }
   Point point(const P& plant) const {
     const Point a = plant.point(from_[next_]), b = plant.point(to_[next_]);
@@ -109,6 +109,7 @@ class RegionContact {
   std::size_t next_ = 0;
   const RegionTouch* now_ = nullptr;
   double x_ = 0, v_ = 0;  // [m], [m/s] of the region's surface along the direction
+  double f_ = 0;          // [N] of the present part
   bool pressed_ = false;
 };
 

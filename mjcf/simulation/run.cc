@@ -19,6 +19,25 @@ Tracking tracking(const Scenario& s, const Recording& r) {
   return c;
 }
 
+void check(const Drives& d, int joints, const Eigen::VectorXd& usual_torque) {
+  const auto require = [](const char* name, double x, double least, double most) {
+    if (x >= least && x <= most) return;
+    throw std::invalid_argument(
+        fmt::format("drives {} must be {:g} to {:g}, not {}", name, least, most, x));
+  };
+  require("stiffness [u/rad]", d.stiffness, 0, 1e6);
+  require("rotor [u s^2/rad]", d.rotor, 1e-6, 10);
+  require("damping [1]", d.damping, 0, 2);
+  require("coulomb [u]", d.coulomb, 0, 10);
+  require("stribeck [1]", d.stribeck, 0, 10);
+  require("viscous [u s/rad]", d.viscous, 0, 10);
+  require("drift [1]", d.drift, 0, 1);
+  if (usual_torque.size() != joints || !(usual_torque.minCoeff() > 0))
+    throw std::invalid_argument(
+        "drives are in shares of what each joint is used to, and some joint of this arm is used to "
+        "nothing");
+}
+
 void fail_limit(const Scenario& s, int joint, double t, double q, bool is_tied) {
   throw std::runtime_error(
       fmt::format("scenario {}: joint {} reaches its limit at t = {:g} s, at {:.4g} rad (or m); {}",

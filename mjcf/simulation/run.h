@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -13,6 +14,8 @@
 
 #include "mjcf/scenarios/motion.h"
 #include "mjcf/scenarios/scenario_type.h"
+#include "mjcf/simulation/drivetrain.h"
+#include "mjcf/simulation/load_handler.h"
 #include "mjcf/simulation/recording.h"
 #include "mjcf/simulation/region_contact.h"
 #include "mjcf/trace/sensors.h"
@@ -55,50 +58,32 @@ inline Trace empty_trace(int n, int samples) {
   return trace;
 }
 
-// hangs, pushes and drops the load when its time has come
-class LoadHandler {
- public:
-  explicit LoadHandler(const std::optional<Load>& load) : load_(load) {}
-
-  template <class P>
-  void apply(P& plant, double t) {
-    if constexpr (requires { plant.hang_load(); }) {
-      if (load_) handle(plant, t);
-    }
-  }
-
- private:
-  template <class P>
-  void handle(P& plant, double t) {
-    const bool hang = t >= load_->hang_at && t < load_->drop_at;
-    if (hang && !hung_) plant.hang_load();
-    if (!hang && hung_) plant.drop_load();
-    hung_ = hang;
-    if (hung_ && load_->push) plant.push_load(load_->push(t));
-  }
-
-  const std::optional<Load>& load_;
-  bool hung_ = false;
-};
-
 // one run of a scenario on a Plant or a TreePlant, sample by sample
 template <class P>
 class Run {
   using Vector = typename P::Vector;
 
  public:
-  Run(P plant, const Scenario& s, const Recording& r, const Sensors& sensors)
+  // @param usual [N m] ArmTree::usual_torque; may be empty without drives and faults of torque
+  Run(P plant, const Scenario& s, const Recording& r, const Sensors& sensors,
+      const Eigen::VectorXd& usual)
       : plant_(std::move(plant)),
         s_(s),
         r_(r),
         control_(tracking(s, r)),
-        stream_(sensors, plant_.dof(), plant_.screws()),
+        stream_(sensors, plant_.dof(), plant_.screws(), usual),
         load_(s.load),
         regions_(s.regions, plant_),
+        drives_(r.drives, plant_, usual, s.duration),
         trace_(empty_trace(plant_.dof(), static_cast<int>(std::lround(s.duration / r.Ts)))) {
     trace_.screws = plant_.screws();
+    trace_.usual_torque = usual;
+    trace_.torque_at_instants = drives_.elastic();
+    for (auto* m : {&trace_.motor_q, &trace_.motor_qd})
+      m->resize(dof(), drives_.elastic() ? size() : 0);
     const Motion<Vector> start = s.start_on_reference ? reference(0) : at_rest(Vector::Zero(dof()));
     plant_.set_state(start.q, start.qd);
+    parts_ = drives_.any() ? std::max(r.substeps, drives_.parts(plant_, r.Ts)) : r.substeps;
   }
 
   // nothing if the plant got lost
@@ -114,13 +99,35 @@ class Run {
 
   int size() const { return trace_.size(); }
   P& plant() { return plant_; }
-  // whether this step is its own, not one beside others
-  bool steps_alone() const { return regions_.is_coupled(); }
+  // Steps from sample to sample. In each, what changes within a sample has to be pushed anew.
+  int parts() const {
+    return regions_.is_coupled() ? std::max(parts_, regions_.parts(r_.Ts) * r_.substeps) : parts_;
+  }
+  // before such a step, of h [s]
+  void push(double h) {
+    if (!changes()) return;
+    Vector tau_ext = rest_;
+    if (const double f = regions_.is_coupled() ? regions_.push(plant_, t_, h) : pressed_with_;
+        f > 0)
+      tau_ext += regions_.is_coupled() ? regions_.tau_ext_of(plant_, f) : pressed_by_;
+    if (drives_.any()) tau_ext += drives_.push(plant_, t_, h);
+    plant_.set_input(drives_.elastic() ? Vector(Vector::Zero(dof())) : motor_, tau_ext);
+  }
+  // and after it
+  void move(double h) {
+    if (!changes()) return;
+    if (regions_.is_coupled()) regions_.move(h);
+    if (drives_.any()) drives_.turn(h);
+    t_ += h;
+  }
   void step() {
+    const int n = parts();
     try {
-      if (regions_.is_coupled())
-        return regions_.step(plant_, plant_.tau(), rest_, t_, r_.Ts, r_.substeps);
-      for (int i = 0; i < r_.substeps; ++i) plant_.step(r_.Ts / r_.substeps);
+      for (int i = 0; i < n; ++i) {
+        push(r_.Ts / n);
+        plant_.step(r_.Ts / n);
+        move(r_.Ts / n);
+      }
     } catch (const std::runtime_error& e) {
       fail_step(s_, r_, e.what());
     }
@@ -145,6 +152,8 @@ class Run {
 
  private:
   int dof() const { return plant_.dof(); }
+  // whether something does within a sample
+  bool changes() const { return regions_.is_coupled() || drives_.any(); }
 
   Motion<Vector> at_rest(const Vector& q) const {
     return {q, Vector::Zero(dof()), Vector::Zero(dof())};
@@ -171,13 +180,39 @@ class Run {
     t_ = t, rest_ = tau_ext;
     regions_.look(plant_, t);
     pressed_with_ = regions_.force(plant_, t);
-    if (pressed_with_ > 0) tau_ext += regions_.tau_ext_of(plant_, pressed_with_);
-    if (s_.floats && !stopped_) {
-      plant_.set_input(plant_.bias(), tau_ext);
-    } else {
-      const Motion<Vector> ref = stopped_ ? at_rest(*stopped_) : reference(t);
-      plant_.set_input(computed_torque(plant_, ref, control_), tau_ext);
+    if (pressed_with_ > 0) {
+      pressed_by_ = regions_.tau_ext_of(plant_, pressed_with_);
+      tau_ext += pressed_by_;
     }
+    const bool floats = s_.floats && !stopped_;
+    const Motion<Vector> ref = stopped_ ? at_rest(*stopped_) : reference(t);
+    if (drives_.any()) return apply_drives(floats, ref, tau_ext);
+    plant_.set_input(floats ? Vector(plant_.bias()) : computed_torque(plant_, ref, control_),
+                     tau_ext);
+    if (changes()) motor_ = plant_.tau();
+  }
+
+  // the controller sees the motors, where springs are, and knows their inertia
+  void apply_drives(bool floats, const Motion<Vector>& ref, const Vector& tau_ext) {
+    const bool elastic = drives_.elastic();
+    Vector tau = plant_.bias();
+    if (!floats) {
+      const bool started = t_ > 0;
+      const Vector q = elastic && started ? drives_.theta() : Vector(plant_.q());
+      const Vector qd = elastic && started ? drives_.thetad() : Vector(plant_.qd());
+      const Vector a = ref.qdd + control_.Kp * (ref.q - q) + control_.Kd * (ref.qd - qd);
+      tau += plant_.inertia().lazyProduct(a) + plant_.damping();
+      if (elastic) tau += drives_.rotors().cwiseProduct(a);
+      if (elastic && !started) drives_.start(plant_, tau, a);
+    } else if (elastic && t_ == 0) {
+      drives_.start(plant_, tau, Vector::Zero(dof()));
+    }
+    plant_.set_input(tau, tau_ext);
+    motor_ = plant_.tau();  // as the motors can
+    drives_.drive(motor_);
+    added_ = drives_.friction(plant_, t_);
+    if (elastic) added_ -= drives_.torque(plant_);
+    plant_.set_input(elastic ? Vector(Vector::Zero(dof())) : motor_, tau_ext + added_);
   }
 
   void take_sample(int k) {
@@ -189,11 +224,22 @@ class Run {
     trace_.force.col(k) = force_;
     trace_.qdd.col(k) = plant_.qdd();
     trace_.friction.col(k) = plant_.friction();
+    if (drives_.any()) take_drives(k);
     const bool touched = s_.contact(trace_.t[k], tip_);
     const double by_contacts = plant_.contact_force();
     only_force_ = only_force_ && stops.isZero(0) && by_contacts == 0 && pressed_with_ == 0;
     trace_.contact_force[k] = by_contacts + pressed_with_ + (touched ? force_.norm() : 0);
     trace_.contact[k] = touched || trace_.contact_force[k] > 0;
+  }
+
+  // to the plant they are outside; to (3) they are tau and F
+  void take_drives(int k) {
+    trace_.tau_ext.col(k) -= added_;
+    trace_.friction.col(k) += drives_.friction(plant_, trace_.t[k]);
+    if (!drives_.elastic()) return;
+    trace_.tau.col(k) = drives_.torque(plant_);
+    trace_.motor_q.col(k) = drives_.theta();
+    trace_.motor_qd.col(k) = drives_.thetad();
   }
 
   // [N m] what the limits of joints do, where the scenario means to reach them
@@ -212,7 +258,11 @@ class Run {
   }
 
   void ask(const Supervisor& supervisor, int k) {
-    const Sample* const y = stream_.read({trace_.t[k], plant_.q(), plant_.qd(), plant_.tau()});
+    const Trace& now = trace_;
+    const bool elastic = drives_.elastic();
+    const Sample* const y =
+        stream_.read({now.t[k], elastic ? now.motor_q.col(k) : now.q.col(k),
+                      elastic ? now.motor_qd.col(k) : now.qd.col(k), now.tau.col(k)});
     if (y == nullptr || !supervisor(*y)) return;
     stopped_ = plant_.q();
     trace_.stopped_at = k;
@@ -225,12 +275,15 @@ class Run {
   SensorStream stream_;
   LoadHandler load_;
   RegionContact<P> regions_;
+  Drivetrain<P> drives_;
+  int parts_ = 1;  // without regions
   Trace trace_;
   Point tip_{};                    // the end effector
   Eigen::Vector3d force_;          // [N] of the scenario, there
   double pressed_with_ = 0;        // [N] of a region, somewhere
-  Vector rest_;                    // [N m] tau_ext without it
-  double t_ = 0;                   // [s] of the last sample
+  Vector pressed_by_, rest_;       // [N m] tau_ext of it, and all other
+  Vector motor_, added_;           // [N m] of the motors; what drives add to the plant's tau_ext
+  double t_ = 0;                   // [s] up to where it is simulated
   bool only_force_ = true;         // makes tau_ext
   std::optional<Vector> stopped_;  // where a mark stopped the arm
 };

@@ -84,5 +84,45 @@ TEST(WithTouches, ContactIsWhereABlowOrAClampingActsAndNotAPush) {
   }
 }
 
+TEST(BriskMotion, IsQuickButNoQuickerThanItSays) {
+  const Eigen::Vector3d home(0.4, -1, 0), reach(0.8, 0.3, 0.5);
+  for (const bool sines : {false, true}) {
+    double fastest = 0, hardest = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const auto motion = brisk_motion(home, reach, seed, sines);
+      constexpr double h = 1e-5;
+      for (double t = 0.0123; t < 29; t += 0.05) {
+        for (int i = 0; i < 3; ++i) {
+          const Reference now = motion(t, i), before = motion(t - h, i), after = motion(t + h, i);
+          ASSERT_NEAR(now.qd, (after.q - before.q) / (2 * h), 1e-6);
+          ASSERT_NEAR(now.qdd, (after.qd - before.qd) / (2 * h), 2e-2);
+          ASSERT_LE(std::abs(now.q - home[i]), reach[i] + 1e-9);
+          fastest = std::max(fastest, std::abs(now.qd));
+          hardest = std::max(hardest, std::abs(now.qdd));
+        }
+      }
+    }
+    EXPECT_LT(fastest, 2.001);
+    EXPECT_GT(fastest, 1.5);
+    EXPECT_LT(hardest, 10.01);
+    EXPECT_GT(hardest, 7);
+  }
+}
+
+TEST(BriskMotion, FromPlaceToPlaceItRestsBetween) {
+  const Eigen::Vector2d home(0, 0), reach(0.5, 0.5);
+  const auto motion = brisk_motion(home, reach, 7, false);
+  EXPECT_EQ(motion(0, 0).q, 0) << "from home";
+  int rests = 0;
+  for (int k = 1; k < 3000; ++k) {
+    const auto still = [&](int at) {
+      return motion(at * 0.01, 0).qd == 0 && motion(at * 0.01, 1).qd == 0;
+    };
+    rests += still(k) && !still(k - 1);
+  }
+  EXPECT_GT(rests, 10);
+  EXPECT_NE(brisk_motion(home, reach, 8, false)(10, 0).q, motion(10, 0).q);
+}
+
 }  // namespace
 }  // namespace tauext::test

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 namespace tauext {
@@ -39,6 +40,15 @@ void check(const Loadcell& l) {
   check("loadcell full_scale [N]", l.full_scale, kLargest);
 }
 
+void check(const TorqueFaults& t) {
+  check("torque gain [1]", t.gain, 0.9);
+  check("torque hysteresis [1]", t.hysteresis, 10);
+  check("torque ripple [1]", t.ripple, 10);
+  check("torque waves [1]", t.waves, 1e5);
+  check("torque bias [1]", t.bias, 10);
+  check("torque noise [1]", t.noise, 10);
+}
+
 double rounded(double x, double step) {
   return step > 0 ? std::round(x / step) * step : x;
 }
@@ -57,12 +67,16 @@ std::vector<Normals> velocity_noise(int dof, std::uint64_t seed) {
   return all;
 }
 
-SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws)
+SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws,
+                           const Eigen::VectorXd& usual_torque)
     : s_(s),
       screws_(screws),
+      usual_(usual_torque),
+      loop_(dof, std::nan("")),
       velocity_(generators(dof, s.seed, kVelocity)),
       torque_(generators(dof, s.seed, 200)),
       force_(generators(dof, s.seed, 300)),
+      joint_(generators(dof, s.seed, 600)),
       clock_(s.seed, 400),
       line_(s.seed, 500),
       play_(dof, std::nan("")),
@@ -77,12 +91,21 @@ SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& 
   check("dropped [1]", s.dropped, 0.99);
   check("repeated [1]", s.repeated, 0.99);
   check(s.loadcell);
+  check(s.torque);
+  if (!s.torque.ideal() && usual_.size() != dof)
+    throw std::invalid_argument(
+        "torque.gain and the like are shares of what each joint is used to, which is known of a "
+        "simulated arm alone");
+  for (int j = 0; j < dof && !s.torque.ideal(); ++j) {
+    gain_.push_back(1 + joint_[j].uniform(-s.torque.gain, s.torque.gain));
+    bias_.push_back(usual_[j] * joint_[j].uniform(-s.torque.bias, s.torque.bias));
+    phase_.push_back(joint_[j].uniform(0, 2 * std::numbers::pi));
+  }
   if (s_.loadcell.full_scale == 0) s_.loadcell.full_scale = screws.empty() ? 3000 : 1000;
 }
 
-SensorStream::SensorStream(const Sensors& s, int dof, const std::vector<Screw>& screws,
-                           std::vector<Normals>& drawn)
-    : SensorStream(s, dof, screws) {
+SensorStream::SensorStream(const Sensors& s, const Trace& trace, std::vector<Normals>& drawn)
+    : SensorStream(s, trace.dof(), trace.screws, trace.usual_torque) {
   drawn_ = &drawn;
 }
 
@@ -101,6 +124,18 @@ double SensorStream::force(int j, double true_force) {
   f += l.nonlinearity * l.full_scale * 4 * x * (1 - std::abs(x));
   if (l.noise > 0) f += l.noise * force_[j].normal();
   return rounded(f, l.step);
+}
+
+// [N m]; q of the motor
+double SensorStream::torque(int j, double true_torque, double q) {
+  const TorqueFaults& t = s_.torque;
+  const double half = t.hysteresis * usual_[j] / 2;
+  double x = gain_[j] * true_torque;
+  loop_[j] = std::isnan(loop_[j]) ? x : std::clamp(loop_[j], x - half, x + half);
+  x = loop_[j] + bias_[j];
+  if (t.ripple > 0) x += t.ripple * usual_[j] * std::sin(t.waves * q + phase_[j]);
+  if (t.noise > 0) x += t.noise * usual_[j] * joint_[j].normal();
+  return x;
 }
 
 void SensorStream::keep_past(const Sample& truth) {
@@ -126,7 +161,8 @@ void SensorStream::take_values(const Sample& truth) {
   const Sample& late = late_at_all ? delayed(s_.latency + s_.tau_latency) : truth;
   for (int j = 0; j < y.q.size(); ++j) {
     y.tau[j] = late.tau[j];
-    y.q[j] = rounded(y.q[j], s_.encoder_step);
+    const double q = y.q[j];
+    y.q[j] = rounded(q, s_.encoder_step);
     if (s_.velocity_noise > 0) {
       const double x = drawn_ == nullptr ? velocity_[j].normal() : (*drawn_)[j][samples_];
       y.qd[j] += s_.velocity_noise * x;
@@ -134,6 +170,7 @@ void SensorStream::take_values(const Sample& truth) {
     if (!(s_.loadcell.ideal() && s_.encoder_step == 0)) {
       y.tau[j] = force(j, y.tau[j] / lever(j, late.q[j])) * lever(j, y.q[j]);
     }
+    if (!s_.torque.ideal()) y.tau[j] = torque(j, y.tau[j], q);
     if (s_.loadcell_noise > 0) y.tau[j] += s_.loadcell_noise * torque_[j].normal();
   }
 }
@@ -160,11 +197,15 @@ namespace {
 
 Trace measure(const Trace& truth, SensorStream stream) {
   Trace m = truth;
+  m.motor_q.resize(0, 0), m.motor_qd.resize(0, 0);  // they are what is measured
+  const bool elastic = truth.motor_q.cols() > 0;
+  const Eigen::MatrixXd &q = elastic ? truth.motor_q : truth.q,
+                        &qd = elastic ? truth.motor_qd : truth.qd;
   std::vector<int> kept;
   Sample now;
   for (int k = 0; k < truth.size(); ++k) {
     now.t = truth.t[k];
-    now.q = truth.q.col(k), now.qd = truth.qd.col(k), now.tau = truth.tau.col(k);
+    now.q = q.col(k), now.qd = qd.col(k), now.tau = truth.tau.col(k);
     const Sample* const y = stream.read(now);
     if (y == nullptr) continue;
     m.t[k] = y->t;
@@ -179,11 +220,11 @@ Trace measure(const Trace& truth, SensorStream stream) {
 }  // namespace
 
 Trace measure(const Trace& truth, const Sensors& s) {
-  return measure(truth, SensorStream(s, truth.dof(), truth.screws));
+  return measure(truth, SensorStream(s, truth.dof(), truth.screws, truth.usual_torque));
 }
 
 Trace measure(const Trace& truth, const Sensors& s, std::vector<Normals>& drawn) {
-  return measure(truth, SensorStream(s, truth.dof(), truth.screws, drawn));
+  return measure(truth, SensorStream(s, truth, drawn));
 }
 
 }  // namespace tauext

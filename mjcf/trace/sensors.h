@@ -36,12 +36,34 @@ struct Loadcell {
   }
 };
 
+/// Torque sensors in the joints, each another one: what differs from sensor to sensor is drawn from
+/// the seed. Shares are of what the joint is used to (ArmTree::usual_torque). They act after a
+/// loadcell's faults, in this order:
+struct TorqueFaults {
+  double gain = 0;        ///< [1] largest error of the gain, either way: uniform
+  double hysteresis = 0;  ///< [1] share: width of the loop (play)
+  double ripple = 0;      ///< [1] share: amplitude of a sine of the motor's position
+  double waves = 200;     ///< [1] of the ripple in a turn of the joint: 2 a motor turn, gear 100
+  double bias = 0;        ///< [1] share: largest offset, either way: uniform
+  double noise = 0;       ///< [1] share: standard deviation, white
+
+  bool operator==(const TorqueFaults&) const = default;
+
+  /// Whether it has no fault, whatever the number of waves.
+  bool ideal() const {
+    TorqueFaults perfect;
+    perfect.waves = waves;
+    return *this == perfect;
+  }
+};
+
 /// Sensor imperfections; the noise is white, Gaussian and independent for every joint.
 struct Sensors {
   double velocity_noise = 0;  ///< [rad/s] standard deviation, on qd
   double encoder_step = 0;    ///< [rad] q is rounded to whole steps
   double loadcell_noise = 0;  ///< [N m] standard deviation, on tau itself, with or without screws
   Loadcell loadcell;          ///< its faults
+  TorqueFaults torque;        ///< of sensors in the joints, in shares of what these are used to
   double latency = 0;         ///< [s] how old q, qd and tau are at their time stamp
   double tau_latency = 0;     ///< [s] how much older tau is than q and qd
   double jitter = 0;          ///< [s] time stamps are wrong by up to this, uniformly; order is kept
@@ -56,6 +78,7 @@ struct Sensors {
     Sensors perfect;
     perfect.seed = seed;
     perfect.loadcell.full_scale = loadcell.full_scale;
+    perfect.torque.waves = torque.waves;
     return *this == perfect;
   }
 };
@@ -67,12 +90,14 @@ std::vector<Normals> velocity_noise(int dof, std::uint64_t seed);
 /// Sensors at work, sample by sample.
 class SensorStream {
  public:
-  /// @throws std::invalid_argument for an imperfection out of range
-  SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws);
-  /// The same, with noise that was drawn before, velocity_noise(dof, sensors.seed), which must
-  /// outlive it.
+  /// @param usual_torque [N m] of Trace, for Sensors::torque
+  /// @throws std::invalid_argument for an imperfection out of range, and for shares of torques that
+  /// nobody knows
   SensorStream(const Sensors& sensors, int dof, const std::vector<Screw>& screws,
-               std::vector<Normals>& drawn);
+               const Eigen::VectorXd& usual_torque = {});
+  /// The same of a trace, with noise that was drawn before, velocity_noise(dof, sensors.seed),
+  /// which must outlive it.
+  SensorStream(const Sensors& sensors, const Trace& trace, std::vector<Normals>& drawn);
 
   /// What they read of the next true sample, until the next one is read; null if it is lost.
   const Sample* read(const Sample& truth);
@@ -81,12 +106,15 @@ class SensorStream {
   const Sample& delayed(double by) const;
   double lever(int joint, double q) const;
   double force(int joint, double true_force);
+  double torque(int joint, double true_torque, double q);
   void keep_past(const Sample& truth);
   void take_values(const Sample& truth);
 
   Sensors s_;
   std::vector<Screw> screws_;
-  std::vector<Random> velocity_, torque_, force_;
+  Eigen::VectorXd usual_;                           // [N m]
+  std::vector<double> gain_, bias_, phase_, loop_;  // of torque sensors: [1], [N m], [rad], [N m]
+  std::vector<Random> velocity_, torque_, force_, joint_;
   std::vector<Normals>* drawn_ = nullptr;  // instead of velocity_
   std::size_t samples_ = 0;                // that were read
   Random clock_, line_;

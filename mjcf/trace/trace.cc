@@ -26,7 +26,8 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
   of_vector(s.t);
   of_vector(s.contact);
   of_vector(s.contact_force);
-  for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.tau_ext_of_driver, &s.qdd, &s.friction}) {
+  for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.tau_ext_of_driver, &s.qdd, &s.friction,
+                  &s.motor_q, &s.motor_qd}) {
     if (m->cols() > 0) *m = Eigen::MatrixXd((*m)(Eigen::all, samples));
   }
   if (s.force.cols() > 0) s.force = Eigen::Matrix3Xd(trace.force(Eigen::all, samples));

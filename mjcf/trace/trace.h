@@ -44,7 +44,12 @@ struct Trace {
   Eigen::MatrixXd friction;           ///< [N m] F of (3) at t_k
   std::vector<double> contact_force;  ///< [N] sum of the normal forces on the arm at t_k
   std::vector<Screw> screws;          ///< of the joints; empty if the robot has none
-  int stopped_at = -1;                ///< sample at which a supervisor stopped the motor; -1: never
+  /// [rad] of the motors, behind elastic drives, where encoders are: measure() takes it for q. No
+  /// columns where drives are rigid.
+  Eigen::MatrixXd motor_q;
+  Eigen::MatrixXd motor_qd;      ///< [rad/s] likewise, for qd
+  Eigen::VectorXd usual_torque;  ///< [N m] ArmTree::usual_torque; empty if nobody asked for it
+  int stopped_at = -1;           ///< sample at which a supervisor stopped the motor; -1: never
 
   int dof() const { return static_cast<int>(q.rows()); }   ///< joints
   int size() const { return static_cast<int>(t.size()); }  ///< samples

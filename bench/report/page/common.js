@@ -16,9 +16,6 @@ function element(name, attributes = {}, ...children) {
 const COLORS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a6d3b', '#7f7f7f'];
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3]];
 const look = (i) => ({color: COLORS[i % 8], dash: DASHES[Math.floor(i / 8) % 4]});
-// a piece of a line, for a list of names
-const sample_of = ({color, dash = []}) => element('svg', {width: 26, height: 10},
-  element('line', {x1: 0, x2: 24, y1: 5, y2: 5, stroke: color, 'stroke-width': 2, 'stroke-dasharray': dash.join(' ')}));
 const themed = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function select(label, options, chosen, change) {

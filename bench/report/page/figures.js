@@ -1,4 +1,5 @@
-// Sections, tables and figures of the report, whatever they show.
+// Sections, tables and figures of the report, whatever they show. Every number that the page prints of a file carries where it
+// stands there (data-json, an RFC 6901 pointer), or of which two it is the ratio (data-over).
 const quantile = (sorted, q) => {
   const x = q * (sorted.length - 1), i = Math.floor(x);
   return sorted[i] + (x - i) * ((sorted[i + 1] ?? sorted[i]) - sorted[i]);
@@ -32,6 +33,9 @@ function ticks([low, high], log) {
   const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough)), step = power * [1, 2, 5, 10].find((m) => m * power >= rough);
   return Array.from({length: Math.floor((high - low) / step + 1e-9) + 2}, (_, i) => (Math.ceil(low / step - 1e-9) + i) * step).filter((x) => x <= high + 1e-9 * step);
 }
+// a piece of a line, for a list of names
+const sample_of = ({color, dash = []}) => element('svg', {width: 26, height: 10},
+  element('line', {x1: 0, x2: 24, y1: 5, y2: 5, stroke: color, 'stroke-width': 2, 'stroke-dasharray': dash.join(' ')}));
 const tick_text = (x) => String(Number(x.toPrecision(6)));
 
 // An SVG with axes; draw(c) puts lines, points and boxes into it. rows: names instead of a scale of y.
@@ -54,7 +58,7 @@ function chart({title, x, y, width = 690, height = 360, rows}, draw) {
   const c = {
     line: (points, {color, dash = []}, name, width_of = 1.6) => {
       plot.append(element('polyline', {points: points.filter((p) => inside(p) && Math.abs(share(p[0], x) - .5) < .7).map(([a, b]) => `${px(a).toFixed(1)},${py(b).toFixed(1)}`).join(' '), fill: 'none', stroke: color,
-        'stroke-width': width_of, 'stroke-dasharray': dash.join(' '), 'clip-path': 'inset(0)'}, name && element('title', {}, name)));
+        'stroke-width': width_of, 'stroke-dasharray': dash.join(' ')}, name && element('title', {}, name)));
       if (name) names.push([name, color, dash]);
     },
     point: ([a, b], {color, hollow, r = 4.5}, name, text, data = {}) => {
@@ -69,8 +73,9 @@ function chart({title, x, y, width = 690, height = 360, rows}, draw) {
   const taken = points.map(([a, b]) => [a - 5, b, 10]);  // x, y and width of what no name may cover
   for (const [a, b, text] of points.filter((p) => p[2])) {
     const wide = 6.7 * text.length, end = width - right - wide;
-    const free = ([dx, dy]) => a + dx <= end && !taken.some(([x0, y0, w]) => Math.abs(y0 - b - dy) < 11 && a + dx < x0 + w && x0 < a + dx + wide);
-    const [dx, dy] = [0, 13, -13, 26, -26, 39, -39, 52].flatMap((d) => [[8, d], [-8 - wide, d]]).find(free) ?? [8, 0];
+    const free = ([dx, dy]) => a + dx >= left && a + dx <= end && b + dy > top && b + dy < h - bottom && !taken.some(([x0, y0, w]) => Math.abs(y0 - b - dy) < 11 && a + dx < x0 + w && x0 < a + dx + wide);
+    const [dx, dy] = [0, 13, -13, 26, -26, 39, -39, 52].flatMap((d) => [[8, d], [-8 - wide, d]]).find(free) ?? [];
+    if (dx === undefined) continue;  // its title says it
     taken.push([a + dx, b + dy, wide]);
     plot.append(element('text', {x: dx < 0 ? a - 8 : a + 8, y: b + 4 + dy, 'text-anchor': dx < 0 ? 'end' : 'start'}, text));
   }

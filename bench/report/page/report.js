@@ -1,4 +1,4 @@
-// ---- (i) provenance
+// Provenance, and the order in which the sections are made.
 function provenance() {
   const keys = [...new Set(FILES.flatMap((f) => Object.entries(f.data.context).filter(([, v]) => typeof v !== 'object').map(([k]) => k).filter((k) => !['executable', 'host_name', 'library_build_type'].includes(k))))];
   const place = element('div', {class: 'wide'}, element('table', {id: 'provenance'}, element('thead', {}, element('tr', {}, element('th', {}, ''), ...FILES.map((f) => element('th', {class: 'text'}, f.name)))),

@@ -1,4 +1,4 @@
-// ---- (b) and (c): traces
+// What the report shows of traces: truth and estimates over time, and answers to a step.
 const TRACED = of_kind('traces');
 const run_name = (group, file) => group + (TRACED.length > 1 ? ` [${bare(file)}]` : '');
 const TRACES = TRACED.flatMap((f) => f.data.groups.map((g) => ({...g, name: run_name(g.name, f)})));
@@ -9,7 +9,7 @@ function decoded(joint) {
 }
 // a series' signals, each with its name and unit
 const signals_of = (s, site) => [...s.joints.map((x, j) => [x, `joint ${j + 1}`, 'tau_ext [N m]']),
-  ...(s.wrench || []).map((x, j) => [x, `${j < 3 ? 'force' : 'moment'} ${'xyz'[j % 3]} at ${site}, axes of the base`, j < 3 ? 'force [N]' : 'moment [N m]'])];
+  ...(s.wrench || []).map((x, j) => [x, `${j < 3 ? 'force' : 'moment'} ${'xyz'[j % 3]}${site ? ' at ' + site : ''}, axes of the base`, j < 3 ? 'force [N]' : 'moment [N m]'])];
 // points at the begins and ends of buckets, once where a bucket is one sample
 function kept(t) {
   const all = [...t.keys()].filter((i) => i % 2 === 0 || t[i] > t[i - 1]);
@@ -66,8 +66,8 @@ function step_answers() {
   const places = steps.flatMap((g) => g.series[0].joints.map((truth, j) => {
     const keep = kept(g.t), t = keep(g.t), of_truth = keep(decoded(truth)), end = of_truth.at(-1);
     const begin = t[of_truth.findIndex((x) => Math.abs(x) > 0.5 * Math.abs(end))];
-    const lines = g.series.map((s) => keep(decoded(s.joints[j])).map((x, k) => [t[k] - begin, x / end]).filter(([at]) => at > -.1 && at < 1.05));
-    const shares = lines.flat().map(([, x]) => Math.min(2, Math.max(-1, x)));  // one that diverges does not hide the others
+    const lines = g.series.map((s) => keep(decoded(s.joints[j])).map((x, k) => [t[k] - begin, x / end]));
+    const shares = lines.flat().filter(([at]) => at > -.05 && at < 1).map(([, x]) => Math.min(2, Math.max(-1, x)));  // one that diverges does not hide the others
     return chart({title: `${g.name}, joint ${j + 1}`, x: {label: 'time from the step [s]', range: [-0.05, 1]}, y: {label: 'estimate / step [1]', range: spread_of(shares)}}, (c) =>
       lines.forEach((line, i) => c.line(line, i === 0 ? {color: 'var(--truth)', dash: []} : look(i - 1), g.series[i].name)));
   }));

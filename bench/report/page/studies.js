@@ -1,4 +1,5 @@
-// ---- (e) detection
+// What the report shows of studies: detection, regions of a body, seeds, the history of a gate.
+// ---- detection
 const apart = (i) => ({...look(i), dash: i % 2 ? [7, 5] : []});  // of two equal curves both are seen
 function detection() {
   for (const f of of_kind('study')) {
@@ -57,7 +58,7 @@ function meetings() {
   }
 }
 
-// ---- (g) seeds
+// ---- seeds
 function seeds() {
   for (const f of of_kind('seeds')) {
     const group_of = (r) => r.entry.split('/').slice(0, 2).join('/');
@@ -91,7 +92,7 @@ function seeds() {
   }
 }
 
-// ---- (h) history
+// ---- history
 function history_of_gate() {
   for (const f of of_kind('history')) {
     const rows = f.data.rows, kernels = [...new Set(rows.flatMap((r) => Object.keys(r.kernels)))], place = element('div');

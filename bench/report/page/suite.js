@@ -1,5 +1,4 @@
-// The page of tauext-report. Every number that it prints of a file carries where it stands there (data-json, an RFC 6901
-// pointer), or of which two it is the ratio (data-over).
+// What the report shows of suites: the heat map, the ranking, noise against delay, costs.
 const FILES = JSON.parse(document.getElementById('results').textContent);
 const METRICS = new Map(JSON.parse(document.getElementById('metrics').textContent).map((m) => [m.key, m]));
 const BASELINES = ['zero', 'truth', 'delayed_truth'];
@@ -41,32 +40,37 @@ function entries_for(key) {
 }
 
 function best_of(entries, key) {
-  const better = METRICS.get(key).better;
-  return entries.filter((e) => competes(e) && Number.isFinite(value_of(e, key)))
+  const {better, never_is_best} = METRICS.get(key);
+  const never = never_is_best && entries.find((e) => competes(e) && value_of(e, key) === undefined);
+  return never || entries.filter((e) => competes(e) && Number.isFinite(value_of(e, key)))
     .sort((a, b) => better * (value_of(b, key) - value_of(a, key)))[0];
 }
-// several may be the best
-const is_best = (e, best, key) => competes(e) && (value_of(e, key) === undefined ? METRICS.get(key).never_is_best : best && value_of(e, key).toFixed(METRICS.get(key).digits) === value_of(best, key).toFixed(METRICS.get(key).digits));
-
 // how much worse than the best: 1 for the best; undefined where that is no question
 function ratio_of(e, best, key) {
   const x = value_of(e, key), b = best && value_of(best, key);
   if (!Number.isFinite(x) || !(b > 0) || !(x > 0)) return undefined;
   return METRICS.get(key).better > 0 ? b / x : x / b;
 }
+// several may be the best, as far as they are printed
+function is_best(e, best, key, values) {
+  if (!competes(e) || !best) return false;
+  const [x, y] = [e, best].map((of) => value_of(of, key)), r = ratio_of(e, best, key);
+  if (x === undefined || y === undefined) return x === y;
+  return values || r === undefined ? x.toFixed(METRICS.get(key).digits) === y.toFixed(METRICS.get(key).digits) : ratio_text(r) === '1.00';
+}
 const ratio_text = (r) => r < 9.995 ? r.toFixed(2) : r < 99.95 ? r.toFixed(1) : r.toFixed(0);
 
-// ---- (a) heat map
+// ---- heat map
 function heat_cell(e, best, key, values) {
   if (!e) return element('td', {class: 'none', title: 'not in the file'}, '–');
   const m = METRICS.get(key), x = value_of(e, key), r = ratio_of(e, best, key);
   const open = () => show_run(e);
-  const cell = {class: 'run' + (is_best(e, best, key) ? ' best' : ''), tabindex: 0, onclick: open, onkeydown: (k) => k.key === 'Enter' && open()};
+  const cell = {class: 'run' + (is_best(e, best, key, values) ? ' best' : ''), tabindex: 0, onclick: open, onkeydown: (k) => k.key === 'Enter' && open()};
   const paint = (t) => `background: color-mix(in srgb, #dd7a2f ${(100 * t).toFixed(0)}%, #eaf3fa)`;
   if (e.row.error_occurred) return element('td', {...cell, style: paint(1), title: e.row.error_message}, 'failed');
   if (x === undefined) return element('td', {...cell, style: paint(m.never_is_best || BASELINES.includes(e.estimator) ? 0 : 1), title: `${e.who}: ${m.title} has no value`}, 'never');
   const text = x.toFixed(m.digits), title = `${e.group}/${label_of(e)}: ${m.title} ${text} ${m.unit}`;
-  const style = paint(BASELINES.includes(e.estimator) ? 0 : r === undefined ? (best && x !== value_of(best, key) ? .5 : 0) : Math.min(1, Math.log(Math.max(r, 1)) / Math.log(30)));
+  const style = paint(BASELINES.includes(e.estimator) ? 0 : r === undefined ? (best && !is_best(e, best, key, values) ? .5 : 0) : Math.min(1, Math.log(Math.max(r, 1)) / Math.log(30)));
   if (values || r === undefined) return element('td', {...cell, style, title, 'data-json': `${e.at}/${key}`}, text);
   const pair = m.better > 0 ? [best, e] : [e, best];
   return element('td', {...cell, style, title, 'data-json': `${pair[0].at}/${key}`, 'data-over': `${pair[1].at}/${key}`}, ratio_text(r));
@@ -85,8 +89,8 @@ function heat_map() {
       return element('tr', {}, element('td', {}, g), ...who.map((w) => heat_cell(here.find((e) => label_of(e) === w), best, key, values)));
     });
     place.replaceChildren(element('table', {id: 'heat'}, element('thead', {}, head), element('tbody', {}, ...rows)));
-    about.textContent = DIFFERENT + m.meaning + (m.joints ? ' Of the worst joint.' : '') + (values ? ''
-      : m.better > 0 ? ' The best of its row, in bold, as a multiple of it (where that is 0, the values).' : ' As a multiple of the best of its row, in bold (where that is 0, the values).')
+    about.textContent = DIFFERENT + m.meaning + (m.joints ? ' It is the value of the worst joint.' : '') + (values ? ' The best of a row is bold.'
+      : ` A cell says how many times ${m.better > 0 ? 'larger the best value of its row is' : 'the best value of its row it is'}; the best is bold. A row whose best is 0 shows values.`)
       + ' A click opens the run. zero, truth and delayed_truth do not compete.';
   };
   section('map', 'Scenarios and estimators', '', about,
@@ -134,9 +138,9 @@ function ranking() {
     ...table_buttons(place, 'ranking'), place);
 }
 
-// ---- (d) noise against delay
+// ---- noise against delay
 const overshoot_color = (percent) => percent < 1 ? '#0072b2' : percent < 10 ? '#e69f00' : '#d55e00';
-function trade_off(title, points) {  // {name, delay [s], noise [N m], overshoot [%], at, delay_key}
+function trade_off(title, points) {  // {name, delay [s], noise [N m], overshoot [%]}
   const good = points.filter((p) => p.delay > 0 && p.noise > 0);
   if (good.length < 2) return undefined;
   const dominated = (p) => good.find((q) => q !== p && q.delay <= p.delay && q.noise <= p.noise && (q.delay < p.delay || q.noise < p.noise));
@@ -158,7 +162,7 @@ function trade_offs() {
   if (shown.length) section('fronts', 'Noise against delay', 'Towards the lower left is better. Blue: less than 1 % overshoot, yellow: less than 10 %, red: more. A hollow point has another one that is at least as good at both.', element('div', {class: 'pair'}, ...shown));
 }
 
-// ---- (f) cost
+// ---- cost
 function costs() {
   const figures = SUITES.map((file) => {
     const by = new Map();

@@ -10,7 +10,7 @@ namespace tauext::report {
 namespace {
 
 const std::string kHostile =
-    R"({"context":{"submitter":"</script><script>alert(1)</script><!--"},"benchmarks":[]})";
+    R"({"context":{"submitter":"</script><script>alert(1)</script><!--"},"benchmarks":[{"name":"a/b/c"}]})";
 
 TEST(Page, HoldsItsFilesAsTheyAre) {
   const std::vector<ResultFile> files = {
@@ -48,12 +48,20 @@ TEST(Page, AnyOtherPageIsRefused) {
   const std::string path = testing::TempDir() + "other.html";
   std::ofstream(path) << "<html></html>";
   EXPECT_THROW(read_results(path), std::runtime_error);
-  std::ofstream(path) << R"(<script type="application/json" id="results">[{"name": "x"}]</script>)";
+  std::ofstream(path)
+      << R"(<script type="application/json" id="results">[{"name": "x"}]</script></html>)";
   try {
     read_results(path);
     ADD_FAILURE() << "a page without data";
   } catch (const std::runtime_error& e) {
     EXPECT_EQ(std::string(e.what()).find(path + ": what it holds: "), 0u) << e.what();
+  }
+  std::ofstream(path) << page_of({checked_result("one.json", kHostile)}).substr(0, 60000);
+  try {
+    read_results(path);
+    ADD_FAILURE() << "a page that was cut off";
+  } catch (const std::runtime_error& e) {
+    EXPECT_EQ(e.what(), path + ": a report whose end is missing; write or copy it again");
   }
 }
 

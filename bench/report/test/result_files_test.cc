@@ -82,7 +82,8 @@ TEST(ResultFiles, OfAHistoryTheLineThatIsBrokenIsNamed) {
     checked_result("h.jsonl", "{\"a\": 1}\n{\"b\":\n");
     FAIL();
   } catch (const std::runtime_error& e) {
-    EXPECT_EQ(std::string(e.what()).find("h.jsonl: its line 2: "), 0u) << e.what();
+    EXPECT_EQ(std::string(e.what()).find("h.jsonl: line 2: "), 0u) << e.what();
+    EXPECT_EQ(std::string(e.what()).find("line 1"), std::string::npos) << e.what();
   }
 }
 

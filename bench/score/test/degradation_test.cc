@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "mjcf/test/error_of.h"
 
@@ -48,6 +51,44 @@ TEST_F(DegradationFile, SetsWhatItNamesAndLeavesTheRest) {
   EXPECT_EQ(d.model_error.mass, 1.05);
   EXPECT_EQ(d.model_error.friction, 2);
   EXPECT_EQ(d.sensors.encoder_step, 1e-4);
+}
+
+TEST_F(DegradationFile, HasTorqueSensorsAndDrives) {
+  const Degradation d = read(R"({ "torque": { "gain": 0.05, "ripple": 0.01 },
+                                  "drives": { "stiffness": 200, "coulomb": 0.02 } })");
+  EXPECT_EQ(d.sensors.torque.gain, 0.05);
+  EXPECT_EQ(d.sensors.torque.ripple, 0.01);
+  EXPECT_EQ(d.drives.stiffness, 200);
+  EXPECT_EQ(d.drives.coulomb, 0.02);
+  EXPECT_EQ(d.drives.rotor, Drives().rotor);
+  EXPECT_EQ(describe(d),
+            "torque.gain=0.05 torque.ripple=0.01 drives.stiffness=200 drives.coulomb=0.02");
+  EXPECT_NE(error(R"({"drives": {"stifness": 1}})")
+                .find("drives: there is no key 'stifness'; known: stiffness [u/rad] 0 to 1e+06"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"torque": {"gain": 1}})").find("torque.gain=1: it must be 0 to 0.9"),
+            std::string::npos);
+}
+
+TEST_F(DegradationFile, HasNamedSetsEachWorseThanTheOneBefore) {
+  std::vector<Degradation> all;
+  for (const char* name : {"light", "typical", "hard"}) {
+    all.emplace_back().sensors.seed = 7;
+    read_degradation(name, all.back());
+    EXPECT_EQ(all.back().sensors.seed, 7u) << "the seed stays";
+  }
+  ASSERT_EQ(all.size(), named_degradations().size());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const Degradation &before = all[i - 1], &d = all[i];
+    EXPECT_GT(d.sensors.velocity_noise, before.sensors.velocity_noise);
+    EXPECT_GT(d.sensors.torque.noise, before.sensors.torque.noise);
+    EXPECT_GT(d.sensors.torque.gain, before.sensors.torque.gain);
+    EXPECT_GT(d.sensors.tau_latency, before.sensors.tau_latency);
+    EXPECT_GT(d.model_error.mass, before.model_error.mass);
+    EXPECT_GT(d.drives.coulomb, before.drives.coulomb);
+  }
+  EXPECT_GT(all[1].drives.stiffness, all[2].drives.stiffness);
+  EXPECT_FALSE(all[0].drives.elastic());
 }
 
 TEST_F(DegradationFile, SaysWhatIsWrongAndKnowsBetter) {
@@ -102,12 +143,30 @@ TEST(SetFields, TakesKeysAndNumbersAndRefusesTheRest) {
 
 // the limits are those of mjcf/, which has them from nobody here
 TEST(SetFields, LimitsAreThoseThatASimulationTakes) {
-  const auto simulates = [](const Sensors& s) { return error_of([&] { SensorStream(s, 3, {}); }); };
-  for (const char* item :
-       {"velocity_noise=1e9", "encoder_step=1", "loadcell_noise=1e5", "latency=1", "tau_latency=1",
-        "jitter=1", "dropped=0.99", "repeated=0.99", "loadcell.scale=1e3", "loadcell.offset=-1e6",
-        "loadcell.hysteresis=1", "loadcell.nonlinearity=-1", "loadcell.noise=1e6",
-        "loadcell.step=1e6", "loadcell.full_scale=1e6"}) {
+  const Eigen::Vector3d usual(1, 1, 1);
+  const auto simulates = [&usual](const Sensors& s) {
+    return error_of([&] { SensorStream(s, 3, {}, usual); });
+  };
+  for (const char* item : {"velocity_noise=1e9",
+                           "encoder_step=1",
+                           "loadcell_noise=1e5",
+                           "latency=1",
+                           "tau_latency=1",
+                           "jitter=1",
+                           "dropped=0.99",
+                           "repeated=0.99",
+                           "loadcell.scale=1e3",
+                           "loadcell.offset=-1e6",
+                           "loadcell.hysteresis=1",
+                           "loadcell.nonlinearity=-1",
+                           "loadcell.noise=1e6",
+                           "loadcell.step=1e6",
+                           "loadcell.full_scale=1e6",
+                           "torque.hysteresis=10",
+                           "torque.ripple=10",
+                           "torque.waves=1e5",
+                           "torque.bias=10",
+                           "torque.noise=10"}) {
     Sensors s;
     EXPECT_EQ(error_of([&] { set_fields({item}, s); }), "no error") << item;
     EXPECT_EQ(simulates(s), "no error") << item;
@@ -127,7 +186,8 @@ TEST(Ideal, AreSensorsWhateverTheirSeedAndFullScale) {
        {"velocity_noise=1e-9", "encoder_step=1e-9", "loadcell_noise=1e-9", "latency=1e-9",
         "tau_latency=1e-9", "jitter=1e-9", "dropped=1e-9", "repeated=1e-9", "loadcell.scale=1.01",
         "loadcell.offset=-1", "loadcell.hysteresis=1e-9", "loadcell.nonlinearity=-1e-9",
-        "loadcell.noise=1e-9", "loadcell.step=1e-9"}) {
+        "loadcell.noise=1e-9", "loadcell.step=1e-9", "torque.gain=1e-9", "torque.hysteresis=1e-9",
+        "torque.ripple=1e-9", "torque.bias=1e-9", "torque.noise=1e-9"}) {
     Sensors faulty = s;
     set_fields({fault}, faulty);
     EXPECT_FALSE(faulty.ideal()) << fault;

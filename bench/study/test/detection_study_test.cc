@@ -10,6 +10,7 @@
 #include "bench/roster/threshold_file.h"
 #include "bench/study/calibration.h"
 #include "bench/study/detection_report.h"
+#include "bench/study/study_runs.h"
 #include "mjcf/record.h"
 #include "mjcf/scenarios/touch.h"
 #include "mjcf/test/error_of.h"

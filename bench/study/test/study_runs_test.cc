@@ -111,5 +111,46 @@ TEST(Calibration, AClassifierAloneIsTrainedAsAmongOthers) {
   EXPECT_EQ(alone.sets.front().by_estimator.at("mo2").size(), 2);
 }
 
+// each plant's first run is MuJoCo's, too, or the study ends
+TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
+  StudyOptions o;
+  o.conditions = {"light", "typical", "hard", "hard_250hz"};
+  o.estimators = {"mo2"};
+  o.detectors = {"cusum"};
+  o.blows = 8;
+  o.brisk_pushes = o.clampings = 0;
+  o.hours = 0.007;  // a run
+  const std::vector<Cell> all = detection_study(o, {});
+  ASSERT_EQ(all.size(), 4u);
+  for (const Cell& c : all) {
+    EXPECT_EQ(c.failed_runs, 0) << c.condition;
+    EXPECT_GE(c.blows, 8) << c.condition;
+    EXPECT_NEAR(c.hours(), 26. / 3600, 1e-5) << c.condition;
+  }
+  for (const char* robot : {"", TAUEXT_EXAMPLES "/arm6.xml"}) {
+    const StudyRuns& runs = touched_runs(robot);
+    EXPECT_EQ(std::count(runs.usual.begin(), runs.usual.end(), "hard"), 0) << "only if asked for";
+    const PlantKey known = plant_of(runs.conditions.front());
+    const PlantKey hard = plant_of(condition(runs, "hard"));
+    EXPECT_EQ(plant_of(condition(runs, "hard_250hz")), hard) << "the same run, seen less often";
+    const Model model = runs.model(hard);
+    const auto run = [&](const PlantKey& plant, std::uint64_t seed) {
+      const Job job{plant, TouchKind::kSlowPush, seed};
+      return std::move(simulated(runs, {&job, 1}, model).front());
+    };
+    const Trace slow = run(known, 1), brisk = run(hard, 1), training = run(hard, kTrainingSeed);
+    EXPECT_GT(brisk.qd.cwiseAbs().maxCoeff(), 3 * slow.qd.cwiseAbs().maxCoeff());
+    EXPECT_LT(brisk.qd.cwiseAbs().maxCoeff(), 3) << "[rad/s], springs and all";
+    EXPECT_GT((brisk.motor_q - brisk.q).cwiseAbs().maxCoeff(), 1e-3);
+    const auto rests = [](const Trace& t) {
+      int count = 0;
+      for (int k = 0; k < t.size(); ++k) count += t.qd.col(k).norm() < 2e-2;
+      return static_cast<double>(count) / t.size();
+    };
+    EXPECT_GT(rests(brisk), 0.1) << "from place to place";
+    EXPECT_LT(rests(training), 0.02) << "detectors are trained on other motions";
+  }
+}
+
 }  // namespace
 }  // namespace tauext::study::test
