@@ -34,8 +34,8 @@ void add_honest(StudyRuns& r) {
     const char *of_name = every == 1 ? "" : "_250hz", *at = every == 1 ? "" : "; at 250 Hz";
     for (const auto& [name, description, faults] : named_degradations()) {
       if (every == 1 || faults.drives.elastic())
-        r.conditions.push_back({name + of_name, description + at, r.carries, r.carries, faults,
-                                Motions::kBrisk, every, true});
+        r.conditions.push_back(
+            {name + of_name, description + at, 0, 0, faults, Motions::kBrisk, every, true});
     }
   }
 }

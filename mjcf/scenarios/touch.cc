@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mjcf/plant/plant.h"
 #include "mjcf/scenarios/motion.h"
@@ -128,38 +129,68 @@ std::vector<TwoSines> drawn_sines(const Eigen::VectorXd& home, const Eigen::Vect
   return all;
 }
 
-std::vector<Moves<MinimumJerk>> drawn_moves(const Eigen::VectorXd& home,
-                                            const Eigen::VectorXd& reach, Random& random) {
-  constexpr double kSpeed = 1.875, kAcceleration = 5.78;  // of minimum jerk: largest, of d / T^n
-  std::vector<std::vector<MinimumJerk>> moves(static_cast<std::size_t>(home.size()));
+// @param move of a joint that goes from there to there at t, at that speed where it goes `way`
+template <class Move, class Make>
+std::vector<Moves<Move>> drawn_moves(const Eigen::VectorXd& home, const Eigen::VectorXd& reach,
+                                     Random& random, Make&& move) {
+  std::vector<std::vector<Move>> moves(static_cast<std::size_t>(home.size()));
   Eigen::VectorXd at = home;
   for (double t = 0; t < quiet().duration;) {
     Eigen::VectorXd to = home;
     for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += reach[i] * random.uniform(-1, 1);
-    const double way = (to - at).cwiseAbs().maxCoeff();
-    const double T = std::max(kSpeed * way / random.uniform(0.5, kMostSpeed),
-                              std::sqrt(kAcceleration * way / kMostAcceleration));
+    const double way = (to - at).cwiseAbs().maxCoeff(), speed = random.uniform(0.5, kMostSpeed);
+    double longest = 0;  // [s]
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      moves[i].push_back({.begin = t, .duration = T, .from = at[k], .to = to[k]});
+      const auto [of_joint, duration] = move(t, at[k], to[k], way, speed);
+      moves[i].push_back(of_joint);
+      longest = std::max(longest, duration);
     }
     at = to;
-    t += T + random.uniform(0.2, 1);
+    t += longest + random.uniform(0.2, 1);
   }
   return {moves.begin(), moves.end()};
+}
+
+std::pair<MinimumJerk, double> as_a_hand(double t, double from, double to, double way,
+                                         double speed) {
+  constexpr double kSpeed = 1.875, kAcceleration = 5.78;  // of minimum jerk: largest, of d / T^n
+  const double T =
+      std::max(kSpeed * way / speed, std::sqrt(kAcceleration * way / kMostAcceleration));
+  return {{.begin = t, .duration = T, .from = from, .to = to}, T};
+}
+
+// from rest to rest with a sine of acceleration, as cams do
+struct Cycloid {
+  double begin, duration, from, to;
+};
+
+Reference reference_at(const Cycloid& m, double t) {
+  const double turn = 2 * std::numbers::pi, way = m.to - m.from;
+  const double share = std::clamp((t - m.begin) / m.duration, 0., 1.), at = turn * share;
+  if (share == 0 || share == 1) return {m.from + share * way, 0, 0};
+  return {m.from + way * (share - std::sin(at) / turn), way / m.duration * (1 - std::cos(at)),
+          way / (m.duration * m.duration) * turn * std::sin(at)};
+}
+
+std::pair<Cycloid, double> as_a_cam(double t, double from, double to, double way, double speed) {
+  const double T =
+      std::max(2 * way / speed, std::sqrt(2 * std::numbers::pi * way / kMostAcceleration));
+  return {{t, T, from, to}, T};
 }
 
 }  // namespace
 
 std::function<Reference(double, int)> brisk_motion(const Eigen::VectorXd& home,
                                                    const Eigen::VectorXd& reach, std::uint64_t seed,
-                                                   bool sines) {
+                                                   bool training) {
   Random random(seed, 997);
   const auto of_joint = [](auto all) {
     return [all](double t, int i) { return all[static_cast<std::size_t>(i)](t); };
   };
-  if (sines) return of_joint(drawn_sines(home, reach, random));
-  return of_joint(drawn_moves(home, reach, random));
+  if (!training) return of_joint(drawn_moves<MinimumJerk>(home, reach, random, as_a_hand));
+  if (seed % 2 == 0) return of_joint(drawn_sines(home, reach, random));
+  return of_joint(drawn_moves<Cycloid>(home, reach, random, as_a_cam));
 }
 
 Scenario touched_wallmobot3(TouchKind kind, std::uint64_t seed) {

@@ -40,11 +40,11 @@ struct Touch {
 };
 
 /// A motion for studies, quick as that of a working arm, about `home` by up to `reach` [rad or m]
-/// of each joint: at up to 2 rad/s, from place to place by minimum jerk with rests of 0.2 to 1 s;
-/// or, so that detectors are not trained on what they are tried on, by sums of two sines.
+/// of each joint: at up to 2 rad/s, from place to place by minimum jerk with rests of 0.2 to 1 s.
+/// For training otherwise: by sines of acceleration, and for every other seed by sums of two sines.
 std::function<Reference(double, int)> brisk_motion(const Eigen::VectorXd& home,
                                                    const Eigen::VectorXd& reach, std::uint64_t seed,
-                                                   bool sines);
+                                                   bool training);
 
 /// Touches of one kind, one after the other, at random times, directions and sizes within the
 /// ranges of TouchKind, all between `from` and `until` [s]; 1 to 2 s apart, clampings 2 to 3 s.

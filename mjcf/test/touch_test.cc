@@ -86,10 +86,10 @@ TEST(WithTouches, ContactIsWhereABlowOrAClampingActsAndNotAPush) {
 
 TEST(BriskMotion, IsQuickButNoQuickerThanItSays) {
   const Eigen::Vector3d home(0.4, -1, 0), reach(0.8, 0.3, 0.5);
-  for (const bool sines : {false, true}) {
+  for (const bool training : {false, true}) {
     double fastest = 0, hardest = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      const auto motion = brisk_motion(home, reach, seed, sines);
+      const auto motion = brisk_motion(home, reach, seed, training);
       constexpr double h = 1e-5;
       for (double t = 0.0123; t < 29; t += 0.05) {
         for (int i = 0; i < 3; ++i) {
