@@ -44,11 +44,12 @@ class Drivetrain {
   // Parts of h [s] in which a spring's fastest oscillation turns by 0.2 rad at most, and friction
   // takes half of a link's speed.
   int parts(const P& plant, double h) const {
-    const auto inertia = plant.inertia().diagonal().array();
+    const Vector inertia = plant.inertia().diagonal();
     double rate = 0;
-    if (elastic()) rate = std::sqrt((K_.array() * (1 / R_.array() + 1 / inertia)).maxCoeff()) / 0.2;
-    const auto slope = coulomb_.array() * (1 + d_.stribeck) / kFrictionTurns + viscous_.array();
-    rate = std::max(rate, (1 + d_.drift) * (slope / inertia).maxCoeff() / 0.5);
+    if (elastic())
+      rate = std::sqrt((K_.array() * (1 / R_.array() + 1 / inertia.array())).maxCoeff()) / 0.2;
+    const Vector slope = coulomb_ * (1 + d_.stribeck) / kFrictionTurns + viscous_;
+    rate = std::max(rate, (1 + d_.drift) * slope.cwiseQuotient(inertia).maxCoeff() / 0.5);
     return std::clamp(static_cast<int>(std::ceil(h * rate)), 1, 100);
   }
 
