@@ -16,6 +16,7 @@
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/run/recording_flags.h"
+#include "bench/score/degradation.h"
 #include "bench/score/suite.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
@@ -184,7 +185,12 @@ int score(const CLI::App& app, const Flags& f) {
   fmt::print(tables, "{}", format_table(rows, format, also));
   if (format == TableFormat::kText) fmt::print(tables, "\n{}", table_legend(rows, also));
   if (out) {
-    out->write(results_json(rows, provenance("run " + all.runs.front().group)));
+    const std::string degraded = describe({f.sensors, f.error, f.recording.drives});
+    const std::string run = f.scenario.empty()
+                                ? "recordings: " + all.runs.front().group
+                                : fmt::format("seed {}{}{}", f.sensors.seed,
+                                              degraded.empty() ? "" : "\ndegraded: ", degraded);
+    out->write(results_json(rows, provenance(run)));
     out->commit();
   }
   const bool good =

@@ -41,7 +41,7 @@ void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r)
       ->type_name("NAME|FILE");
   list("--sensors", s, "their faults: velocity_noise=1e-3,latency=0.002,dropped=0.01,..");
   list("--loadcell", s.loadcell, "faults of the loadcells, like noise=1,offset=5 [N]");
-  list("--model_error", e, "what estimators do not know: mass=1.05,com=0.01,friction=2,..");
+  list("--model_error", e, "what estimators do not know: mass=1.05,..; --drives: stiffness=200,..");
   list("--drives", r.drives, "elastic joints and what rubs in them: stiffness=300,coulomb=0.01,..");
   app.get_option("--drives")->group("");  // the help fits a screen: bench/score/README.md
   app.add_option("--velocity_noise", s.velocity_noise, "the same as in --sensors [rad/s]")

@@ -5,12 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 #include <tuple>
 
 #include "bench/roster/specification.h"
 #include "mjcf/import/json_object.h"
+#include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -231,6 +233,11 @@ void read_degradation(const std::string& path, Degradation& d) {
     d = named.degradation;
     d.sensors.seed = seed;
     return;
+  }
+  if (path.find_first_of("./") == std::string::npos && !std::filesystem::exists(path)) {
+    std::vector<std::string> known;
+    for (const NamedDegradation& named : named_degradations()) known.push_back(named.name);
+    throw unknown("degradation", path, known);
   }
   const Json json = read_json(path, true);
   try {

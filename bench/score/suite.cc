@@ -92,13 +92,12 @@ const Trace& Suite::ideal(const Entry& e) {
   const auto it = ideal_.find(key);
   if (it != ideal_.end()) return it->second;
   const Scenario& s = e.scenario();
-  return ideal_
-      .emplace(key, simulate(e.robot().load_for(s, options_.model_error), s, options_.recording,
-                             sensors_for(s, options_.sensors),
-                             e.closed_loop()
-                                 ? e.robot().supervisor(e.estimator(), e.detector(), settings(e))
-                                 : nullptr))
-      .first->second;
+  Trace truth = simulate(
+      e.robot().load_for(s, options_.model_error), s, options_.recording,
+      sensors_for(s, options_.sensors),
+      e.closed_loop() ? e.robot().supervisor(e.estimator(), e.detector(), settings(e)) : nullptr);
+  const bool elastic = truth.motor_q.cols() > 0;  // encoders are on the motors' side
+  return ideal_.emplace(key, elastic ? measure(truth, {}) : std::move(truth)).first->second;
 }
 
 const Trace& Suite::noisy(const Entry& e) {

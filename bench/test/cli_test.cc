@@ -80,10 +80,14 @@ TEST_F(Programs, UnwritableOutputExitsWith2AndNamesThePath) {
 }
 
 TEST_F(Programs, AFilterThatMatchesNothingExitsWith2) {
-  const Outcome o = run("tauext-bench --benchmark_filter=nosuchthing --benchmark_out=r.json");
+  write("x.lcm", "a log");
+  const Outcome o =
+      run("tauext-bench --benchmark_filter=nosuchthing --benchmark_out=r.json --lcm "
+          "'file://x.lcm?mode=w'");
   EXPECT_EQ(o.code, 2);
   EXPECT_TRUE(o.says("matches nothing")) << o.text;
   EXPECT_FALSE(exists("r.json"));
+  EXPECT_EQ(content("x.lcm"), "a log");
 }
 
 TEST_F(Programs, BenchPrintsATableAndWritesValidJson) {

@@ -27,7 +27,7 @@ class Drivetrain {
  public:
   Drivetrain(const Drives& d, const P& plant, const Eigen::VectorXd& usual_torque, double duration)
       : d_(d), duration_(duration) {
-    if (!d.any()) return;
+    if (d == Drives()) return;
     check(d, plant.dof(), usual_torque);
     const Vector u = usual_torque;
     K_ = d.stiffness * u;

@@ -25,6 +25,8 @@ void check(const Drives& d, int joints, const Eigen::VectorXd& usual_torque) {
     throw std::invalid_argument(
         fmt::format("drives {} must be {:g} to {:g}, not {}", name, least, most, x));
   };
+  if (!d.any())
+    throw std::invalid_argument("drives: the others want stiffness, coulomb or viscous");
   require("stiffness [u/rad]", d.stiffness, 0, 1e6);
   require("rotor [u s^2/rad]", d.rotor, 1e-6, 10);
   require("damping [1]", d.damping, 0, 2);

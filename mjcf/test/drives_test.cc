@@ -220,6 +220,8 @@ TEST(Drives, OutOfRangeIsAnErrorThatNamesIt) {
   EXPECT_NE(error({.coulomb = -1}).find("drives coulomb"), std::string::npos);
   EXPECT_NE(error({.stiffness = 2e6}).find("drives stiffness [u/rad] must be 0 to 1e+06"),
             std::string::npos);
+  EXPECT_NE(error({.rotor = 1}).find("the others want stiffness, coulomb or viscous"),
+            std::string::npos);
   EXPECT_NE(error({.stiffness = 1, .rotor = 0}).find("drives rotor"), std::string::npos);
   EXPECT_NE(error({.viscous = 1, .drift = 2}).find("drives drift"), std::string::npos);
 }

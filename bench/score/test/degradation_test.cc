@@ -115,6 +115,11 @@ TEST_F(DegradationFile, SaysWhatIsWrongAndKnowsBetter) {
               read_degradation("/nowhere/x.json", d);
             }),
             "/nowhere/x.json: No such file or directory");
+  EXPECT_EQ(error_of([] {
+              Degradation d;
+              read_degradation("ligth", d);
+            }),
+            "unknown degradation 'ligth'; known: light, typical, hard");
 }
 
 TEST_F(DegradationFile, ABadOneChangesNothing) {

@@ -31,6 +31,21 @@ TEST(Suite, TheTruthScoresExactlyZeroOnEveryScenario) {
   }
 }
 
+// encoders see the motors, whether or not sensors have faults
+TEST(Suite, ElasticDrivesAreSeenThroughTheMotors) {
+  SuiteOptions ideal{.recording = {.drives = {.stiffness = 200}}};
+  SuiteOptions faulty = ideal;
+  faulty.sensors.velocity_noise = 1e-12;
+  const Entry entry("wallmobot3", "step", "mo2", "");
+  const double rigid = *suite().score(entry).get(Metric::kRmse);
+  const double rmse = *Suite(ideal).score(entry).get(Metric::kRmse);
+  EXPECT_NEAR(*Suite(faulty).score(entry).get(Metric::kRmse), rmse, 1e-6 * rmse);
+  EXPECT_GT(rmse, 2 * rigid) << "links swing behind their springs";
+  EXPECT_NEAR(*Suite(ideal).score(entry).get(Metric::kNoise),
+              *suite().score(entry).get(Metric::kNoise), 0.05)
+      << "which is none of the sensors' noise";
+}
+
 // mo2's: what its torque error means through MuJoCo's Jacobian
 TEST(Suite, TheForceIsExactForTheTruthAndAsGoodAsTheTorqueElse) {
   const Score truth = suite().score({"wallmobot3", "push", "truth", ""});
