@@ -13,13 +13,16 @@
 #include <vector>
 
 #include "bench/logs/read_log.h"
+#include "bench/program/interrupt.h"
 #include "bench/program/program.h"
 #include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/study/calibration.h"
-#include "bench/study/detection_report.h"
-#include "bench/study/detection_study.h"
+#include "bench/study/detection/calibration.h"
+#include "bench/study/detection/detection_report.h"
+#include "bench/study/detection/detection_study.h"
+#include "bench/study/detection/study_parts.h"
+#include "bench/study/detection/tuned.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/known.h"
@@ -33,12 +36,13 @@ using namespace tauext;
 struct Flags {
   study::StudyOptions study;
   study::CalibrationOptions calibration;
-  std::vector<std::string> logs;  // to calibrate from
-  std::string channel, columns, lock, calibrate_to, thresholds, out, format = "text";
-  bool list = false;
+  std::vector<std::string> logs;   // to calibrate from
+  std::vector<std::string> parts;  // of a study
+  std::string channel, columns, lock, calibrate_to, thresholds, out, shard, format = "text";
+  bool list = false, quick = false;
 };
 
-void list_conditions(const std::string& robot_name) {
+int list_conditions(const std::string& robot_name) {
   const study::StudyRuns& runs = study::touched_runs(robot_name);
   TableWriter table({{"condition", "", true}, {"what is so", "", true}});
   for (const study::Condition& c : runs.conditions) {
@@ -48,20 +52,23 @@ void list_conditions(const std::string& robot_name) {
                                                           : "")});
   }
   fmt::print("{}\n{}", table.format(), list_fields(&robot(runs.robot)));
+  return kGood;
 }
 
-// @param condition that is trained on; "": what --train says, or those of the robot
-Thresholds calibrated(const Flags& f, const std::string& condition = "") {
-  Progress progress(condition.empty() ? "calibrating" : "calibrating on " + condition);
+study::CalibrationOptions calibration_of(const Flags& f) {
   study::CalibrationOptions o = f.calibration;
-  if (!condition.empty()) o.conditions = {condition};
   o.robot = f.study.robot;
   o.estimators = f.study.estimators;
   o.detectors = f.study.detectors;
   o.threads = f.study.threads;
-  o.progress = progress.callback();
-  return study::calibrate(o);
+  return o;
 }
+
+constexpr const char* kOneRecording =
+    "With one recording nobody can say whether these thresholds hold on another.\n";
+constexpr const char* kHeldOutLegend =
+    "\n{}alarms: recordings in which the thresholds of all others would mark (the metric by which "
+    "`clamping` weighs the joints has seen all of them).\n";
 
 // from recordings without contact; says whether these thresholds would have held
 Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
@@ -81,10 +88,7 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
     recordings.push_back({path, std::move(log.trace)});
   }
   Progress progress("calibrating");
-  study::CalibrationOptions o = f.calibration;
-  o.estimators = f.study.estimators;
-  o.detectors = f.study.detectors;
-  o.threads = f.study.threads;
+  study::CalibrationOptions o = calibration_of(f);
   o.progress = progress.callback();
   std::vector<study::HeldOut> held_out;
   const Thresholds thresholds = study::calibrate_on(r, recordings, o, held_out);
@@ -94,104 +98,118 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   std::FILE* const to = f.calibrate_to == "-" ? stderr : stdout;
   fmt::print(to, "trained on {}, margin {:g}\n", printable(thresholds.trained_on),
              thresholds.margin);
-  if (held_out.empty()) {
-    fmt::print(to, "With one recording nobody can say whether these thresholds hold on another.\n");
-  } else {
-    fmt::print(to,
-               "\n{}alarms: recordings in which the thresholds of all others would mark (the "
-               "metric by which "
-               "`clamping` weighs the joints has seen all of them).\n",
-               table.format());
-  }
+  fmt::print(to, "{}",
+             held_out.empty() ? kOneRecording : fmt::format(kHeldOutLegend, table.format()));
   return thresholds;
 }
 
-// what was counted, and of thresholds where they come from
-struct Studied {
-  std::vector<study::Cell> cells;
-  Thresholds thresholds;
-
-  // these conditions by thresholds of their own
-  void add(study::StudyOptions o, const std::vector<std::string>& conditions, const Thresholds& t) {
-    if (conditions.empty()) return;
-    Progress progress("studying");
-    o.progress = progress.callback();
-    o.conditions = conditions;
-    std::vector<study::Cell> more = study::detection_study(o, t);
-    std::move(more.begin(), more.end(), std::back_inserter(cells));
-    thresholds.margin = t.margin;
-    thresholds.trained_on += (thresholds.trained_on.empty() ? "" : "; ") + t.trained_on;
-  }
-};
-
-Studied studied(const Flags& f) {
-  const study::StudyRuns& runs = study::touched_runs(f.study.robot);
-  std::vector<std::string> together;
-  std::vector<std::string> alone;  // each by itself
-  for (const std::string& name : study::chosen_conditions(runs, f.study.conditions, runs.usual)) {
-    const bool itself = f.thresholds.empty() && f.calibration.conditions.empty() &&
-                        study::condition(runs, name).trains_itself;
-    (itself ? alone : together).push_back(name);
-  }
-  Studied all;
-  if (!f.thresholds.empty()) {
-    all.add(f.study, together, read_thresholds(f.thresholds));
-  } else if (!together.empty()) {
-    all.add(f.study, together, calibrated(f));
-  }
-  for (const std::string& name : alone) all.add(f.study, {name}, calibrated(f, name));
-  return all;
-}
-
-// an unwritable path should not cost a run
-void require_writable(const std::string& path) {
-  const AtomicFile probe(path);
+// of the file; or trained, if nothing else is said as these conditions want it
+Thresholds thresholds_of(const Flags& f, const std::vector<std::string>& conditions) {
+  if (!f.thresholds.empty()) return read_thresholds(f.thresholds);
+  Progress progress("calibrating");
+  study::CalibrationOptions o = calibration_of(f);
+  o.progress = progress.callback();
+  return o.conditions.empty() ? study::calibrate_for(conditions, o) : study::calibrate(o);
 }
 
 int run_calibration(const Flags& f) {
   if (f.calibrate_to != "-" && !f.calibrate_to.ends_with(".json"))
     throw std::invalid_argument(fmt::format(
         "--calibrate {}: the name of a file of thresholds ends in .json", f.calibrate_to));
-  require_writable(f.calibrate_to);
+  AtomicFile{f.calibrate_to};  // an unwritable path should not cost a run
   bool usable = true;
-  write_thresholds(f.logs.empty() ? calibrated(f) : calibrated_on_logs(f, usable), f.calibrate_to);
+  write_thresholds(f.logs.empty() ? thresholds_of(f, {}) : calibrated_on_logs(f, usable),
+                   f.calibrate_to);
   if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
   return usable ? kGood : kAnswerIsNo;
 }
 
-int run_study(const Flags& f) {
+// the study's table and its file
+void write_study(const Flags& f, const study::StudyAbout& about,
+                 const std::vector<study::Cell>& cells) {
   const TableFormat format = table_format(f.format);
-  study::check_study(f.study);  // before calibration takes its time
-  if (!f.thresholds.empty()) read_thresholds(f.thresholds);
-  if (!f.out.empty()) require_writable(f.out);
-  const auto [cells, thresholds] = studied(f);
   // a table for a program stands alone; so does a study on standard output
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
   fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n",
-             printable(thresholds.trained_on), thresholds.margin, f.study.first_seed);
-  fmt::print(f.out == "-" ? stderr : stdout, "{}",
-             study::format_study(f.study.robot, cells, format));
-  if (f.out.empty()) return kGood;
+             printable(about.trained_on), about.margin, about.plan.at("seed").dump());
+  fmt::print(f.out == "-" ? stderr : stdout, "{}", study::format_study(about.robot, cells, format));
+  if (f.out.empty()) return;
+  const Thresholds t{.trained_on = about.trained_on, .margin = about.margin};
   AtomicFile file(f.out);
-  file.write(study::study_json(f.study.robot, cells, thresholds,
-                               provenance(fmt::format("seeds from {}", f.study.first_seed))));
+  file.write(study::study_json(about.robot, cells, t, about.context));
   file.commit();
-  if (f.out != "-") {
-    fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
+  if (f.out != "-") fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
+}
+
+// unless conditions are named: those of --quick; or those that the thresholds are for
+std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs,
+                                       const std::vector<study::TunedRow>& tuned) {
+  const std::vector<std::string>& otherwise = f.quick ? runs.quick : runs.honest;
+  if (f.quick || f.thresholds.empty())
+    return study::chosen_conditions(runs, f.study.conditions, otherwise);
+  std::vector<std::string> all;
+  for (const study::Condition& c : runs.conditions) {
+    if (study::is_tuned(tuned, robot(runs.robot), c.name)) all.push_back(c.name);
   }
+  return study::chosen_conditions(runs, f.study.conditions, all.empty() ? runs.quick : all);
+}
+
+int run_study(Flags& f) {
+  table_format(f.format);
+  if (f.quick && !f.study.conditions.empty())
+    throw std::invalid_argument("--quick stands for --conditions: not both");
+  if (!f.thresholds.empty()) f.study.tuned = study::read_tuned(f.thresholds).rows;
+  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot), f.study.tuned);
+  study::check_study(f.study);  // before calibration takes its time
+  const bool part = !f.shard.empty();
+  const study::Shard shard = part ? study::shard_of(f.shard) : study::Shard();
+  if (part && (f.out.empty() || f.out == "-"))
+    throw std::invalid_argument("--shard needs --out FILE, to which the part goes");
+  if (!f.out.empty() && !part) AtomicFile{f.out};
+  const Thresholds thresholds = thresholds_of(f, f.study.conditions);
+  study::StudyAbout about = study::about(f.study, thresholds);
+  about.context = provenance(fmt::format("seeds from {}", f.study.first_seed));
+  const study::DetectionStudy study(f.study, thresholds);
+  const Interrupt interrupt;
+  Progress progress("studying");
+  f.study.progress = progress.callback();
+  f.study.stop = [&] { return interrupt.seen(); };
+  if (part) {
+    const bool whole = study::run_part(study, about, shard, f.out, f.study);
+    progress.clear();
+    say(whole ? fmt::format("{}: part {}", f.out, f.shard)
+              : fmt::format("{}: stopped; the same command goes on from here", f.out));
+    return whole ? int{kGood} : kInterrupted;
+  }
+  study::StudySum sum(study.cells());
+  study::run_pieces(study, f.study, sum);
+  progress.clear();
+  const bool whole = sum.pieces() == study.pieces();
+  if (!whole) {
+    const std::string how_far =
+        fmt::format("after {} of {} pieces of work", sum.pieces(), study.pieces());
+    say(fmt::format("stopped {}: what is done so far", how_far));
+    about.context.emplace_back("stopped", how_far);
+  }
+  write_study(f, about, sum.sorted());
+  return whole ? int{kGood} : kInterrupted;
+}
+
+int merge(const Flags& f) {
+  table_format(f.format);
+  if (!f.out.empty()) AtomicFile{f.out};
+  const study::Merged m = study::merge_parts(f.parts);
+  write_study(f, m.about, m.cells);
   return kGood;
 }
 
 int run(const CLI::App& app, Flags& f) {
   f.study.robot = with_lock(f.study.robot, f.lock);
-  if (f.list) {
-    list_conditions(f.study.robot);
-    return kGood;
-  }
+  if (f.list) return list_conditions(f.study.robot);
   const bool studies = f.calibrate_to.empty();
   require_mode(app, studies, "a study, not with --calibrate",
                {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
-                "--clampings", "--regions", "--hours", "--seed"});
+                "--clampings", "--regions", "--hours", "--seed", "--quick", "--shard"});
   require_mode(app, f.thresholds.empty(), "training, not with --thresholds", {"--margin"});
   require_mode(app, f.thresholds.empty() && f.logs.empty(),
                "training on simulated runs, not with --thresholds or recordings",
@@ -225,7 +243,8 @@ void add_flags(CLI::App& app, Flags& f) {
       ->check(not_empty);
   app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
       ->capture_default_str();
-  app.add_option("--thresholds", f.thresholds, "file of --calibrate")
+  app.add_option("--thresholds", f.thresholds,
+                 "file of --calibrate, or of tauext-tune --conditions")
       ->type_name("FILE.json")
       ->check(not_empty);
   app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
@@ -235,10 +254,12 @@ void add_flags(CLI::App& app, Flags& f) {
                  "wallmobot3, another, or a file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock)->group("")->check(not_empty);
-  add_names(app, "--train", f.calibration.conditions, "conditions to train on (see --list)");
-  add_count(app, "--runs", f.calibration.runs, 1, 10000,
-            "training runs of 30 s for each condition");
-  add_names(app, "--conditions", f.study.conditions, "study only these (see --list)");
+  add_names(app, "--train", f.calibration.conditions,
+            "conditions to train on, each in --runs 20 of 30 s");
+  add_count(app, "--runs", f.calibration.runs, 1, 10000, "")->group("");
+  add_names(app, "--conditions", f.study.conditions,
+            "only these (see --list); --quick: good sensors, blows");
+  app.add_flag("--quick", f.quick)->group("");
   add_names(app, "--estimator", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
   add_names(app, "--detector", f.study.detectors, "only these, like high_pass:w=60");
   add_count(app, "--collisions", f.study.blows, 0, 100000,
@@ -250,6 +271,10 @@ void add_flags(CLI::App& app, Flags& f) {
       ->capture_default_str();
   add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
             "seed of the first run; the next runs count up from it");
+  app.add_option("--shard", f.shard,
+                 "do the I-th of N parts, to --out; then: merge PART.. --out FILE")
+      ->type_name("I/N")
+      ->check(not_empty);
   add_count(app, "--jobs", f.study.threads, 0, 1024, "threads; 0: one a core");
   app.add_flag("--list", f.list, "list the conditions and the keys of specifications, and stop");
 }
@@ -266,6 +291,10 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   Flags f;
   add_flags(app, f);
+  CLI::App* const merging = app.add_subcommand("merge", "put the parts of --shard together");
+  merging->group("")->add_option("parts", f.parts, "their files")->required();
+  merging->add_option("--out", f.out, "JSON of it all");
+  merging->add_option("--format", f.format, "of the table");
   keep_freed_memory();
-  return run_program(app, argc, argv, [&] { return run(app, f); });
+  return run_program(app, argc, argv, [&] { return merging->parsed() ? merge(f) : run(app, f); });
 }

@@ -91,11 +91,8 @@ int main(int argc, char** argv) {
   add_recording_flags(app, o.sensors, o.model_error, o.recording);
   std::string scenarios;
   app.add_option("--scenarios", scenarios);
-  const std::vector<const char*> of_scenarios = {
-      "--scenarios",      "--degrade",      "--sensors",
-      "--loadcell",       "--model_error",  "--drives",
-      "--velocity_noise", "--encoder_step", "--loadcell_noise",
-      "--seed",           "--kp",           "--kd"};
+  std::vector<const char*> of_scenarios = recording_flags();
+  of_scenarios.push_back("--scenarios");
   for (const char* flag : of_scenarios) app.get_option(flag)->group("");
   app.add_flag("--list", list, "list robots, scenarios, estimators and detectors, and stop");
   app.footer(

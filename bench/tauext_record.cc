@@ -14,8 +14,9 @@
 #include "bench/run/recording_flags.h"
 #include "bench/run/scenario_file.h"
 #include "bench/run/study_flags.h"
+#include "bench/score/entry.h"
 #include "bench/score/parallel.h"
-#include "bench/study/calibration.h"
+#include "bench/study/detection/calibration.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
@@ -58,7 +59,7 @@ void add_flags(CLI::App& app, Flags& f) {
 }
 
 // What --stop names on this robot: nothing if it is empty.
-Supervisor supervisor_of(const Robot& robot, const std::string& stop) {
+Supervisor supervisor_of(const Robot& robot, const std::string& stop, const Drives& drives) {
   if (stop.empty()) {
     return nullptr;
   }
@@ -71,7 +72,7 @@ Supervisor supervisor_of(const Robot& robot, const std::string& stop) {
     throw std::invalid_argument(
         fmt::format("--stop {}: ESTIMATOR+DETECTOR, like ekf+pan_tompkins", stop));
   }
-  return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1));
+  return robot.supervisor(for_drives(robot, stop.substr(0, plus), drives), stop.substr(plus + 1));
 }
 
 // in the layout that is asked for, or as its name ends
@@ -161,7 +162,7 @@ int run(const CLI::App& app, const Flags& f) {
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   const Scenario& s = scenario_of(r, f.scenario);
   const Sensors sensors = sensors_for(s, f.sensors);
-  const Supervisor supervisor = supervisor_of(r, f.stop);
+  const Supervisor supervisor = supervisor_of(r, f.stop, f.recording.drives);
   const Trace trace =
       measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
   const Trace thin = study::thinned(trace, f.every);

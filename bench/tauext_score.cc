@@ -114,6 +114,7 @@ void require_flags(const CLI::App& app, const Flags& f) {
     throw std::invalid_argument(
         fmt::format("{}: a file of estimates goes with one --log", f.files.front()));
   require_mode(app, !f.ours.empty(), "--estimator", {"--detector", "--thresholds"});
+  require_mode(app, simulated, "--scenario, not with --log", recording_flags());
   if (!f.thresholds.empty() && f.detector.empty())
     throw std::invalid_argument("--thresholds needs a --detector");
   const std::string kind = std::filesystem::path(f.out).extension();

@@ -23,6 +23,7 @@
 #include "bench/seeds/seed_tables.h"
 #include "bench/seeds/seeds.h"
 #include "bench/tune/tune.h"
+#include "bench/tune/tune_conditions.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
@@ -35,6 +36,8 @@ struct Flags {
   std::string columns, channel, format = "text";
   TunedPair pair;
   std::vector<std::string> keys, limits, scenario, logs, test_logs;
+  std::vector<std::string> conditions;  // of the study
+  std::string out;
   int evaluations = 60;
   SuiteOptions suite;
 };
@@ -65,6 +68,12 @@ void add_flags(CLI::App& app, Flags& f) {
   list("--test_log", f.test_logs, "labelled recordings to test on")->type_name("LOG");
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--channel", f.channel)->group("");
+  list("--conditions", f.conditions,
+       "of tauext-detect: tune all pairs for each, or only these estimators..")
+      ->type_name("NAME,..");
+  app.add_option("--out", f.out, "file of pairs and thresholds, of --conditions, to which is added")
+      ->type_name("FILE.json")
+      ->check(not_empty);
   app.add_option("--evaluations", f.evaluations, "that may be made")
       ->check(CLI::Range(3, 100000).description(""))
       ->capture_default_str()
@@ -208,11 +217,21 @@ void require_flags(const Flags& f) {
 }
 
 int run(const CLI::App& app, Flags& f) {
+  require_mode(app, !f.conditions.empty(), "--conditions", {"--out"});
+  if (!f.conditions.empty()) {
+    const char* why = "one pair, not with --conditions";
+    require_mode(app, false, why,
+                 {"--tune", "--minimize", "--limit", "--scenario", "--scenarios", "--seeds",
+                  "--test_seeds", "--log", "--test_log", "--columns", "--channel"});
+    require_mode(app, false, why, recording_flags());
+    return tune_conditions({with_lock(f.robot, f.lock), f.conditions, f.pair.estimator,
+                            f.pair.detector, f.evaluations, f.out, f.format});
+  }
   require_flags(f);
   const TableFormat format = table_format(f.format);
   require_mode(app, f.logs.empty(), "simulated runs, not with --log",
-               {"--scenario", "--scenarios", "--seeds", "--test_seeds", "--sensors", "--loadcell",
-                "--model_error", "--drives"});
+               {"--scenario", "--scenarios", "--seeds", "--test_seeds"});
+  require_mode(app, f.logs.empty(), "simulated runs, not with --log", recording_flags());
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   r.check(f.pair.estimator, f.pair.detector);

@@ -90,10 +90,12 @@ std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> 
 }
 
 double difference(const Trace& a, const Trace& b) {
-  if (a.t != b.t) return std::numeric_limits<double>::infinity();
+  if (a.t != b.t || a.motor_q.cols() != b.motor_q.cols())
+    return std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (const auto of :
-       {&Trace::q, &Trace::qd, &Trace::qdd, &Trace::tau, &Trace::tau_ext, &Trace::friction}) {
+  for (const auto of : {&Trace::q, &Trace::qd, &Trace::qdd, &Trace::tau, &Trace::tau_ext,
+                        &Trace::friction, &Trace::motor_q, &Trace::motor_qd}) {
+    if ((a.*of).size() == 0) continue;  // drives are rigid
     const double size = std::max((a.*of).cwiseAbs().maxCoeff(), 1e-3);
     const double off = (a.*of - b.*of).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / size;
     if (!(off <= largest)) largest = off;

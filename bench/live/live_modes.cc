@@ -23,6 +23,7 @@
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
+#include "bench/score/entry.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::live {
@@ -65,8 +66,8 @@ RecordedLog simulate_samples(const Options& o, const Robot& r, const DetectorsOf
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {
-    supervisor =
-        r.supervisor(o.estimators[0], o.detector, {.thresholds = thresholds(o.estimators[0])});
+    supervisor = r.supervisor(for_drives(r, o.estimators[0], o.recording.drives), o.detector,
+                              {.thresholds = thresholds(o.estimators[0])});
   }
   say(fmt::format("simulating {} s of {}", s.duration, s.name));
   const Sensors sensors = sensors_for(s, o.sensors);

@@ -25,8 +25,9 @@ void check(const Options& o, bool listen) {
   const bool receives = listen || !o.subscribe.empty();
   require(!receives || !lcm_url(o.url).starts_with("memq://"),
           "memq:// does not leave a process: nothing can arrive");
-  require(!receives || log_of(lcm_url(o.url)).empty() || !lcm_url(o.url).ends_with("mode=w"),
-          fmt::format("--lcm {}: what is read must not be written; leave mode=w out", o.url));
+  const std::string url = lcm_url(o.url);
+  require(!receives || log_of(url).empty() || url.find("mode=") == url.npos,
+          fmt::format("--lcm {}: a log that is read has no mode; leave it out", o.url));
   const int sources = listen + !o.scenario.empty() + !o.from.empty() + !o.subscribe.empty();
   require(sources == 1, "exactly one of --scenario, --from, --subscribe and --listen is required");
   require(o.thresholds.empty() || !o.detector.empty(), "--thresholds goes with --detector");

@@ -15,5 +15,7 @@ enum ExitCode : int {
   kInconclusive = 4,  ///< of tauext-gate: too noisy to say
   kLessAccurate = 5,  ///< of tauext-gate: an estimate is less accurate
 };
+/// Exit code after Ctrl-C or kill, where what was done until then is kept.
+inline constexpr int kInterrupted = 130;
 
 }  // namespace tauext

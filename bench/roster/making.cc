@@ -44,6 +44,19 @@ std::optional<double> take_bandwidth(Specification& s) {
   return w;
 }
 
+std::vector<std::string> specifications_of(const std::vector<TrainedPart>& parts,
+                                           const Specification& whole) {
+  std::vector<std::string> all;
+  for (const TrainedPart& part : parts) {
+    all.push_back(part.name);
+    for (const auto& [key, value] : whole.keys) {
+      if (key.starts_with(part.prefix))
+        all.back() += fmt::format(":{}={}", key.substr(part.prefix.size()), value);
+    }
+  }
+  return all;
+}
+
 FieldHelp bandwidth_help() {
   return {"bandwidth", "rad/s", range_of(kLeastBandwidth, kMostBandwidth),
           "larger is faster, noisier; sets the others", ""};

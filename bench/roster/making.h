@@ -58,17 +58,26 @@ concept OfTrainedParts = requires(typename D::Parameters p) {
   p.clamping.threshold;
 };
 
+// a detector whose thresholds another one takes, and what stands before its keys there
+struct TrainedPart {
+  std::string name, prefix;
+};
+
 // the detectors whose thresholds it takes
 template <class D>
-std::vector<std::string> trained_parts_of() {
+std::vector<TrainedPart> trained_parts_of() {
   if constexpr (OfTrainedParts<D>) {
-    return {PanTompkins<D::kDof>::kName, Clamping<D::kDof>::kName};
+    return {{PanTompkins<D::kDof>::kName, "collision."}, {Clamping<D::kDof>::kName, "clamping."}};
   } else if constexpr (CalibratableDetector<D>) {
-    return {D::kName};
+    return {{D::kName, ""}};
   } else {
     return {};
   }
 }
+
+// their specifications, with the keys that are theirs
+std::vector<std::string> specifications_of(const std::vector<TrainedPart>& parts,
+                                           const Specification& whole);
 
 // times what the torques in detectors' defaults are right for this arm
 template <int N>
@@ -204,7 +213,7 @@ struct DetectorEntry {
   Make<double> make;
   Make<Pack<kRuns>> make_runs;
   std::vector<FieldHelp> fields;
-  std::vector<std::string> trained_parts;
+  std::vector<TrainedPart> trained_parts;
   std::optional<Calibration> calibration;
 };
 

@@ -107,7 +107,8 @@ class Robot {
   virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
   virtual std::vector<std::string> calibratable()
       const = 0;  ///< detectors with thresholds from data
-  /// The detectors whose thresholds one takes: itself, those that it is made of, or none.
+  /// The specifications of the detectors whose thresholds one takes: itself, those that it is made
+  /// of, or none.
   virtual std::vector<std::string> trained_parts(std::string_view detector) const = 0;
 
   /// What can be set in an estimator or a detector.

@@ -128,7 +128,8 @@ class RobotOf final : public Robot {
     return names(detectors_, [](const auto& d) { return d.calibration.has_value(); });
   }
   std::vector<std::string> trained_parts(std::string_view detector) const override {
-    return find(detectors_, "detector", detector).trained_parts;
+    const Specification s = parse_specification(detector);
+    return specifications_of(find(detectors_, "detector", s.name).trained_parts, s);
   }
   std::vector<FieldHelp> estimator_fields(std::string_view name) const override {
     return find(estimators_, "estimator", name).fields;

@@ -18,7 +18,8 @@ namespace {
 
 using Json = JsonObject::Json;
 
-constexpr const char* kFormat = "tauext-thresholds-1";
+// the second has sets for one condition of the study
+constexpr const char *kFormat = "tauext-thresholds-1", *kOfConditions = "tauext-thresholds-2";
 
 Json to_json(const Trained& t) {
   Json j;
@@ -59,6 +60,7 @@ ThresholdSet set_of(const Json& j) {
   set.robot = j.at("robot").get<std::string>();
   set.velocity_noise = j.at("velocity_noise_rad_s").get<double>();
   set.fingerprint = j.value("arm", "");
+  set.condition = j.value("condition", "");
   // an arm goes by its fingerprint: its file may have been elsewhere, and is not looked for
   const Robot* const known = set.fingerprint.empty() ? &robot(set.robot) : nullptr;
   int dof = known != nullptr ? known->dof() : 0;
@@ -74,10 +76,12 @@ ThresholdSet set_of(const Json& j) {
 }
 
 // of this robot as it is now; null if there is none
-const ThresholdSet* set_for(const Thresholds& t, const Robot& r, double velocity_noise) {
-  if (const ThresholdSet* const set = t.of(r.name(), velocity_noise, r.fingerprint())) return set;
+const ThresholdSet* set_for(const Thresholds& t, const Robot& r, double velocity_noise,
+                            const std::string& condition) {
+  if (const ThresholdSet* const set = t.of(r.name(), velocity_noise, r.fingerprint(), condition))
+    return set;
   for (const ThresholdSet& s : t.sets) {
-    if (s.robot != r.name()) continue;
+    if (s.robot != r.name() || s.fingerprint == r.fingerprint()) continue;
     throw std::runtime_error(
         fmt::format("{}: they are of another arm than {} is now; make them again with "
                     "tauext-detect --calibrate",
@@ -93,7 +97,9 @@ std::set<std::string> pairs_of(const Thresholds& t) {
     for (const auto& [estimator, detectors] : s.by_estimator) {
       std::vector<std::string> names;
       for (const auto& [detector, values] : detectors) names.push_back(detector);
-      pairs.insert(fmt::format("{}/{}+{}", s.robot, estimator, fmt::join(names, "|")));
+      pairs.insert(fmt::format("{}{}/{}+{}", s.robot,
+                               s.condition.empty() ? "" : " in " + s.condition, estimator,
+                               fmt::join(names, "|")));
     }
   }
   return pairs;
@@ -101,17 +107,21 @@ std::set<std::string> pairs_of(const Thresholds& t) {
 
 }  // namespace
 
-void write_thresholds(const Thresholds& t, const std::string& path) {
+std::string thresholds_json(const Thresholds& t, const Json& more) {
   Json j;
-  j["format"] = kFormat;
+  const bool of_conditions = std::any_of(
+      t.sets.begin(), t.sets.end(), [](const ThresholdSet& s) { return !s.condition.empty(); });
+  j["format"] = of_conditions ? kOfConditions : kFormat;
   j["trained_on"] = t.trained_on;
   j["margin"] = t.margin;
   j["units"] = "each detector's statistic, see estimators/detectors/; one value per joint";
+  j.update(more.is_null() ? Json::object() : more);
   j["sets"] = Json::array();
   for (const ThresholdSet& s : t.sets) {
     Json set;
     set["robot"] = s.robot;
     if (!s.fingerprint.empty()) set["arm"] = s.fingerprint;
+    if (!s.condition.empty()) set["condition"] = s.condition;
     set["velocity_noise_rad_s"] = s.velocity_noise;
     for (const auto& [estimator, detectors] : s.by_estimator) {
       for (const auto& [detector, values] : detectors) {
@@ -120,8 +130,12 @@ void write_thresholds(const Thresholds& t, const std::string& path) {
     }
     j["sets"].push_back(set);
   }
+  return j.dump(2) + "\n";
+}
+
+void write_thresholds(const Thresholds& t, const std::string& path, const Json& more) {
   AtomicFile file(path);
-  file.write(j.dump(2) + "\n");
+  file.write(thresholds_json(t, more));
   file.commit();
 }
 
@@ -135,7 +149,7 @@ Thresholds read_thresholds(const std::string& path) {
   }
   try {
     const Json format = j.is_object() ? j.value("format", Json()) : Json();
-    if (format != kFormat)
+    if (format != kFormat && format != kOfConditions)
       throw std::runtime_error(
           fmt::format("\"format\" is {}, not \"{}\"; write it with tauext-detect --calibrate",
                       format.dump(), kFormat));
@@ -158,32 +172,31 @@ Thresholds read_thresholds(const std::string& path) {
 
 DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name,
                                double velocity_noise, const std::string& estimator,
-                               const std::string& detector) {
+                               const std::string& detector, const std::string& condition) {
   if (t.sets.empty() || detector.empty()) return {};
-  const std::string name(name_of_specification(detector));
   const Robot& r = robot(robot_name);
-  const std::vector<std::string> parts = r.trained_parts(name);
+  const std::vector<std::string> parts = r.trained_parts(detector);
   if (parts.empty()) return {};
   DetectorThresholds known;
-  if (const ThresholdSet* const set = set_for(t, r, velocity_noise)) {
+  if (const ThresholdSet* const set = set_for(t, r, velocity_noise, condition)) {
     const auto behind = set->by_estimator.find(estimator);
     for (const std::string& part : parts) {
       if (behind == set->by_estimator.end()) break;
-      const auto own = behind->second.find(part == name ? detector : part);
+      const auto own = behind->second.find(part);
       if (own == behind->second.end()) continue;
       if (own->second.threshold.size() != r.dof())
         throw std::runtime_error(fmt::format("{}: {} numbers for {} joints", t.path,
                                              own->second.threshold.size(), r.dof()));
-      known[part] = own->second;
+      known[std::string(name_of_specification(part))] = own->second;
     }
   }
   if (known.size() == parts.size()) return known;
-  throw std::invalid_argument(
-      fmt::format("{}: has no thresholds for {}/{}+{}{}, it has those of {}; tauext-detect "
-                  "--calibrate makes more",
-                  t.path, robot_name, estimator, detector,
-                  parts.front() == name ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
-                  fmt::join(pairs_of(t), ", ")));
+  throw std::invalid_argument(fmt::format(
+      "{}: has no thresholds for {}/{}+{}{}, it has those of {}; tauext-detect "
+      "--calibrate makes more",
+      t.path, robot_name + (condition.empty() ? "" : " in " + condition), estimator, detector,
+      parts.front() == detector ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
+      fmt::join(pairs_of(t), ", ")));
 }
 
 }  // namespace tauext

@@ -27,9 +27,10 @@ struct DetectorSettings {
 
 /// Thresholds of one robot behind sensors of one quality, by estimator.
 struct ThresholdSet {
-  std::string robot;                                       ///< its name
-  std::string fingerprint;                                 ///< Robot::fingerprint()
-  double velocity_noise = 0;                               ///< [rad/s] of the training traces
+  std::string robot;          ///< its name
+  std::string fingerprint;    ///< Robot::fingerprint()
+  double velocity_noise = 0;  ///< [rad/s] of the training traces
+  std::string condition;      ///< of the study that it is for alone; "" for any
   std::map<std::string, DetectorThresholds> by_estimator;  ///< by specification
 };
 
@@ -43,15 +44,22 @@ struct Thresholds {
   /// The set of this robot for sensors of this quality: the least noisy one that is as noisy, or
   /// else the noisiest. Null if there is none of this robot.
   /// @param fingerprint Robot::fingerprint(); a robot that has one goes by it, whatever its name
+  /// @param condition of the study: a set that is for this one alone comes before any other
   const ThresholdSet* of(const std::string& robot, double velocity_noise,
-                         const std::string& fingerprint = "") const;
+                         const std::string& fingerprint = "",
+                         const std::string& condition = "") const;
 };
 
 inline const ThresholdSet* Thresholds::of(const std::string& robot, double velocity_noise,
-                                          const std::string& fingerprint) const {
+                                          const std::string& fingerprint,
+                                          const std::string& condition) const {
   const ThresholdSet* best = nullptr;
   for (const ThresholdSet& s : sets) {
     if (s.fingerprint != fingerprint || (fingerprint.empty() && s.robot != robot)) continue;
+    if (!s.condition.empty()) {
+      if (s.condition == condition) return &s;
+      continue;
+    }
     const bool enough = s.velocity_noise >= velocity_noise;
     const bool had_enough = best != nullptr && best->velocity_noise >= velocity_noise;
     const bool better =

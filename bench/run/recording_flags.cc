@@ -13,6 +13,21 @@
 
 namespace tauext {
 
+const std::vector<const char*>& recording_flags() {
+  static const std::vector<const char*> all = {"--degrade",
+                                               "--sensors",
+                                               "--loadcell",
+                                               "--model_error",
+                                               "--drives",
+                                               "--velocity_noise",
+                                               "--encoder_step",
+                                               "--loadcell_noise",
+                                               "--seed",
+                                               "--kp",
+                                               "--kd"};
+  return all;
+}
+
 void add_recording_flags(CLI::App& app, Sensors& s, ModelError& e, Recording& r) {
   const auto list = [&](const char* name, auto& fields, const char* help) {
     app.add_option_function<std::vector<std::string>>(

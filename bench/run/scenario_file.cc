@@ -199,7 +199,7 @@ Scenario scenario_of(const Json& json, const std::string& where, const Robot& ro
     } catch (const std::invalid_argument& e) {
       refuse("{}: degrade: {}", of.where(), e.what());
     }
-    if (d.drives.any())
+    if (d.drives != Drives())
       refuse("{}: degrade: drives are the robot's, not the scenario's: --drives", of.where());
     s.sensors = d.sensors;
     s.model_error = d.model_error;

@@ -174,8 +174,9 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
         "--equal-bandwidth and --pareto bring their own sensors: they take no faults and no "
         "--seed");
   }
-  if (others && (!suite.thresholds.sets.empty() || suite.recording.Kp || suite.recording.Kd)) {
-    throw std::invalid_argument("a study takes no --thresholds, --kp and --kd");
+  const Recording& r = suite.recording;
+  if (others && (!suite.thresholds.sets.empty() || r.Kp || r.Kd || r.drives != Drives())) {
+    throw std::invalid_argument("a study takes no --thresholds, --drives, --kp and --kd");
   }
   AtomicFile file(f.out.value_or("-"));  // an unwritable path should not cost a run
   if (!f.seeds.empty()) file.write(run_seeds(f, suite));

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <regex>
 #include <stdexcept>
 #include <vector>
 
@@ -188,14 +187,12 @@ void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Rep
 
 // that the filter selects something, before any file is written
 void require_match(const Rows& rows) {
-  std::string filter = benchmark::GetBenchmarkFilter();
-  if (filter.empty() || filter == "all") filter = ".";
+  const std::string filter = benchmark::GetBenchmarkFilter();
   const bool negative = filter.starts_with('-');
-  const std::regex expression(filter.substr(negative ? 1 : 0), std::regex::extended);
-  for (const Row& row : rows) {
-    if (std::regex_search(row.entry.name(), expression) != negative) return;
-  }
-  throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
+  const auto wanted = entry_filter(filter == "all" ? "" : filter.substr(negative ? 1 : 0));
+  if (std::none_of(rows.begin(), rows.end(),
+                   [&](const Row& r) { return wanted(r.entry.name()) != negative; }))
+    throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
 }
 
 // whether everything that was asked for by name ran somewhere; says what did not

@@ -21,7 +21,7 @@ struct Degradation {
 };
 
 /// A combination that has a name: joints as people have measured them, in shares of what a joint is
-/// used to. bench/study/README.md has the sources.
+/// used to. bench/study/detection/README.md has the sources.
 struct NamedDegradation {
   std::string name, description;  ///< a word, and a line
   Degradation degradation;        ///< what is wrong

@@ -92,10 +92,13 @@ const Trace& Suite::ideal(const Entry& e) {
   const auto it = ideal_.find(key);
   if (it != ideal_.end()) return it->second;
   const Scenario& s = e.scenario();
-  Trace truth = simulate(
-      e.robot().load_for(s, options_.model_error), s, options_.recording,
-      sensors_for(s, options_.sensors),
-      e.closed_loop() ? e.robot().supervisor(e.estimator(), e.detector(), settings(e)) : nullptr);
+  Supervisor supervisor;
+  if (e.closed_loop()) {
+    const std::string estimator = for_drives(e.robot(), e.estimator(), options_.recording.drives);
+    supervisor = e.robot().supervisor(estimator, e.detector(), settings(e));
+  }
+  Trace truth = simulate(e.robot().load_for(s, options_.model_error), s, options_.recording,
+                         sensors_for(s, options_.sensors), supervisor);
   const bool elastic = truth.motor_q.cols() > 0;  // encoders are on the motors' side
   return ideal_.emplace(key, elastic ? measure(truth, {}) : std::move(truth)).first->second;
 }

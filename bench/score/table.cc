@@ -192,6 +192,14 @@ std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>
   return out;
 }
 
+std::string percent(double part, double of) {
+  return of == 0 ? "-" : fmt::format("{:.1f}", 100 * part / of);
+}
+
+std::string milliseconds(double s, int digits) {
+  return std::isnan(s) ? "-" : fmt::format("{:.{}f}", 1e3 * s, digits);
+}
+
 std::string list_of_metrics(TableFormat format) {
   TableWriter table({{.title = "key", .left = true},
                      {.title = "column", .left = true},

@@ -29,6 +29,12 @@ std::string format_table(const std::vector<Row>& rows, TableFormat format = Tabl
 /// What the columns of format_table(rows) mean, a line each.
 std::string table_legend(const std::vector<Row>& rows, const std::vector<Metric>& also = {});
 
+/// A share [%] for a table; "-" of nothing.
+std::string percent(double part, double of);
+
+/// A time [s] in milliseconds for a table; "-" for NaN.
+std::string milliseconds(double s, int digits = 0);
+
 /// The list of metrics as a table.
 std::string list_of_metrics(TableFormat format = TableFormat::kMarkdown);
 

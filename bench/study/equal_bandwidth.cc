@@ -14,7 +14,7 @@
 #include "bench/score/metrics.h"
 #include "bench/score/parallel.h"
 #include "bench/score/suite.h"
-#include "bench/study/detection_report.h"
+#include "bench/score/table.h"
 #include "mjcf/record.h"
 
 namespace tauext::study {

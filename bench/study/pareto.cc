@@ -11,7 +11,7 @@
 #include "bench/roster/baselines.h"
 #include "bench/score/metric_list.h"
 #include "bench/score/parallel.h"
-#include "bench/study/detection_report.h"
+#include "bench/score/table.h"
 
 namespace tauext::study {
 namespace {

@@ -10,7 +10,7 @@
 #include "bench/score/degradation.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/suite.h"
-#include "bench/study/detection_report.h"
+#include "bench/score/table.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/record.h"
 

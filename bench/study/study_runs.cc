@@ -27,12 +27,13 @@ Degradation noisy(double velocity_noise) {
   return {.sensors = {.velocity_noise = velocity_noise}};
 }
 
-// what is tried unless others are named are the conditions so far
+// the quick ones are the conditions so far
 void add_honest(StudyRuns& r) {
-  for (const Condition& c : r.conditions) r.usual.push_back(c.name);
+  for (const Condition& c : r.conditions) r.quick.push_back(c.name);
   for (const int every : {1, 4}) {
     const char *of_name = every == 1 ? "" : "_250hz", *at = every == 1 ? "" : "; at 250 Hz";
     for (const auto& [name, description, faults] : named_degradations()) {
+      if (every == 1) r.honest.push_back(name);
       if (every == 1 || faults.drives.elastic())
         r.conditions.push_back(
             {name + of_name, description + at, 0, 0, faults, Motions::kBrisk, every, true});
@@ -259,10 +260,9 @@ Views::Views(std::vector<Trace> truths, std::span<const Job> jobs) {
     seeds_.push_back(sensors_seed(jobs[i]));
     drawn_.push_back(velocity_noise(t.dof(), seeds_.back()));
     forces_.push_back(std::move(t.contact_force));
-    const bool elastic = t.motor_q.cols() > 0;
     readings_.push_back({.t = std::move(t.t),
-                         .q = std::move(elastic ? t.motor_q : t.q),
-                         .qd = std::move(elastic ? t.motor_qd : t.qd),
+                         .q = t.encoder_q(),
+                         .qd = t.encoder_qd(),
                          .tau = std::move(t.tau),
                          .torque_at_instants = t.torque_at_instants,
                          .screws = std::move(t.screws),

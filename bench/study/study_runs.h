@@ -63,7 +63,8 @@ struct StudyRuns {
 
   // of the detection study and of calibration
   std::vector<Condition> conditions;  ///< all that there are
-  std::vector<std::string> usual;     ///< those that are tried unless others are named
+  std::vector<std::string> quick;     ///< those with blows and good sensors
+  std::vector<std::string> honest;    ///< those with joints as people have measured them, at 1 kHz
   std::vector<std::string> training;  ///< conditions for calibration unless others are named
   std::function<Model(const PlantKey&)> model;                         ///< the simulated robot
   std::function<std::shared_ptr<const Robot>(double panel)> believer;  ///< estimators believe in it

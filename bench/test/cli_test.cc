@@ -79,6 +79,21 @@ TEST_F(Programs, UnwritableOutputExitsWith2AndNamesThePath) {
   }
 }
 
+TEST_F(Programs, WhatAStudyOrALogCannotTakeIsRefused) {
+  write("log.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\n0,0,0,0,0,0,0,0,0,0\n");
+  for (const char* command :
+       {"tauext-bench --pareto --drives stiffness=200",
+        "tauext-bench --reliability --degrade light",
+        "tauext-score --log log.csv --robot wallmobot3 --estimator mo1 --degrade hard",
+        "tauext-tune --log log.csv --test_log log2.csv --robot wallmobot3 --estimator mo1 --tune "
+        "bandwidth --kp 9"}) {
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2) << command;
+    EXPECT_TRUE(o.says("a study takes no --thresholds, --drives") || o.says("not with --log"))
+        << command << o.text;
+  }
+}
+
 TEST_F(Programs, AFilterThatMatchesNothingExitsWith2) {
   write("x.lcm", "a log");
   const Outcome o =

@@ -257,7 +257,8 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   refuses("--listen --robot wallmobot3", "--listen shows streams");
   refuses("--listen --duration -1", "--duration -1");
   refuses("--listen --lcm memq://", "memq:// does not leave a process");
-  refuses("--listen --lcm 'file://x.lcm?mode=w'", "what is read must not be written");
+  refuses("--listen --lcm 'file://x.lcm?mode=w'", "a log that is read has no mode");
+  refuses("--listen --lcm 'file://x.lcm?mode=a'", "a log that is read has no mode");
   refuses("--robot wallmobot3 --from x.csv --estimator ekf --sensors dropped=0.1",
           "--sensors goes with --scenario");
   refuses("--robot wallmobot3 --subscribe A --estimator ekf --loop",

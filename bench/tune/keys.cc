@@ -62,6 +62,7 @@ std::vector<TunedKey> keys_of(const std::vector<std::string>& texts, const Tuned
     if (field.unit.empty())
       throw std::invalid_argument(fmt::format(
           "--tune {}: a choice ({}) cannot be tuned; tune with each of them", text, field.range));
+    k.whole = field.unit == "samples";
     const auto set = key_of(d != nullptr ? pair.detector : pair.estimator, k.key);
     k.start = numbers_in(k.key, set.value_or(field.value));
     if (equals != text.npos) {

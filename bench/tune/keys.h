@@ -17,6 +17,7 @@ struct TunedKey {
   double low = 0, high = 0;   ///< [unit] between which it is; of joints, the largest one's
   bool of_detector = false;   ///< else of the estimator
   std::vector<double> start;  ///< [unit] one, or one for each joint
+  bool whole = false;         ///< whether it is a whole number
 
   double largest_start() const;  ///< [unit] of `start`, which is not empty
 };

@@ -86,7 +86,8 @@ class Search {
       const TunedKey& k = o_.keys[i];
       const double factor = std::exp(x[i]) / k.largest_start();
       std::vector<std::string> values;
-      for (const double v : k.start) values.push_back(fmt::format("{:.4g}", v * factor));
+      for (const double v : k.start)
+        values.push_back(fmt::format("{:.4g}", k.whole ? std::round(v * factor) : v * factor));
       std::string& specification = k.of_detector ? pair.detector : pair.estimator;
       specification += fmt::format(":{}={}", k.key, fmt::join(values, "/"));
     }

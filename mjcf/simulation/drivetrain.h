@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -41,16 +42,21 @@ class Drivetrain {
   bool elastic() const { return d_.elastic(); }
   bool any() const { return d_.any(); }
 
-  // Parts of h [s] in which a spring's fastest oscillation turns by 0.2 rad at most, and friction
-  // takes half of a link's speed.
+  // Parts of h [s] in which, where the arm is now, a spring's fastest oscillation turns by 0.2 rad
+  // at most, and friction would take a link's speed in one of them at its first rate.
+  // @throws std::invalid_argument for more of them than anybody waits for
   int parts(const P& plant, double h) const {
-    const Vector inertia = plant.inertia().diagonal();
+    constexpr double kMost = 1000;
+    const Vector mobility = plant.inertia().inverse().diagonal();  // [1/(kg m^2)]
     double rate = 0;
     if (elastic())
-      rate = std::sqrt((K_.array() * (1 / R_.array() + 1 / inertia.array())).maxCoeff()) / 0.2;
+      rate = std::sqrt((K_.array() * (R_.array().inverse() + mobility.array())).maxCoeff()) / 0.2;
     const Vector slope = coulomb_ * (1 + d_.stribeck) / kFrictionTurns + viscous_;
-    rate = std::max(rate, (1 + d_.drift) * slope.cwiseQuotient(inertia).maxCoeff() / 0.5);
-    return std::clamp(static_cast<int>(std::ceil(h * rate)), 1, 100);
+    rate = std::max(rate, (1 + d_.drift) * slope.cwiseProduct(mobility).maxCoeff());
+    if (h * rate <= kMost) return std::max(1, static_cast<int>(std::ceil(h * rate)));
+    throw std::invalid_argument(
+        "drives: springs or friction that take more than 1000 steps in a sample; less stiffness or "
+        "coulomb, or more rotor, helps");
   }
 
   // Springs that hold what this torque of the motors moves with these accelerations.

@@ -10,18 +10,18 @@
 
 namespace tauext {
 
-/// What stands between motors and links, and rubs there, of which no model knows: springs, with the
-/// encoders on the motors' side and the torque sensors on the links', and friction of the links
-/// beside that of the robot's file. u is what a joint is used to (ArmTree::usual_torque), so that
-/// one set of numbers is a small joint's and a large one's; slides have m for rad.
+/// Springs between motors and links, and friction of the links, of which no model knows. Encoders
+/// sit on the motors, torque sensors on the links; this friction is beside that of the robot's
+/// file. u is the torque that a joint is used to (ArmTree::usual_torque), so that one set of
+/// numbers fits small and large joints; for slides read m where it says rad.
 struct Drives {
   double stiffness = 0;   ///< [u/rad] of the spring between motor and link; 0: rigid
-  double rotor = 0.01;    ///< [u s^2/rad] inertia of the motor behind it
-  double damping = 0.05;  ///< [1] of the critical one, of this inertia on the spring
+  double rotor = 0.01;    ///< [u s^2/rad] inertia of the motor
+  double damping = 0.05;  ///< [1] share of the damping that is critical for the motor on its spring
   double coulomb = 0;     ///< [u] dry friction
-  double stribeck = 0;    ///< [1] by which it is more near rest
-  double viscous = 0;     ///< [u s/rad]
-  double drift = 0;  ///< [1] all friction is 1 + drift times itself at first, 1 - drift at last
+  double stribeck = 0;    ///< [1] dry friction near rest is 1 + stribeck times coulomb
+  double viscous = 0;     ///< [u s/rad] viscous friction
+  double drift = 0;       ///< [1] friction goes from 1 + drift times itself to 1 - drift in a run
 
   bool operator==(const Drives&) const = default;
   auto operator<=>(const Drives&) const = default;  // NOLINT(modernize-use-nullptr): not ours
@@ -31,9 +31,9 @@ struct Drives {
   bool any() const { return elastic() || rub(); }            ///< or anything
 };
 
-/// [rad/s] within which dry friction of Drives turns, as tanh(qd / this).
+/// [rad/s] The dry friction of Drives changes its sign as tanh(qd / kFrictionTurns).
 inline constexpr double kFrictionTurns = 0.01;
-/// [rad/s] Stribeck's: at this speed 1/e of what is more near rest is left.
+/// [rad/s] Stribeck speed: 1/e of the additional friction near rest is left at it.
 inline constexpr double kStribeckSpeed = 0.05;
 
 /// How a scenario is run and sampled.

@@ -107,9 +107,12 @@ class Run {
   void push(double h) {
     if (!changes()) return;
     Vector tau_ext = rest_;
-    if (const double f = regions_.is_coupled() ? regions_.push(plant_, t_, h) : pressed_with_;
-        f > 0)
-      tau_ext += regions_.is_coupled() ? regions_.tau_ext_of(plant_, f) : pressed_by_;
+    if (regions_.is_coupled()) {
+      const double f = regions_.push(plant_, t_, h);
+      if (f > 0) tau_ext += regions_.tau_ext_of(plant_, f);
+    } else if (pressed_with_ > 0) {
+      tau_ext += pressed_by_;
+    }
     if (drives_.any()) tau_ext += drives_.push(plant_, t_, h);
     plant_.set_input(drives_.elastic() ? Vector(Vector::Zero(dof())) : motor_, tau_ext);
   }
@@ -259,12 +262,10 @@ class Run {
 
   void ask(const Supervisor& supervisor, int k) {
     const Trace& now = trace_;
-    const bool elastic = drives_.elastic();
     const Sample* const y =
-        stream_.read({now.t[k], elastic ? now.motor_q.col(k) : now.q.col(k),
-                      elastic ? now.motor_qd.col(k) : now.qd.col(k), now.tau.col(k)});
+        stream_.read({now.t[k], now.encoder_q().col(k), now.encoder_qd().col(k), now.tau.col(k)});
     if (y == nullptr || !supervisor(*y)) return;
-    stopped_ = plant_.q();
+    stopped_ = drives_.elastic() ? drives_.theta() : Vector(plant_.q());  // where encoders see it
     trace_.stopped_at = k;
   }
 

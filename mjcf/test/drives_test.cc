@@ -172,6 +172,22 @@ TEST(Drives, AnArmWithSpringsIsMuJoCosWithABodyForEachMotor) {
   EXPECT_GT(largest, 0.01) << "[rad] that springs gave way";
 }
 
+// so many parts of a sample are enough
+TEST(Drives, MoreStepsMakeNoOtherMotion) {
+  const Model arm = simulated(
+      model_of(TwoHinges::arm(false, 0, 0, 0, 0), "<motor joint='a'/><motor joint='b'/>"));
+  Scenario s = quiet();
+  s.duration = 2;
+  s.reference = [](double t, int i) { return sine_motion(0.2, i == 0 ? 4 : 7, t); };
+  for (const Drives& d : {Drives{.coulomb = 0.05, .stribeck = 0.5, .viscous = 0.05},
+                          Drives{.stiffness = 60, .coulomb = 0.05, .stribeck = 0.5}}) {
+    const Trace t = simulate(arm, s, {.drives = d}),
+                finer = simulate(arm, s, {.substeps = 50, .drives = d});
+    EXPECT_LT((t.q - finer.q).cwiseAbs().maxCoeff(), 2e-3 * 0.2);
+    EXPECT_LT((t.qd - finer.qd).cwiseAbs().maxCoeff(), 2e-2 * 1.4);
+  }
+}
+
 // (3) at each sample, with the acceleration of the arm's dynamics, while a controller moves it
 TEST(Drives, TheTruthIsThatOfTheEquationAndTheSameWithoutMuJoCo) {
   const Model arm = load_robot("wallmobot3");
@@ -223,6 +239,8 @@ TEST(Drives, OutOfRangeIsAnErrorThatNamesIt) {
   EXPECT_NE(error({.rotor = 1}).find("the others want stiffness, coulomb or viscous"),
             std::string::npos);
   EXPECT_NE(error({.stiffness = 1, .rotor = 0}).find("drives rotor"), std::string::npos);
+  EXPECT_NE(error({.stiffness = 1e6, .rotor = 1e-6}).find("more than 1000 steps in a sample"),
+            std::string::npos);
   EXPECT_NE(error({.viscous = 1, .drift = 2}).find("drives drift"), std::string::npos);
 }
 

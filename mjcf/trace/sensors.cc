@@ -161,8 +161,7 @@ void SensorStream::take_values(const Sample& truth) {
   const Sample& late = late_at_all ? delayed(s_.latency + s_.tau_latency) : truth;
   for (int j = 0; j < y.q.size(); ++j) {
     y.tau[j] = late.tau[j];
-    const double q = y.q[j];
-    y.q[j] = rounded(q, s_.encoder_step);
+    y.q[j] = rounded(y.q[j], s_.encoder_step);
     if (s_.velocity_noise > 0) {
       const double x = drawn_ == nullptr ? velocity_[j].normal() : (*drawn_)[j][samples_];
       y.qd[j] += s_.velocity_noise * x;
@@ -170,7 +169,7 @@ void SensorStream::take_values(const Sample& truth) {
     if (!(s_.loadcell.ideal() && s_.encoder_step == 0)) {
       y.tau[j] = force(j, y.tau[j] / lever(j, late.q[j])) * lever(j, y.q[j]);
     }
-    if (!s_.torque.ideal()) y.tau[j] = torque(j, y.tau[j], q);
+    if (!s_.torque.ideal()) y.tau[j] = torque(j, y.tau[j], late.q[j]);
     if (s_.loadcell_noise > 0) y.tau[j] += s_.loadcell_noise * torque_[j].normal();
   }
 }
@@ -198,9 +197,7 @@ namespace {
 Trace measure(const Trace& truth, SensorStream stream) {
   Trace m = truth;
   m.motor_q.resize(0, 0), m.motor_qd.resize(0, 0);  // they are what is measured
-  const bool elastic = truth.motor_q.cols() > 0;
-  const Eigen::MatrixXd &q = elastic ? truth.motor_q : truth.q,
-                        &qd = elastic ? truth.motor_qd : truth.qd;
+  const Eigen::MatrixXd &q = truth.encoder_q(), &qd = truth.encoder_qd();
   std::vector<int> kept;
   Sample now;
   for (int k = 0; k < truth.size(); ++k) {

@@ -44,16 +44,19 @@ struct Trace {
   Eigen::MatrixXd friction;           ///< [N m] F of (3) at t_k
   std::vector<double> contact_force;  ///< [N] sum of the normal forces on the arm at t_k
   std::vector<Screw> screws;          ///< of the joints; empty if the robot has none
-  /// [rad] of the motors, behind elastic drives, where encoders are: measure() takes it for q. No
-  /// columns where drives are rigid.
-  Eigen::MatrixXd motor_q;
-  Eigen::MatrixXd motor_qd;      ///< [rad/s] likewise, for qd
+  Eigen::MatrixXd motor_q;       ///< [rad] of the motors behind elastic drives; else no columns
+  Eigen::MatrixXd motor_qd;      ///< [rad/s] likewise
   Eigen::VectorXd usual_torque;  ///< [N m] ArmTree::usual_torque; empty if nobody asked for it
   int stopped_at = -1;           ///< sample at which a supervisor stopped the motor; -1: never
 
   int dof() const { return static_cast<int>(q.rows()); }   ///< joints
   int size() const { return static_cast<int>(t.size()); }  ///< samples
   bool has_truth() const { return tau_ext.cols() > 0; }    ///< whether tau_ext is known
+
+  /// [rad] where the encoders are: on the motors of elastic drives, else on the links.
+  const Eigen::MatrixXd& encoder_q() const { return motor_q.cols() > 0 ? motor_q : q; }
+  /// [rad/s] likewise
+  const Eigen::MatrixXd& encoder_qd() const { return motor_qd.cols() > 0 ? motor_qd : qd; }
 
   /// What an estimator sees of sample k. N must be dof().
   template <int N>

@@ -152,25 +152,16 @@ TEST(SetFields, LimitsAreThoseThatASimulationTakes) {
   const auto simulates = [&usual](const Sensors& s) {
     return error_of([&] { SensorStream(s, 3, {}, usual); });
   };
-  for (const char* item : {"velocity_noise=1e9",
-                           "encoder_step=1",
-                           "loadcell_noise=1e5",
-                           "latency=1",
-                           "tau_latency=1",
-                           "jitter=1",
-                           "dropped=0.99",
-                           "repeated=0.99",
-                           "loadcell.scale=1e3",
-                           "loadcell.offset=-1e6",
-                           "loadcell.hysteresis=1",
-                           "loadcell.nonlinearity=-1",
-                           "loadcell.noise=1e6",
-                           "loadcell.step=1e6",
-                           "loadcell.full_scale=1e6",
-                           "torque.hysteresis=10",
-                           "torque.ripple=10",
-                           "torque.waves=1e5",
-                           "torque.bias=10",
+  for (const char* item : {"velocity_noise=1e9",    "encoder_step=1",
+                           "loadcell_noise=1e5",    "latency=1",
+                           "tau_latency=1",         "jitter=1",
+                           "dropped=0.99",          "repeated=0.99",
+                           "loadcell.scale=1e3",    "loadcell.offset=-1e6",
+                           "loadcell.hysteresis=1", "loadcell.nonlinearity=-1",
+                           "loadcell.noise=1e6",    "loadcell.step=1e6",
+                           "torque.gain=0.9",       "loadcell.full_scale=1e6",
+                           "torque.hysteresis=10",  "torque.ripple=10",
+                           "torque.waves=1e5",      "torque.bias=10",
                            "torque.noise=10"}) {
     Sensors s;
     EXPECT_EQ(error_of([&] { set_fields({item}, s); }), "no error") << item;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/study/detection_study.h"
+#include "bench/study/detection/detection_study.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/study/calibration.h"
-#include "bench/study/detection_report.h"
+#include "bench/study/detection/calibration.h"
+#include "bench/study/detection/detection_report.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/record.h"
 #include "mjcf/scenarios/touch.h"
@@ -98,13 +98,19 @@ TEST(DetectionStudy, OfRegionsCountsTheFirstMarkAndWhatWasPressedUntilThen) {
   RegionTouch touch{.begin = 1};
   Answers answers;
   answers.marks = {{0.5, Contact::kCollision}, {1.011, Contact::kCollision}, {1.02, {}}};
+  answers.rises.resize(kLevels.size());
+  answers.rises.front() = {0.9};
+  answers.rises[kOwnLevel] = {0.5, 1.011};
   RegionCount r;
   count_regions(of, answers, {touch}, force, r);
   EXPECT_EQ(r.found, 1);
   EXPECT_NEAR(r.delays.at(0), 0.011, 1e-12);
-  EXPECT_NEAR(r.until_found.at(0), 100 / 280., 1e-12);
-  EXPECT_NEAR(r.peaks.at(0), 390 / 280., 1e-12);
+  EXPECT_NEAR(r.until_found.at(0), 100 / 280., 0.5001e-5);
+  EXPECT_NEAR(r.peaks.at(0), 390 / 280., 0.5001e-5);
   EXPECT_EQ(r.exceeded(), 0);
+  EXPECT_EQ(r.found_at.front(), 0) << "its rise was before the contact";
+  EXPECT_EQ(r.found_at[kOwnLevel], 1);
+  EXPECT_EQ(r.found_at.back(), 0);
   answers.marks = {{1.3, Contact::kCollision}};  // 0.26 s after the contact
   count_regions(of, answers, {touch}, force, r);
   EXPECT_EQ(r.found, 1);
@@ -135,11 +141,11 @@ TEST(DetectionStudy, HigherThresholdsMarkLess) {
   const Cell& c = cells()[1];
   ASSERT_EQ(c.detector, "high_pass");
   // below some level pushes and blows run into one another
-  for (std::size_t i = 4; i < kLevels.size(); ++i) {
+  for (std::size_t i = kOwnLevel; i < kLevels.size(); ++i) {
     EXPECT_LE(c.detected_at[i], c.detected_at[i - 1]);
     EXPECT_LE(c.alarms_at[i], c.alarms_at[i - 1]);
   }
-  EXPECT_EQ(c.detected_at[4], c.detected) << "level 1 is the detector itself";
+  EXPECT_EQ(c.detected_at[kOwnLevel], c.detected) << "level 1 is the detector itself";
   EXPECT_EQ(c.detected_at.back(), 0);
 }
 

@@ -8,8 +8,8 @@
 
 #include "bench/roster/robots.h"
 #include "bench/score/suite.h"
-#include "bench/study/calibration.h"
-#include "bench/study/detection_study.h"
+#include "bench/study/detection/calibration.h"
+#include "bench/study/detection/detection_study.h"
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
 

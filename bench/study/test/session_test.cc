@@ -16,7 +16,7 @@
 
 #include "bench/roster/robots.h"
 #include "bench/roster/session/listener.h"
-#include "bench/study/study_counts.h"
+#include "bench/study/detection/study_counts.h"
 #include "bench/study/study_runs.h"
 #include "mjcf/trace/random.h"
 

@@ -9,7 +9,7 @@
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/study/calibration.h"
+#include "bench/study/detection/calibration.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::study::test {
@@ -129,7 +129,7 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
   }
   for (const char* robot : {"", TAUEXT_EXAMPLES "/arm6.xml"}) {
     const StudyRuns& runs = touched_runs(robot);
-    EXPECT_EQ(std::count(runs.usual.begin(), runs.usual.end(), "hard"), 0) << "only if asked for";
+    EXPECT_EQ(std::count(runs.quick.begin(), runs.quick.end(), "hard"), 0) << "only if asked for";
     const PlantKey known = plant_of(runs.conditions.front());
     const PlantKey hard = plant_of(condition(runs, "hard"));
     EXPECT_EQ(plant_of(condition(runs, "hard_250hz")), hard) << "the same run, seen less often";

@@ -5,26 +5,19 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/roster/robot.h"
+#include "bench/roster/session/session.h"
 #include "bench/roster/thresholds.h"
+#include "bench/study/detection/training.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext::study {
-
-/// How thresholds are set.
-struct CalibrationOptions {
-  std::string robot;    ///< "" for the first one that has runs
-  double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
-  std::vector<std::string> conditions;   ///< trained on; empty: those that the robot's runs name
-  std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
-  std::vector<std::string> detectors;    ///< with their parts; empty: all that can be calibrated
-  int runs = 20;                         ///< of 30 s for each condition
-  int threads = 0;                       ///< 0: one a core
-  std::function<void(double)> progress;  ///< called with the share that is done; may be empty
-};
 
 /// Sets every calibratable detector's thresholds behind every estimator: `margin` times the largest
 /// statistic of training runs, free motion and slow pushes alone, for each of the study's velocity
@@ -32,17 +25,27 @@ struct CalibrationOptions {
 /// @throws std::invalid_argument for a margin below 1, a robot without runs and unknown names
 Thresholds calibrate(const CalibrationOptions& options);
 
+/// What a study under these conditions needs: of each that trains itself a set for it alone, and,
+/// if there are others or it names none, those of calibrate().
+Thresholds calibrate_for(const std::vector<std::string>& conditions,
+                         const CalibrationOptions& options);
+
+/// Runs that an estimator has seen: of one clock, and the session that has its estimates.
+struct EstimatedRuns {
+  std::span<const Trace> traces;     ///< what it saw
+  std::unique_ptr<Session> session;  ///< of them
+};
+
+/// The same of runs that are there already.
+/// @param batches all of them count
+/// @param options its margin and its only pair
+ThresholdSet calibrate_on(const Robot& robot, std::span<const EstimatedRuns> batches,
+                          const CalibrationOptions& options);
+
 /// A recording in which nothing touches the arm.
 struct FreeRecording {
   std::string name;  ///< for errors
   Trace trace;       ///< what was recorded
-};
-
-/// Whether thresholds hold on what they have not seen; a detector's metric has seen all.
-struct HeldOut {
-  std::string estimator, detector;  ///< specifications
-  int recordings = 0;               ///< that were held out, one by one
-  int alarms = 0;                   ///< of them, where thresholds from all others would have marked
 };
 
 /// The same from recordings, which are all of one set of thresholds; their first kScoreFrom

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/study/calibration.h"
+#include "bench/study/detection/training.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "bench/roster/robots.h"
 #include "bench/score/parallel.h"
 #include "bench/study/study_runs.h"
 
@@ -33,9 +28,8 @@ std::vector<std::string> trained_detectors(const Robot& r, const std::vector<std
   if (asked.empty()) return r.calibratable();
   std::vector<std::string> trained;
   for (const std::string& d : chosen_detectors(r, asked)) {
-    for (const std::string& part : r.trained_parts(name_of(d))) {
-      const std::string& own = part == name_of(d) ? d : part;
-      if (std::count(trained.begin(), trained.end(), own) == 0) trained.push_back(own);
+    for (const std::string& part : r.trained_parts(d)) {
+      if (std::count(trained.begin(), trained.end(), part) == 0) trained.push_back(part);
     }
   }
   return trained;
@@ -53,40 +47,23 @@ Eigen::MatrixXd metric_of(const std::map<int, Eigen::MatrixXd>& covariances,
   return (metric + metric.transpose()) / 2;
 }
 
-// runs as sensors of one quality see them, for one session
-struct Seen {
-  std::size_t set;  // of thresholds
-  const Robot& robot;
-  std::span<const Trace> traces;  // of one clock
-  std::vector<int> runs;          // which ones these are
-  const std::string& name;        // of a recording
-};
-using Look = std::function<void(const Seen&)>;
-
-// where training runs come from, batch by batch
-struct Source {
-  int runs, batches;
-  std::function<void(int batch, const Look& look)> show;
-};
-
 // two passes over the training runs: what the metrics have to undo, then what is the largest
 class Training {
  public:
   Training(const CalibrationOptions& o, const Robot& robot, Source source,
-           const std::vector<double>& velocity_noises, std::string trained_on)
+           const std::vector<Quality>& qualities, std::string trained_on)
       : o_(o), robot_(robot), source_(std::move(source)) {
     if (!(o.margin >= 1))
       throw std::invalid_argument(fmt::format("a margin of {} is below 1", o.margin));
     result_.margin = o.margin;
     result_.trained_on = std::move(trained_on);
     // all places exist before threads write to them
-    for (const double velocity_noise : velocity_noises) {
+    for (const Quality& q : qualities) {
       ThresholdSet set{.robot = robot.name(),
                        .fingerprint = robot.fingerprint(),
-                       .velocity_noise = velocity_noise};
-      for (const std::string& e : chosen_estimators(robot, o.estimators)) {
-        for (const std::string& d : trained_detectors(robot, o.detectors)) set.by_estimator[e][d];
-      }
+                       .velocity_noise = q.velocity_noise,
+                       .condition = q.condition};
+      add_places(set);
       result_.sets.push_back(std::move(set));
     }
   }
@@ -113,10 +90,25 @@ class Training {
   }
 
  private:
+  void add_places(ThresholdSet& set) const {
+    for (const auto& [e, d] : o_.pairs) {
+      for (const std::string& part : trained_detectors(robot_, {d})) set.by_estimator[e][part];
+    }
+    if (!o_.pairs.empty()) return;
+    for (const std::string& e : chosen_estimators(robot_, o_.estimators)) {
+      for (const std::string& d : trained_detectors(robot_, o_.detectors)) set.by_estimator[e][d];
+    }
+  }
+
   template <class Value>
   using ByRun = std::map<const Trained*, std::map<int, Value>>;
 
   void find_metrics() {
+    bool any = false;
+    for_each(result_, [&](const std::string&, const std::string& d, const Trained&) {
+      any = any || robot_.calibration(d).has_metric;
+    });
+    if (!any) return;
     ByRun<Eigen::MatrixXd> covariances;
     pass(0, [&](const Seen& s, const std::string& d, Session& runs, const Trained& to) {
       if (!s.robot.calibration(d).has_metric) return;
@@ -168,10 +160,11 @@ class Training {
   void pass(int number, Visit&& visit) {
     const auto work = [&](int batch) {
       source_.show(batch, [&](const Seen& s) {
-        const std::unique_ptr<Session> session = s.robot.session(s.traces);
+        std::unique_ptr<Session> own;
+        if (s.estimated == nullptr) own = s.robot.session(s.traces);
         for (auto& [e, by_detector] : result_.sets[s.set].by_estimator) {
-          require_estimates(s, e, session->estimate(e));
-          for (auto& [d, trained] : by_detector) visit(s, d, *session, trained);
+          if (own) require_estimates(s, e, own->estimate(e));
+          for (auto& [d, trained] : by_detector) visit(s, d, own ? *own : *s.estimated, trained);
         }
       });
     };
@@ -203,89 +196,14 @@ class Training {
   ByRun<Eigen::VectorXd> largest_;  // [the statistic's unit] joint by joint
 };
 
-void require_free(const FreeRecording& r, const Robot& robot) {
-  const Trace& t = r.trace;
-  const auto fail = [&](const std::string& why) {
-    throw std::invalid_argument(fmt::format("{}: {}", r.name, why));
-  };
-  robot.require_joints(t, r.name);
-  const double length = t.size() == 0 ? 0 : t.t.back() - t.t.front();
-  if (length < 2 * kScoreFrom)
-    fail(fmt::format("{:.3g} s long; {:g} s are needed, of which the first {:g} do not count",
-                     length, 2 * kScoreFrom, kScoreFrom));
-  const auto contact =
-      std::find_if(t.contact.begin(), t.contact.end(), [](auto c) { return c != 0; });
-  if (contact != t.contact.end())
-    fail(
-        fmt::format("something touches at {:g} s, by its column contact; thresholds come from "
-                    "recordings without",
-                    t.t[static_cast<std::size_t>(contact - t.contact.begin())]));
-}
-
 }  // namespace
 
-Thresholds calibrate(const CalibrationOptions& o) {
-  if (o.runs < 1) throw std::invalid_argument("calibration needs at least one run");
-  const StudyRuns& runs = touched_runs(o.robot);
-  const Robot& r = robot(runs.robot);
-  const std::vector<std::string> names = chosen_conditions(runs, o.conditions, runs.training);
-  std::set<double> noises = {1e-4, 1e-3};
-  for (const std::string& name : names)
-    noises.insert(condition(runs, name).degradation.sensors.velocity_noise);
-  const std::vector<double> velocity_noises(noises.begin(), noises.end());
-  std::map<double, std::shared_ptr<const Robot>> believers;
-  for (const std::string& name : names) {
-    const double believed = condition(runs, name).believed;
-    if (!believers.contains(believed)) believers[believed] = runs.believer(believed);
-  }
-  // a batch has runs of one condition
-  const int count = static_cast<int>(names.size()), most = r.runs_at_once();
-  const int batches_of_one = (o.runs + most - 1) / most;
-  const auto show = [&](int batch, const Look& look) {
-    const int which_name = batch % count, from = batch / count * most;
-    const Condition& c = condition(runs, names[static_cast<std::size_t>(which_name)]);
-    const PlantKey plant = plant_of(c);
-    const Model model = runs.model(plant);
-    std::vector<Job> jobs;
-    std::vector<int> which;
-    for (int i = from; i < std::min(from + most, o.runs); ++i) {
-      which.push_back(i * count + which_name);
-      jobs.push_back({plant, TouchKind::kSlowPush, kTrainingSeed + static_cast<std::uint64_t>(i)});
-    }
-    Views views(simulated(runs, jobs, model), jobs);
-    for (std::size_t set = 0; set < velocity_noises.size(); ++set) {
-      Sensors sensors = c.degradation.sensors;
-      sensors.velocity_noise = velocity_noises[set];
-      const std::vector<Trace> seen = views.by(sensors, c.every);
-      look({set, *believers.at(c.believed), seen, which, ""});
-    }
-  };
-  return Training(
-             o, r, {count * o.runs, count * batches_of_one, show}, velocity_noises,
-             fmt::format("{}, {}: {} runs each of free motion and slow pushes, seeds from {} on",
-                         runs.robot, fmt::join(names, ", "), o.runs, kTrainingSeed))
-      .run();
-}
-
-Thresholds calibrate_on(const Robot& r, const std::vector<FreeRecording>& recordings,
-                        const CalibrationOptions& o, std::vector<HeldOut>& held_out) {
-  if (recordings.empty()) throw std::invalid_argument("no recording to calibrate from");
-  double seconds = 0;
-  std::vector<std::string> names;
-  for (const FreeRecording& x : recordings) {
-    require_free(x, r);
-    seconds += x.trace.t.back() - x.trace.t.front() - kScoreFrom;
-    names.push_back(x.name);
-  }
-  const auto show = [&](int i, const Look& look) {
-    const FreeRecording& x = recordings[static_cast<std::size_t>(i)];
-    look({0, r, {&x.trace, 1}, {i}, x.name});
-  };
-  const int count = static_cast<int>(recordings.size());
-  Training training(o, r, {count, count, show}, {0},
-                    fmt::format("{}, {:.0f} s of {}", r.name(), seconds, fmt::join(names, ", ")));
+Thresholds train(const CalibrationOptions& options, const Robot& robot, Source source,
+                 const std::vector<Quality>& qualities, std::string trained_on,
+                 std::vector<HeldOut>* held_out) {
+  Training training(options, robot, std::move(source), qualities, std::move(trained_on));
   Thresholds thresholds = training.run();
-  held_out = training.held_out();
+  if (held_out != nullptr) *held_out = training.held_out();
   return thresholds;
 }
 

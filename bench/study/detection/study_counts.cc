@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/study/study_counts.h"
+#include "bench/study/detection/study_counts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,10 @@ bool belongs_to(double mark, const Touch& touch) {
   return mark >= touch.begin && mark <= touch.end() + metrics::kGrace;
 }
 
+double rounded(double x) {
+  return std::round(x * 1e5) / 1e5;
+}
+
 int count_detected(const std::vector<double>& marks, const std::vector<Touch>& touches) {
   return static_cast<int>(std::count_if(touches.begin(), touches.end(), [&](const Touch& touch) {
     return std::any_of(marks.begin(), marks.end(), [&](double m) { return belongs_to(m, touch); });
@@ -30,7 +34,7 @@ void count_blows(const Answers& answers, const std::vector<Touch>& touches, Cell
     const auto mine = [&](const Mark& m) { return belongs_to(m.t, touch); };
     const auto first = std::find_if(marks.begin(), marks.end(), mine);
     belonging += static_cast<int>(std::count_if(marks.begin(), marks.end(), mine));
-    if (first != marks.end()) cell.delays.push_back(first->t - touch.begin);
+    if (first != marks.end()) cell.delays.push_back(rounded(first->t - touch.begin));
   }
   cell.blows += static_cast<int>(touches.size());
   cell.detected = static_cast<int>(cell.delays.size());
@@ -89,6 +93,16 @@ void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& tou
   }
 }
 
+std::optional<std::size_t> Cell::level_with(double alarms_per_hour) const {
+  std::optional<std::size_t> lowest;
+  if (quiet_samples == 0) return lowest;
+  for (std::size_t l = kLevels.size(); l-- > 0;) {
+    if (alarms_at[l] > alarms_per_hour * hours()) break;
+    lowest = l;
+  }
+  return lowest;
+}
+
 double RegionCount::exceeded() const {
   const auto over =
       std::count_if(until_found.begin(), until_found.end(), [](double share) { return share > 1; });
@@ -108,20 +122,23 @@ void count_regions(const RegionClass& of, const Answers& answers,
     std::size_t end = next;  // of the contact
     while (end > from && force[end - 1] == 0) --end;
     const double last = static_cast<double>(end) * 1e-3 + metrics::kGrace;
-    const auto mark = std::find_if(answers.marks.begin(), answers.marks.end(),
-                                   [&](const Mark& m) { return m.t >= begin && m.t <= last; });
     const auto largest = [&](std::size_t until) {
       double most = 0;
       for (std::size_t k = from; k < until; ++k) most = std::max(most, force[k]);
-      return most / of.limit();
+      return rounded(most / of.limit());
     };
+    const auto within = [&](double t) { return t >= begin && t <= last; };
+    const auto mark = std::find_if(answers.marks.begin(), answers.marks.end(),
+                                   [&](const Mark& m) { return within(m.t); });
+    for (std::size_t l = 0; l < kLevels.size(); ++l)
+      to.found_at[l] += std::any_of(answers.rises[l].begin(), answers.rises[l].end(), within);
     ++to.touches;
     to.peaks.push_back(largest(end));
     const bool found = mark != answers.marks.end();
     to.until_found.push_back(found ? largest(std::min(sample(mark->t) + 1, end)) : largest(end));
     if (!found) continue;
     ++to.found;
-    to.delays.push_back(mark->t - begin);
+    to.delays.push_back(rounded(mark->t - begin));
   }
 }
 
@@ -132,28 +149,26 @@ void add(const Cell& run, Cell& sum) {
     RegionCount& s = sum.regions[i];
     s.touches += r.touches;
     s.found += r.found;
+    for (std::size_t l = 0; l < kLevels.size(); ++l) s.found_at[l] += r.found_at[l];
     s.delays.insert(s.delays.end(), r.delays.begin(), r.delays.end());
     s.peaks.insert(s.peaks.end(), r.peaks.begin(), r.peaks.end());
     s.until_found.insert(s.until_found.end(), r.until_found.begin(), r.until_found.end());
   }
-  sum.runs += run.runs;
-  sum.failed_runs += run.failed_runs;
-  sum.blows += run.blows;
-  sum.detected += run.detected;
-  sum.stray += run.stray;
+  for (const auto& [name, count] : kCellCounts) sum.*count += run.*count;
   sum.delays.insert(sum.delays.end(), run.delays.begin(), run.delays.end());
   sum.quiet_samples += run.quiet_samples;
   sum.alarmed_samples += run.alarmed_samples;
-  sum.alarms += run.alarms;
-  sum.collision_alarms += run.collision_alarms;
-  sum.brisk += run.brisk;
-  sum.brisk_flagged += run.brisk_flagged;
-  sum.clampings += run.clampings;
-  sum.clampings_flagged += run.clampings_flagged;
-  sum.clampings_named += run.clampings_named;
   for (std::size_t i = 0; i < kLevels.size(); ++i) {
     sum.detected_at[i] += run.detected_at[i];
     sum.alarms_at[i] += run.alarms_at[i];
+  }
+}
+
+void sort_values(Cell& sum) {
+  std::sort(sum.delays.begin(), sum.delays.end());
+  for (RegionCount& r : sum.regions) {
+    for (auto* values : {&r.delays, &r.peaks, &r.until_found})
+      std::sort(values->begin(), values->end());
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/study/detection_report.h"
+#include "bench/study/detection/detection_report.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,8 @@
 
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metric_list.h"
+#include "bench/score/table.h"
+#include "bench/study/detection/comparison.h"
 #include "bench/study/study_runs.h"
 
 namespace tauext::study {
@@ -29,17 +31,6 @@ the largest blow, in 0.1 s, that were marked. clamping: share of the soft clampi
 were marked while they held. named: share that was also called a clamping. failed: runs in which
 an estimate was missing; they count like the others.
 )";
-
-constexpr const char* kRegionLegend = R"(
-Meetings with regions of a body (--regions): share that was marked until {:g} s after the contact
-[%], by the speed at which they met [m/s] or that at which the region's limit would be reached by so
-much; in the last column the share in which the limit was exceeded before anything was marked.
-The JSON has each region by itself.
-)";
-
-std::string percent(double part, double of) {
-  return of == 0 ? "-" : fmt::format("{:.1f}", 100 * part / of);
-}
 
 std::string per_hour(double alarms, const Cell& c) {
   return c.quiet_samples == 0 ? "-" : fmt::format("{:.1f}", alarms / c.hours());
@@ -62,41 +53,6 @@ std::vector<TableWriter::Column> detection_columns() {
           {"failed", "runs"}};
 }
 
-// "0.10", "25%", .. without the regions
-std::vector<std::string> region_kinds() {
-  std::vector<std::string> all;
-  for (const RegionClass& c : region_classes()) {
-    if (std::count(all.begin(), all.end(), c.kind) == 0) all.push_back(c.kind);
-  }
-  return all;
-}
-
-// one condition's
-std::string region_table(std::vector<Cell>::const_iterator first,
-                         std::vector<Cell>::const_iterator last) {
-  std::vector<TableWriter::Column> columns = {{"estimator+detector", "", true}};
-  for (const std::string& kind : region_kinds()) columns.push_back({kind, "%"});
-  columns.push_back({"exceeded", "%"});
-  TableWriter table(columns);
-  for (; first != last; ++first) {
-    std::vector<std::string> row = {first->estimator + "+" + first->detector};
-    double exceeded = 0, all = 0;
-    for (const std::string& kind : region_kinds()) {
-      int found = 0, touches = 0;
-      for (std::size_t i = 0; i < first->regions.size(); ++i) {
-        const RegionCount& r = first->regions[i];
-        if (region_classes()[i].kind != kind) continue;
-        found += r.found, touches += r.touches;
-        exceeded += r.exceeded() * r.touches, all += r.touches;
-      }
-      row.push_back(percent(found, touches));
-    }
-    row.push_back(percent(exceeded, all));
-    table.add(row);
-  }
-  return table.format();
-}
-
 std::vector<std::string> cells_of(const Cell& c) {
   return {c.estimator + "+" + c.detector,
           percent(c.detected, c.blows),
@@ -116,22 +72,26 @@ std::vector<std::string> cells_of(const Cell& c) {
 
 std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
   std::string out;
-  for (auto first = cells.begin(); first != cells.end();) {
-    const auto last = std::find_if(first, cells.end(),
-                                   [&](const Cell& c) { return c.condition != first->condition; });
+  bool regions = false, compares = false;
+  for (const std::span<const Cell> of_one : by_condition(cells)) {
+    const Cell& first = of_one.front();
+    if (first.runs == 0) continue;  // it was stopped before
     out += fmt::format("{}{}: {}; {} blows, {:.2f} h, {} brisk pushes, {} clampings\n",
-                       out.empty() ? "" : "\n", first->condition,
-                       condition(runs, first->condition).description, first->blows, first->hours(),
-                       first->brisk, first->clampings);
+                       out.empty() ? "" : "\n", first.condition,
+                       condition(runs, first.condition).description, first.blows, first.hours(),
+                       first.brisk, first.clampings);
     TableWriter table(detection_columns());
-    const std::string of_regions = first->regions.empty() ? "" : region_table(first, last);
-    for (; first != last; ++first) table.add(cells_of(*first));
+    for (const Cell& c : of_one) table.add(cells_of(c));
     out += table.format();
-    if (!of_regions.empty()) out += "\n" + of_regions;
+    if (!first.regions.empty()) out += "\n" + format_regions(of_one);
+    regions = regions || !first.regions.empty();
+    if (of_one.size() < 2 || first.quiet_samples == 0 || first.blows + first.regions.size() == 0)
+      continue;
+    compares = true;
+    out += "\n" + format_comparisons(of_one);
   }
-  const bool regions = !cells.empty() && !cells.front().regions.empty();
-  return out + fmt::format(kDetectionLegend, metrics::kGrace) +
-         (regions ? fmt::format(kRegionLegend, metrics::kGrace) : "");
+  return out + fmt::format(kDetectionLegend, metrics::kGrace) + (regions ? region_legend() : "") +
+         (compares ? comparison_legend() : "");
 }
 
 Json number(double x) {
@@ -142,7 +102,7 @@ Json roc_of(const Cell& c) {
   Json roc;
   for (std::size_t i = 0; i < kLevels.size(); ++i) {
     Json point;
-    point["threshold_factor"] = kLevels[i];
+    point["threshold_factor"] = std::round(1e4 * kLevels[i]) / 1e4;
     point[key_of(Metric::kRecall)] =
         c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
     if (c.blows > 0) {
@@ -152,6 +112,14 @@ Json roc_of(const Cell& c) {
     }
     if (c.quiet_samples > 0)
       point[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms_at[i] / c.hours();
+    int touches = 0, found = 0;
+    for (const RegionCount& r : c.regions) touches += r.touches, found += r.found_at[i];
+    if (touches > 0) {
+      const metrics::Interval share = metrics::share_interval(found, touches);
+      point["region_recall"] = static_cast<double>(found) / touches;
+      point["region_recall_low"] = share.low;
+      point["region_recall_high"] = share.high;
+    }
     roc.push_back(point);
   }
   return roc;
@@ -238,10 +206,6 @@ Json to_json(const Condition& c) {
 
 }  // namespace
 
-std::string milliseconds(double s, int digits) {
-  return std::isnan(s) ? "-" : fmt::format("{:.{}f}", 1e3 * s, digits);
-}
-
 std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
                          TableFormat format) {
   if (format == TableFormat::kText) return text(touched_runs(robot), cells);
@@ -274,6 +238,10 @@ std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
   }
   j["cells"] = Json::array();
   for (const Cell& c : cells) j["cells"].push_back(to_json(c));
+  j["comparisons"] = Json::array();
+  for (const std::span<const Cell> of_one : by_condition(cells)) {
+    for (Json& c : comparisons_json(of_one)) j["comparisons"].push_back(std::move(c));
+  }
   return j.dump(1) + "\n";
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/roster/thresholds.h"
-#include "bench/study/study_counts.h"
+#include "bench/study/detection/study_counts.h"
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext::study {
@@ -24,8 +24,5 @@ std::string format_study(const std::string& robot, const std::vector<Cell>& cell
 std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
                        const Thresholds& thresholds,
                        const std::vector<std::pair<std::string, std::string>>& context = {});
-
-/// A time [s] in milliseconds for a table; "-" for NaN.
-std::string milliseconds(double s, int digits = 0);
 
 }  // namespace tauext::study

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study/detection/study_parts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+#include "bench/roster/threshold_file.h"
+#include "bench/score/parallel.h"
+#include "bench/study/detection/journal.h"
+#include "bench/study/study_runs.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class... Args>
+[[noreturn]] void fail(const std::string& path, fmt::format_string<Args...> text, Args&&... args) {
+  throw std::runtime_error(path + ": " + fmt::format(text, std::forward<Args>(args)...));
+}
+
+Json counts_json(const RegionCount& r) {
+  return {r.touches, r.found, r.delays, r.peaks, r.until_found, r.found_at};
+}
+
+RegionCount region_of(const Json& j) {
+  RegionCount r;
+  j.at(0).get_to(r.touches), j.at(1).get_to(r.found);
+  j.at(2).get_to(r.delays), j.at(3).get_to(r.peaks), j.at(4).get_to(r.until_found);
+  j.at(5).get_to(r.found_at);
+  return r;
+}
+
+// counts alone, and of them what is not 0
+Json counts_json(const Cell& c) {
+  Json j = Json::object();
+  for (const auto& [name, count] : kCellCounts) {
+    if (c.*count != 0) j[name] = c.*count;
+  }
+  if (c.quiet_samples != 0) j["quiet_samples"] = c.quiet_samples;
+  if (c.alarmed_samples != 0) j["alarmed_samples"] = c.alarmed_samples;
+  if (!c.delays.empty()) j["delays"] = c.delays;
+  if (c.blows != 0) j["detected_at"] = c.detected_at;
+  if (c.quiet_samples != 0) j["alarms_at"] = c.alarms_at;
+  for (std::size_t i = 0; i < c.regions.size(); ++i) {
+    if (c.regions[i].touches > 0) j["regions"][fmt::to_string(i)] = counts_json(c.regions[i]);
+  }
+  return j;
+}
+
+Cell cell_of(const Json& j) {
+  Cell c;
+  for (const auto& [name, count] : kCellCounts) c.*count = j.value(name, 0);
+  c.quiet_samples = j.value("quiet_samples", 0L);
+  c.alarmed_samples = j.value("alarmed_samples", 0L);
+  if (j.contains("delays")) j["delays"].get_to(c.delays);
+  if (j.contains("detected_at")) j["detected_at"].get_to(c.detected_at);
+  if (j.contains("alarms_at")) j["alarms_at"].get_to(c.alarms_at);
+  if (!j.contains("regions")) return c;
+  c.regions.resize(region_classes().size());
+  for (const auto& [i, region] : j["regions"].items())
+    c.regions.at(std::stoul(i)) = region_of(region);
+  return c;
+}
+
+Json counts_json(const Added& added) {
+  Json all = Json::object();
+  for (const auto& [cell, counts] : added) all[fmt::to_string(cell)] = counts_json(counts);
+  return all;
+}
+
+Added added_of(const Json& j) {
+  Added all;
+  for (const auto& [cell, counts] : j.items()) all.emplace_back(std::stoul(cell), cell_of(counts));
+  return all;
+}
+
+Json first_line(const DetectionStudy& study, const StudyAbout& about, const Shard& shard) {
+  Json j = {
+      {"format", kPartFormat},  {"robot", about.robot}, {"thresholds_trained_on", about.trained_on},
+      {"margin", about.margin}, {"plan", about.plan},   {"pieces", study.pieces()}};
+  j["cells"] = Json::array();
+  for (const Cell& c : study.cells())
+    j["cells"].push_back({c.condition, c.estimator, c.detector, c.Ts});
+  j["shard"] = {shard.index, shard.count};
+  j["context"] = Json::object();
+  for (const auto& [key, text] : about.context) j["context"][key] = text;
+  return j;
+}
+
+std::vector<Cell> cells_of(const Json& first) {
+  std::vector<Cell> cells;
+  for (const Json& c : first.at("cells")) {
+    cells.push_back({.condition = c.at(0).get<std::string>(),
+                     .estimator = c.at(1).get<std::string>(),
+                     .detector = c.at(2).get<std::string>(),
+                     .Ts = c.at(3).get<double>()});
+  }
+  return cells;
+}
+
+// what must be alike in all parts
+Json study_of(Json first) {
+  first.erase("shard");
+  first.erase("context");
+  return first;
+}
+
+// a file of a part as it is
+class Part {
+ public:
+  explicit Part(const std::string& path) : path_(path) {
+    std::ifstream in(path);
+    if (!in) fail(path, "{}", std::error_code(errno, std::generic_category()).message());
+    std::string line;
+    while (std::getline(in, line)) {
+      if (in.eof()) return;  // it has no end: whoever wrote it was killed meanwhile
+      take(line);
+      end_ += line.size() + 1;
+    }
+  }
+
+  bool empty() const { return first_.is_null(); }
+  const Json& first() const { return first_; }
+  const std::map<int, Added>& pieces() const { return pieces_; }
+  std::size_t end() const { return end_; }  // [bytes] of its whole lines
+
+ private:
+  void take(const std::string& line) {
+    try {
+      const Json j = Json::parse(line);
+      if (first_.is_null()) {
+        if (j.value("format", "") != kPartFormat)
+          throw std::runtime_error(
+              fmt::format("its first line has no \"format\": \"{}\"", kPartFormat));
+        first_ = j;
+        return;
+      }
+      pieces_[j.at("piece").get<int>()] = added_of(j.at("adds"));
+    } catch (const std::exception& e) {
+      fail(path_, "no part of a study, as tauext-detect --shard writes it: line {}: {}",
+           first_.is_null() ? 1 : pieces_.size() + 2, one_line(e.what()));
+    }
+  }
+
+  std::string path_;
+  Json first_;
+  std::map<int, Added> pieces_;
+  std::size_t end_ = 0;
+};
+
+}  // namespace
+
+Shard shard_of(const std::string& text) {
+  Shard s;
+  const char *const end = text.data() + text.size(), *const slash =
+                                                         std::find(text.data(), end, '/');
+  const auto index = std::from_chars(text.data(), slash, s.index);
+  const bool two = slash != end && index.ptr == slash && index.ec == std::errc();
+  const auto count = two ? std::from_chars(slash + 1, end, s.count) : index;
+  if (two && count.ptr == end && count.ec == std::errc() && s.index >= 1 && s.index <= s.count &&
+      s.count <= 1'000'000)
+    return s;
+  throw std::invalid_argument(
+      fmt::format("--shard {}: I/N, the I-th of N parts, like 2/7", printable(text)));
+}
+
+StudyAbout about(const StudyOptions& o, const Thresholds& thresholds) {
+  std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
+  for (const char c : thresholds_json(thresholds))
+    digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return {touched_runs(o.robot).robot,
+          thresholds.trained_on,
+          thresholds.margin,
+          {{"conditions", o.conditions},
+           {"collisions", o.blows},
+           {"pushes", o.brisk_pushes},
+           {"clampings", o.clampings},
+           {"regions", o.regions},
+           {"hours", o.hours},
+           {"seed", o.first_seed},
+           {"thresholds", fmt::format("{:016x}", digest)}},
+          {}};
+}
+
+bool run_part(const DetectionStudy& study, const StudyAbout& about, const Shard& shard,
+              const std::string& path, const StudyOptions& o) {
+  Journal journal(path);
+  const Part part(path);
+  const Json first = first_line(study, about, shard);
+  if (!part.empty() &&
+      (study_of(part.first()) != study_of(first) || part.first().at("shard") != first.at("shard")))
+    fail(path, "is a part of another study, or another part; remove it, or choose another file");
+  journal.cut(part.end());
+  if (part.empty()) journal.add(first.dump());
+  std::vector<int> missing;
+  for (int i = shard.index - 1; i < study.pieces(); i += shard.count) {
+    if (!part.pieces().contains(i)) missing.push_back(i);
+  }
+  std::mutex mutex;
+  std::size_t done = 0;
+  const auto work = [&](int i) {
+    if (o.stop && o.stop()) return;
+    const int piece = missing[static_cast<std::size_t>(i)];
+    const std::string line =
+        Json({{"piece", piece}, {"adds", counts_json(study.run(piece))}}).dump();
+    const std::lock_guard lock(mutex);
+    journal.add(line);
+    ++done;
+  };
+  parallel_for(static_cast<int>(missing.size()), o.threads, work, o.progress);
+  return done == missing.size();
+}
+
+Merged merge_parts(const std::vector<std::string>& paths) {
+  if (paths.empty()) throw std::invalid_argument("nothing to merge");
+  Json first;                     // of the part with the smallest number
+  std::map<int, std::string> in;  // which file has a piece
+  std::optional<StudySum> sum;
+  for (const std::string& path : paths) {
+    const Part part(path);
+    if (part.empty()) fail(path, "is empty");
+    if (first.is_null()) {
+      sum.emplace(cells_of(part.first()));
+    } else if (study_of(part.first()) != study_of(first)) {
+      fail(path, "is a part of another study than {}", paths.front());
+    }
+    if (first.is_null() || part.first().at("shard") < first.at("shard")) first = part.first();
+    for (const auto& [piece, added] : part.pieces()) {
+      const auto [at, is_new] = in.try_emplace(piece, path);
+      if (!is_new) fail(path, "has a piece that {} has, too: {}", at->second, piece);
+      sum->add(added);
+    }
+  }
+  const int pieces = first.at("pieces").get<int>(), count = first.at("shard").at(1).get<int>();
+  std::set<std::string> missing;
+  for (int i = 0; i < pieces; ++i) {
+    if (!in.contains(i)) missing.insert(fmt::format("{}/{}", i % count + 1, count));
+  }
+  if (!missing.empty())
+    throw std::runtime_error(fmt::format(
+        "of {} pieces {} are missing, of --shard {}: run these again with the same --out, which go "
+        "on where they stopped",
+        pieces, pieces - static_cast<int>(in.size()), fmt::join(missing, ", ")));
+  StudyAbout about{first.at("robot").get<std::string>(),
+                   first.at("thresholds_trained_on").get<std::string>(),
+                   first.at("margin").get<double>(),
+                   first.at("plan"),
+                   {}};
+  for (const auto& [key, text] : first.at("context").items())
+    about.context.emplace_back(key, text.get<std::string>());
+  return {std::move(about), sum->sorted()};
+}
+
+}  // namespace tauext::study

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/tune/study_tuning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/roster/robots.h"
+#include "bench/score/parallel.h"
+#include "bench/study/detection/calibration.h"
+#include "bench/study/study_runs.h"
+#include "bench/tune/training_runs.h"
+#include "bench/tune/tune.h"
+
+namespace tauext {
+namespace {
+
+using study::StudyRuns;
+
+// what is tuned of our detectors; of another one all its numbers but those of its marks
+const std::map<std::string, std::vector<std::string>>& keys_of_detectors() {
+  static const std::map<std::string, std::vector<std::string>> all = {
+      {"threshold", {}},
+      {"dynamic_threshold", {"speed=0.05:10"}},
+      {"high_pass", {"w=1:300"}},
+      {"band_pass", {"w_low=1:60", "w_high=65:400"}},
+      {"cusum", {"drift", "w=1:200"}},
+      {"pan_tompkins", {"stride=1:16", "hold=0.002:0.2"}},
+      {"clamping", {"w_baseline=0.05:5", "w_smooth=10:300", "duration=0.005:0.5"}},
+      {"contact_classifier",
+       {"collision.stride=1:16", "clamping.w_baseline=0.05:5", "clamping.duration=0.005:0.5"}}};
+  return all;
+}
+
+std::vector<std::string> keys_of_detector(const Robot& r, const std::string& detector) {
+  const std::string name(name_of_specification(detector));
+  const auto ours = keys_of_detectors().find(name);
+  if (ours != keys_of_detectors().end()) return ours->second;
+  std::vector<std::string> keys;
+  for (const FieldHelp& f : r.detector_fields(name)) {
+    const bool of_marks = f.key == "refractory" || f.key == "start_up" || f.key == "threshold";
+    if (!of_marks && !f.unit.empty()) keys.push_back(f.key);
+  }
+  return keys;
+}
+
+// the numbers of a detector that its specification leaves open
+std::vector<TunedKey> keys_of(const Robot& r, const TunedPair& pair) {
+  std::vector<std::string> texts;
+  for (const std::string& text : keys_of_detector(r, pair.detector)) {
+    if (!key_of(pair.detector, text.substr(0, text.find('=')))) texts.push_back(text);
+  }
+  return tauext::keys_of(texts, pair, r.estimator_fields(name_of_specification(pair.estimator)),
+                         r.detector_fields(name_of_specification(pair.detector)));
+}
+
+constexpr std::array kBandwidths = {5., 12., 30., 75., 190.};  // [rad/s]
+
+// an estimator as it is, and at each bandwidth, if it has one and does not say it
+std::vector<std::string> designs_of(const Robot& r, const std::string& estimator) {
+  std::vector<std::string> all = {estimator};
+  const std::vector<std::string> tunable = r.tunable();
+  if (std::count(tunable.begin(), tunable.end(), name_of_specification(estimator)) == 0 ||
+      key_of(estimator, "bandwidth"))
+    return all;
+  for (const double w : kBandwidths) {
+    const std::string design = at_bandwidth(estimator, w);
+    try {
+      r.check(design, "");
+      all.push_back(design);
+    } catch (const std::invalid_argument&) {  // it cannot be so slow or so fast
+    }
+  }
+  return all;
+}
+
+// the best of a detector behind a design of an estimator
+study::TunedRow tuned(const Robot& r, const std::string& condition, const TunedPair& pair,
+                      const std::vector<study::EstimatedRuns>& seen, const TrainingRuns& runs,
+                      const StudyTuning& o, int evaluations) {
+  study::TunedRow found{r.name(),       r.fingerprint(), condition,
+                        pair.estimator, pair.detector,   pair.estimator + "+" + pair.detector};
+  TuneOptions t;
+  t.keys = keys_of(r, pair);
+  if (t.keys.empty()) {
+    found.recall = found.recall_before = runs.recall(seen, pair, o.margin);
+    found.evaluations = 1;
+    return found;
+  }
+  t.pair = pair;
+  t.minimize = Metric::kRecall;
+  t.evaluations = evaluations;
+  t.check = [&](const TunedPair& p) { r.check(p.estimator, p.detector); };
+  t.score = [&](const TunedPair& p) {
+    Score score;
+    score.set(Metric::kRecall, runs.recall(seen, p, o.margin));
+    return std::vector<std::vector<Score>>{{score}};
+  };
+  const Tuned best = tune(t);
+  found.detector = best.best.detector;
+  found.recall = best.of_best, found.recall_before = best.of_start;
+  found.evaluations = best.evaluations;
+  found.at_ends = best.at_bound;
+  return found;
+}
+
+bool is_known(const std::vector<study::TunedRow>& known, const Robot& r,
+              const std::string& condition, const TunedPair& pair) {
+  return std::any_of(known.begin(), known.end(), [&](const study::TunedRow& k) {
+    return study::is_tuned(k, r, condition) &&
+           name_of_specification(k.estimator) == name_of_specification(pair.estimator) &&
+           name_of_specification(k.detector) == name_of_specification(pair.detector);
+  });
+}
+
+void check(const StudyTuning& o) {
+  if (o.conditions.empty()) throw std::invalid_argument("no condition to tune for");
+  if (o.free_runs < 1 || o.meetings < 1 || o.runs < 1 || o.evaluations < 3)
+    throw std::invalid_argument(
+        "tuning needs a run without a touch, a meeting of each kind and three evaluations, or "
+        "more");
+  const StudyRuns& runs = study::touched_runs(o.robot);
+  for (const std::string& name : study::chosen_conditions(runs, o.conditions, {})) {
+    if (!condition(runs, name).trains_itself)
+      throw std::invalid_argument(fmt::format(
+          "{}: thresholds of this condition come from others; tune for light, typical, hard",
+          name));
+  }
+  runs.points();  // which may throw
+}
+
+// the pairs of one condition
+class OfCondition {
+ public:
+  OfCondition(const StudyTuning& o, const StudyRuns& runs, const std::string& condition,
+              const std::vector<study::TunedRow>& known)
+      : o_(o), robot_(robot(runs.robot)), runs_(runs), condition_(condition) {
+    const std::vector<std::string> detectors = study::chosen_detectors(robot_, o.detectors);
+    for (const std::string& e : study::chosen_estimators(robot_, o.estimators)) {
+      const std::size_t first = rows_.size();
+      for (const std::string& d : detectors) {
+        if (is_known(known, robot_, condition, {e, d})) continue;
+        rows_.push_back({.estimator = e, .detector = d});
+      }
+      if (rows_.size() == first) continue;
+      const std::vector<std::string> designs = designs_of(robot_, e);
+      for (const std::string& design : designs)
+        work_.push_back({design, first, rows_.size(), static_cast<int>(designs.size())});
+    }
+  }
+
+  // those of estimators of which every design was tried
+  std::vector<study::TunedRow> run(const std::function<void(double)>& done) {
+    if (work_.empty()) return {};
+    const TrainingRuns training(runs_, study::condition(runs_, condition_), o_.free_runs,
+                                o_.meetings, o_.threads);
+    tried_.resize(work_.size());
+    parallel_for(
+        static_cast<int>(work_.size()), o_.threads,
+        [&](int i) {
+          if (!o_.stop || !o_.stop()) try_design(static_cast<std::size_t>(i), training);
+        },
+        done);
+    std::vector<study::TunedRow> all;
+    for (std::size_t i = 0; i < work_.size(); i += static_cast<std::size_t>(work_[i].designs))
+      take_best(i, all);
+    return all;
+  }
+
+ private:
+  // a design of an estimator with those of the rows that are behind it
+  struct Work {
+    std::string design;
+    std::size_t first, last;  // of rows_
+    int designs;              // of this estimator
+  };
+
+  void try_design(std::size_t i, const TrainingRuns& training) {
+    const Work& w = work_[i];
+    const std::vector<study::EstimatedRuns> seen = training.seen_by(w.design);
+    for (std::size_t k = w.first; k < w.last; ++k) {
+      study::TunedRow row{.recall = -1};
+      if (!seen.empty())
+        row = tuned(robot_, condition_, {w.design, rows_[k].detector}, seen, training, o_,
+                    std::max(3, o_.evaluations / w.designs));
+      tried_[i].push_back(row);
+    }
+  }
+
+  void take_best(std::size_t i, std::vector<study::TunedRow>& all) const {
+    const auto designs = static_cast<std::size_t>(work_[i].designs);
+    for (std::size_t k = 0; k < work_[i].last - work_[i].first; ++k) {
+      const study::TunedRow* best = nullptr;
+      int evaluations = 0;
+      for (std::size_t j = i; j < i + designs; ++j) {
+        if (tried_[j].empty()) return;  // it was stopped before
+        const study::TunedRow& row = tried_[j][k];
+        evaluations += row.evaluations;
+        if (best == nullptr || row.recall > best->recall) best = &row;
+      }
+      if (best->recall < 0) continue;  // no design makes estimates here
+      all.push_back(*best);
+      all.back().evaluations = evaluations;
+      const study::TunedRow& start = tried_[i][k];
+      all.back().before = start.before, all.back().recall_before = start.recall_before;
+      if (designs > 2 && (best == &tried_[i + 1][k] || best == &tried_[i + designs - 1][k]))
+        all.back().at_ends.emplace_back("bandwidth");
+    }
+  }
+
+  const StudyTuning& o_;
+  const Robot& robot_;
+  const StudyRuns& runs_;
+  std::string condition_;
+  std::vector<study::TunedRow> rows_;  // what is to be tuned
+  std::vector<Work> work_;
+  std::vector<std::vector<study::TunedRow>> tried_;  // of each work, by row
+};
+
+}  // namespace
+
+study::TunedStudy tune_study(const StudyTuning& o, const std::vector<study::TunedRow>& known) {
+  check(o);
+  const StudyRuns& runs = study::touched_runs(o.robot);
+  study::TunedStudy all;
+  double begun = 0;
+  for (const std::string& name : o.conditions) {
+    if (o.stop && o.stop()) break;
+    const std::vector<study::TunedRow> found =
+        OfCondition(o, runs, name, known).run([&](double share) {
+          if (o.progress)
+            o.progress((begun + 0.9 * share) / static_cast<double>(o.conditions.size()));
+        });
+    ++begun;
+    if (found.empty()) continue;
+    study::CalibrationOptions c;
+    c.robot = o.robot;
+    c.margin = o.margin;
+    c.runs = o.runs;
+    c.threads = o.threads;
+    for (const study::TunedRow& p : found) c.pairs.emplace_back(p.estimator, p.detector);
+    append({study::calibrate_for({name}, c), found, ""}, all);
+  }
+  return all;
+}
+
+}  // namespace tauext

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Every pair of estimator and detector at its best under each condition of the detection study,
+/// with the same budget for each, before anybody compares them.
+///
+/// Each detector's own numbers are searched (tune.h) behind the estimator as it is, and behind it
+/// at five bandwidths from 5 to 190 rad/s. What counts is the share of meetings with regions of a
+/// body that a pair finds, as the mean over their kinds, with thresholds that no training run
+/// without a touch reaches. All of it happens on training seeds, on which the arm moves otherwise
+/// than in a test (brisk_motion).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/roster/thresholds.h"
+#include "bench/study/detection/tuned.h"
+
+namespace tauext {
+
+/// What is tuned, and how long.
+struct StudyTuning {
+  std::string robot;                     ///< "" for the first one that has runs
+  std::vector<std::string> conditions;   ///< each for itself
+  std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
+  std::vector<std::string> detectors;    ///< specifications; empty: all
+  int evaluations = 60;                  ///< of each pair, at most
+  int free_runs = 16;                    ///< of 30 s without a touch, for each evaluation
+  int meetings = 3;                      ///< of each kind, at least, likewise
+  int runs = 100;                        ///< of 30 s, which set the thresholds in the end
+  double margin = 1.1;                   ///< CalibrationOptions::margin
+  int threads = 0;                       ///< 0: one a core
+  std::function<void(double)> progress;  ///< called with the share that is done; may be empty
+  std::function<bool()> stop;            ///< whether to begin no more pairs; may be empty
+};
+
+/// @param known pairs that are not tuned again; the result has others alone
+/// @throws std::invalid_argument for unknown names, a condition that does not train itself, an arm
+/// on which regions find no place, and numbers out of range
+study::TunedStudy tune_study(const StudyTuning& options, const std::vector<study::TunedRow>& known);
+
+}  // namespace tauext

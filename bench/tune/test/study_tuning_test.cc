@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/tune/study_tuning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/tune/training_runs.h"
+#include "mjcf/test/error_of.h"
+
+namespace tauext::test {
+namespace {
+
+// wallmobot3 behind good sensors
+StudyTuning small() {
+  StudyTuning o;
+  o.conditions = {"light"};
+  o.estimators = {"mo1"};
+  o.detectors = {"threshold", "high_pass", "contact_classifier"};
+  o.evaluations = 18;
+  o.free_runs = 4;
+  o.meetings = 1;
+  o.runs = 2;
+  o.threads = 2;
+  return o;
+}
+
+const study::TunedStudy& tuned_once() {
+  static const study::TunedStudy all = tune_study(small(), {});
+  return all;
+}
+
+TEST(StudyTuning, GivesEachPairItsBudgetAndNothingGetsWorse) {
+  ASSERT_EQ(tuned_once().rows.size(), 3u);
+  bool better = false;
+  for (const study::TunedRow& r : tuned_once().rows) {
+    EXPECT_EQ(r.condition, "light");
+    EXPECT_GE(r.recall, r.recall_before) << r.detector;
+    EXPECT_LE(r.evaluations, 18) << r.detector;
+    EXPECT_EQ(r.before.find("mo1+"), 0u);
+    better = better || r.recall > r.recall_before;
+    robot("wallmobot3").check(r.estimator, r.detector);  // or it throws
+  }
+  EXPECT_TRUE(better) << "a filter at 10 rad/s is not the best one";
+  EXPECT_EQ(tuned_once().rows[0].evaluations, 6) << "a limit has no numbers: bandwidths alone";
+  EXPECT_GE(tuned_once().rows[1].evaluations, 12);
+}
+
+TEST(StudyTuning, LeavesThresholdsForItsPairsInThatCondition) {
+  const Thresholds& t = tuned_once().thresholds;
+  EXPECT_EQ(t.margin, 1.1);
+  for (const study::TunedRow& r : tuned_once().rows) {
+    const DetectorThresholds known =
+        trained_for(t, "wallmobot3", 1e-4, r.estimator, r.detector, "light");
+    EXPECT_EQ(known.size(), r.detector.starts_with("contact") ? 2u : 1u);
+    for (const auto& [name, trained] : known) EXPECT_GT(trained.threshold.minCoeff(), 0) << name;
+  }
+}
+
+TEST(StudyTuning, DoesNotDependOnTheNumberOfThreads) {
+  StudyTuning o = small();
+  o.detectors = {"high_pass"};
+  o.threads = 1;
+  const study::TunedStudy one = tune_study(o, {});
+  ASSERT_EQ(one.rows.size(), 1u);
+  EXPECT_EQ(one.rows[0].estimator, tuned_once().rows[1].estimator);
+  EXPECT_EQ(one.rows[0].detector, tuned_once().rows[1].detector);
+  EXPECT_EQ(one.rows[0].recall, tuned_once().rows[1].recall);
+}
+
+TEST(StudyTuning, SkipsWhatIsKnownAndWhatItHasNoTimeFor) {
+  EXPECT_TRUE(tune_study(small(), tuned_once().rows).rows.empty());
+  StudyTuning o = small();
+  o.stop = [] { return true; };
+  EXPECT_TRUE(tune_study(o, {}).rows.empty());
+}
+
+TEST(StudyTuning, RefusesWhatCannotBe) {
+  StudyTuning o = small();
+  o.conditions = {"known_150"};
+  EXPECT_NE(error_of([&] { tune_study(o, {}); }).find("tune for light, typical, hard"),
+            std::string::npos);
+  o.conditions = {};
+  EXPECT_NE(error_of([&] { tune_study(o, {}); }).find("no condition"), std::string::npos);
+  o = small();
+  o.evaluations = 2;
+  EXPECT_NE(error_of([&] { tune_study(o, {}); }).find("three evaluations"), std::string::npos);
+}
+
+TEST(TrainingRuns, FindLessWithHigherThresholds) {
+  const study::StudyRuns& runs = study::touched_runs("wallmobot3");
+  const TrainingRuns training(runs, study::condition(runs, "light"), 2, 1, 2);
+  const auto seen = training.seen_by("mo1");
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(training.recall(seen, {"mo1", "high_pass:threshold=1e9"}, 1.1), 0);
+  const double some = training.recall(seen, {"mo1", "high_pass:w=60"}, 1.1),
+               less = training.recall(seen, {"mo1", "high_pass:w=60"}, 3);
+  EXPECT_GT(some, 0.1);
+  EXPECT_LT(some, 1);
+  EXPECT_LT(less, some) << "higher thresholds find less";
+}
+
+}  // namespace
+}  // namespace tauext::test
