@@ -109,7 +109,7 @@ Thresholds thresholds_of(const Flags& f, const std::vector<std::string>& conditi
   Progress progress("calibrating");
   study::CalibrationOptions o = calibration_of(f);
   o.progress = progress.callback();
-  return o.conditions.empty() ? study::calibrate_for(conditions, o) : study::calibrate(o);
+  return study::calibrate_for(conditions, o);
 }
 
 int run_calibration(const Flags& f) {
@@ -141,17 +141,17 @@ void write_study(const Flags& f, const study::StudyAbout& about,
   if (f.out != "-") fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
 }
 
-// unless conditions are named: those of --quick; or those that the thresholds are for
-std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs,
-                                       const std::vector<study::TunedRow>& tuned) {
-  const std::vector<std::string>& otherwise = f.quick ? runs.quick : runs.honest;
-  if (f.quick || f.thresholds.empty())
-    return study::chosen_conditions(runs, f.study.conditions, otherwise);
-  std::vector<std::string> all;
-  for (const study::Condition& c : runs.conditions) {
-    if (study::is_tuned(tuned, robot(runs.robot), c.name)) all.push_back(c.name);
+// unless conditions are named: those of --quick; or those that the file of thresholds is for
+std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs) {
+  std::vector<std::string> all = f.quick ? runs.quick : runs.honest;
+  if (!f.quick && !f.thresholds.empty()) {
+    const Thresholds t = read_thresholds(f.thresholds);
+    all.clear();
+    for (const study::Condition& c : runs.conditions)
+      if (study::are_for(t, robot(runs.robot), c.name)) all.push_back(c.name);
+    if (all.empty()) all = runs.quick;
   }
-  return study::chosen_conditions(runs, f.study.conditions, all.empty() ? runs.quick : all);
+  return study::chosen_conditions(runs, f.study.conditions, all);
 }
 
 int run_study(Flags& f) {
@@ -159,7 +159,7 @@ int run_study(Flags& f) {
   if (f.quick && !f.study.conditions.empty())
     throw std::invalid_argument("--quick stands for --conditions: not both");
   if (!f.thresholds.empty()) f.study.tuned = study::read_tuned(f.thresholds).rows;
-  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot), f.study.tuned);
+  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot));
   study::check_study(f.study);  // before calibration takes its time
   const bool part = !f.shard.empty();
   const study::Shard shard = part ? study::shard_of(f.shard) : study::Shard();

@@ -83,8 +83,7 @@ std::vector<std::string> designs_of(const Robot& r, const std::string& estimator
 study::TunedRow tuned(const Robot& r, const std::string& condition, const TunedPair& pair,
                       const std::vector<study::EstimatedRuns>& seen, const TrainingRuns& runs,
                       const StudyTuning& o, int evaluations) {
-  study::TunedRow found{r.name(),       r.fingerprint(), condition,
-                        pair.estimator, pair.detector,   pair.estimator + "+" + pair.detector};
+  study::TunedRow found{r.name(), r.fingerprint(), condition, pair.estimator, pair.detector};
   TuneOptions t;
   t.keys = keys_of(r, pair);
   if (t.keys.empty()) {
@@ -112,18 +111,18 @@ study::TunedRow tuned(const Robot& r, const std::string& condition, const TunedP
 bool is_known(const std::vector<study::TunedRow>& known, const Robot& r,
               const std::string& condition, const TunedPair& pair) {
   return std::any_of(known.begin(), known.end(), [&](const study::TunedRow& k) {
-    return study::is_tuned(k, r, condition) &&
-           name_of_specification(k.estimator) == name_of_specification(pair.estimator) &&
-           name_of_specification(k.detector) == name_of_specification(pair.detector);
+    return study::is_tuned(k, r, condition) && k.before == pair.estimator + "+" + pair.detector;
   });
 }
 
 void check(const StudyTuning& o) {
   if (o.conditions.empty()) throw std::invalid_argument("no condition to tune for");
-  if (o.free_runs < 1 || o.meetings < 1 || o.runs < 1 || o.evaluations < 3)
-    throw std::invalid_argument(
-        "tuning needs a run without a touch, a meeting of each kind and three evaluations, or "
-        "more");
+  constexpr int kLeast = 3 * (1 + static_cast<int>(kBandwidths.size()));
+  if (o.free_runs < 1 || o.meetings < 1 || o.runs < 1 || o.evaluations < kLeast)
+    throw std::invalid_argument(fmt::format(
+        "tuning needs a run without a touch, a meeting of each kind and {} evaluations (not {}), "
+        "three for each bandwidth, or more",
+        kLeast, o.evaluations));
   const StudyRuns& runs = study::touched_runs(o.robot);
   for (const std::string& name : study::chosen_conditions(runs, o.conditions, {})) {
     if (!condition(runs, name).trains_itself)
@@ -187,7 +186,7 @@ class OfCondition {
       study::TunedRow row{.recall = -1};
       if (!seen.empty())
         row = tuned(robot_, condition_, {w.design, rows_[k].detector}, seen, training, o_,
-                    std::max(3, o_.evaluations / w.designs));
+                    o_.evaluations / w.designs);
       tried_[i].push_back(row);
     }
   }
@@ -206,8 +205,9 @@ class OfCondition {
       if (best->recall < 0) continue;  // no design makes estimates here
       all.push_back(*best);
       all.back().evaluations = evaluations;
-      const study::TunedRow& start = tried_[i][k];
-      all.back().before = start.before, all.back().recall_before = start.recall_before;
+      const study::TunedRow &start = tried_[i][k], &row = rows_[work_[i].first + k];
+      all.back().before = row.estimator + "+" + row.detector;
+      all.back().recall_before = start.recall < 0 ? kNoValue : start.recall_before;
       if (designs > 2 && (best == &tried_[i + 1][k] || best == &tried_[i + designs - 1][k]))
         all.back().at_ends.emplace_back("bandwidth");
     }
@@ -224,10 +224,9 @@ class OfCondition {
 
 }  // namespace
 
-study::TunedStudy tune_study(const StudyTuning& o, const std::vector<study::TunedRow>& known) {
+void tune_study(const StudyTuning& o, const std::vector<study::TunedRow>& known) {
   check(o);
   const StudyRuns& runs = study::touched_runs(o.robot);
-  study::TunedStudy all;
   double begun = 0;
   for (const std::string& name : o.conditions) {
     if (o.stop && o.stop()) break;
@@ -244,9 +243,8 @@ study::TunedStudy tune_study(const StudyTuning& o, const std::vector<study::Tune
     c.runs = o.runs;
     c.threads = o.threads;
     for (const study::TunedRow& p : found) c.pairs.emplace_back(p.estimator, p.detector);
-    append({study::calibrate_for({name}, c), found, ""}, all);
+    o.found({study::calibrate_for({name}, c), found, ""});
   }
-  return all;
 }
 
 }  // namespace tauext

@@ -25,7 +25,7 @@ struct StudyTuning {
   std::vector<std::string> conditions;   ///< each for itself
   std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
   std::vector<std::string> detectors;    ///< specifications; empty: all
-  int evaluations = 60;                  ///< of each pair, at most
+  int evaluations = 60;                  ///< of each pair, at most; shared by its bandwidths
   int free_runs = 16;                    ///< of 30 s without a touch, for each evaluation
   int meetings = 3;                      ///< of each kind, at least, likewise
   int runs = 100;                        ///< of 30 s, which set the thresholds in the end
@@ -33,11 +33,14 @@ struct StudyTuning {
   int threads = 0;                       ///< 0: one a core
   std::function<void(double)> progress;  ///< called with the share that is done; may be empty
   std::function<bool()> stop;            ///< whether to begin no more pairs; may be empty
+  /// Called with the pairs of each condition that was done, or of what was done of it.
+  std::function<void(const study::TunedStudy&)> found;
 };
 
-/// @param known pairs that are not tuned again; the result has others alone
+/// Tunes; a pair that makes no estimates under a condition is left out.
+/// @param known pairs that are not tuned again
 /// @throws std::invalid_argument for unknown names, a condition that does not train itself, an arm
 /// on which regions find no place, and numbers out of range
-study::TunedStudy tune_study(const StudyTuning& options, const std::vector<study::TunedRow>& known);
+void tune_study(const StudyTuning& options, const std::vector<study::TunedRow>& known);
 
 }  // namespace tauext

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -11,6 +13,7 @@
 
 #include "bench/program/interrupt.h"
 #include "bench/program/program.h"
+#include "bench/score/table.h"
 #include "bench/study/detection/tuned.h"
 #include "bench/tune/study_tuning.h"
 #include "mjcf/trace/atomic_file.h"
@@ -44,14 +47,17 @@ std::string command_of(const ConditionsToTune& f) {
 int tune_conditions(const ConditionsToTune& f) {
   if (f.out.empty())
     throw std::invalid_argument("--conditions needs --out FILE.json, for pairs and thresholds");
-  study::TunedStudy all;
-  if (std::filesystem::exists(f.out)) {
-    all = study::read_tuned(f.out);
-    release_input(f.out);
-  }
-  { const AtomicFile probe(f.out); }  // an unwritable path should not cost a run
   const TableFormat format = table_format(f.format);
+  const auto known = [&] {
+    if (!std::filesystem::exists(f.out)) return study::TunedStudy();
+    study::TunedStudy all = study::read_tuned(f.out);
+    release_input(f.out);
+    return all;
+  };
+  { const AtomicFile probe(f.out); }  // an unwritable path should not cost a run
   const Interrupt interrupt;
+  std::atomic<bool> told = false;
+  std::vector<study::TunedRow> rows;
   Progress progress("tuning");
   StudyTuning o;
   o.robot = f.robot;
@@ -60,30 +66,37 @@ int tune_conditions(const ConditionsToTune& f) {
   o.detectors = list_of(f.detectors);
   o.evaluations = f.evaluations;
   o.progress = progress.callback();
-  o.stop = [&] { return interrupt.seen(); };
-  study::TunedStudy more = tune_study(o, all.rows);
+  o.stop = [&] {
+    if (interrupt.seen() && !told.exchange(true))
+      say("stopping: what was tuned gets its thresholds first, which takes a minute");
+    return interrupt.seen();
+  };
+  o.found = [&](const study::TunedStudy& more) {
+    study::TunedStudy all = known();  // as it is now: somebody else may have added to it
+    study::TunedStudy adds = more;
+    adds.made_by = command_of(f);
+    append(adds, all);
+    study::write_tuned(all, f.out);
+    rows.insert(rows.end(), more.rows.begin(), more.rows.end());
+  };
+  tune_study(o, known().rows);
   progress.clear();
-  if (more.rows.empty()) {
-    say(f.out + (interrupt.seen() ? ": stopped; nothing was finished that is not in it"
-                                  : ": has all of these pairs already"));
-    return interrupt.seen() ? kInterrupted : int{kGood};
-  }
-  more.made_by = command_of(f);
-  append(more, all);
-  study::write_tuned(all, f.out);
   TableWriter table({{"condition", "", true},
                      {"before", "", true},
                      {"recall", "%"},
                      {"tuned", "", true},
                      {"recall", "%"},
                      {"evaluations", ""}});
-  for (const study::TunedRow& p : more.rows)
-    table.add({p.condition, p.before, fmt::format("{:.1f}", 100 * p.recall_before),
-               p.estimator + "+" + p.detector, fmt::format("{:.1f}", 100 * p.recall),
-               fmt::to_string(p.evaluations)});
-  fmt::print("{}", table.format(format));
-  if (interrupt.seen()) say("stopped; the same command goes on from here");
-  return interrupt.seen() ? kInterrupted : int{kGood};
+  const auto share = [](double x) { return std::isnan(x) ? "-" : percent(x, 1); };
+  for (const study::TunedRow& p : rows)
+    table.add({p.condition, p.before, share(p.recall_before), p.estimator + "+" + p.detector,
+               share(p.recall), fmt::to_string(p.evaluations)});
+  if (rows.empty())
+    say(f.out + ": nothing was added: it has all of these pairs that make estimates");
+  else
+    fmt::print("{}", table.format(format));
+  if (told) say("stopped; the same command goes on from here");
+  return told ? kInterrupted : int{kGood};
 }
 
 }  // namespace tauext

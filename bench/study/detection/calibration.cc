@@ -89,15 +89,21 @@ Thresholds calibrate(const CalibrationOptions& o) {
   return calibrated(runs, names, qualities, o);
 }
 
+bool are_for(const Thresholds& t, const Robot& r, const std::string& condition) {
+  const ThresholdSet* const set = t.of(r.name(), 0, r.fingerprint(), condition);
+  return set != nullptr && set->condition == condition;
+}
+
 Thresholds calibrate_for(const std::vector<std::string>& conditions, const CalibrationOptions& o) {
   const StudyRuns& runs = touched_runs(o.robot);
-  std::vector<std::string> itself;
-  for (const std::string& name : conditions) {
-    if (condition(runs, name).trains_itself) itself.push_back(name);
-  }
-  const bool others = conditions.empty() || itself.size() < conditions.size();
+  const std::vector<std::string> names = chosen_conditions(runs, o.conditions, conditions);
+  std::vector<std::string> itself, rest;
+  for (const std::string& name : names)
+    (condition(runs, name).trains_itself ? itself : rest).push_back(name);
+  const bool others = names.empty() || !rest.empty();
   const auto parts = static_cast<double>(itself.size() + others);
   CalibrationOptions of_part = o;
+  if (!o.conditions.empty()) of_part.conditions = rest;
   double begun = 0;
   if (o.progress) of_part.progress = [&](double share) { o.progress((begun + share) / parts); };
   Thresholds all;

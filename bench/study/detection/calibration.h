@@ -25,8 +25,11 @@ namespace tauext::study {
 /// @throws std::invalid_argument for a margin below 1, a robot without runs and unknown names
 Thresholds calibrate(const CalibrationOptions& options);
 
-/// What a study under these conditions needs: of each that trains itself a set for it alone, and,
-/// if there are others or it names none, those of calibrate().
+/// Whether there is a set for this condition alone.
+bool are_for(const Thresholds& thresholds, const Robot& robot, const std::string& condition);
+
+/// What a study under these conditions needs, or those of the options, if they name some: a set for
+/// each condition alone that trains itself; for others, and if none is named, those of calibrate().
 Thresholds calibrate_for(const std::vector<std::string>& conditions,
                          const CalibrationOptions& options);
 

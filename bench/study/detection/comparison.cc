@@ -26,9 +26,9 @@ The JSON has each region by itself.
 
 constexpr const char* kComparisonLegend = R"(
 The last table compares pairs where each raises at most {:g} false alarm an hour in these very runs: with
-its own thresholds times one factor, the same for all joints. Two pairs are as good if their 95 %
-intervals (Wilson) overlap; `groups` counts how many of the sorted pairs are worse, with 95 % each, than
-the best of the group before. too loud: pairs that no factor up to 8 makes so quiet.
+its own thresholds times one factor, the same for all joints. `as good` pairs have 95 % intervals (Wilson)
+that reach the best pair's. groups: how many there are, the best of each being worse than the best of the
+one before, with 95 % each. too loud: pairs that no factor up to 8 makes so quiet.
 )";
 
 std::string name_of(const Cell& c) {
@@ -91,7 +91,8 @@ Comparison compared(const std::string& what, std::span<const Cell> cells, const 
 std::vector<Comparison> compare(std::span<const Cell> cells) {
   std::vector<Comparison> all;
   const auto add = [&](const std::string& what, const CountAt& count) {
-    if (!cells.empty() && count(cells.front(), kOwnLevel).touches > 0)
+    if (!cells.empty() && cells.front().quiet_samples > 0 &&
+        count(cells.front(), kOwnLevel).touches > 0)
       all.push_back(compared(what, cells, count));
   };
   add("blows", [](const Cell& c, std::size_t level) {

@@ -99,7 +99,13 @@ class DetectionStudy::Study {
   };
 
   void add_condition(const StudyOptions& o, const Condition& c) {
-    Tried tried{&c, pairs_of(o, robot(runs_.robot), c)};
+    const Robot& r = robot(runs_.robot);
+    Tried tried{&c, pairs_of(o, r, c)};
+    if (c.trains_itself && !thresholds_.path.empty() && !are_for(thresholds_, r, c.name))
+      throw std::invalid_argument(
+          fmt::format("{}: has no thresholds for the condition {}; tauext-detect --calibrate FILE "
+                      "--train {} makes them",
+                      thresholds_.path, c.name, c.name));
     if (!believers_.contains(c.believed)) believers_[c.believed] = runs_.believer(c.believed);
     models_.try_emplace(plant_of(c), nullptr);
     for (Behind& b : tried.behind) {

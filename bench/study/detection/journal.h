@@ -29,6 +29,8 @@ class Journal {
  private:
   std::string path_;
   int fd_;
+  std::size_t end_ = 0;  // [bytes] of whole lines
+  bool broken_ = false;
 };
 
 }  // namespace tauext::study

@@ -20,6 +20,7 @@
 #include "bench/score/parallel.h"
 #include "bench/study/detection/journal.h"
 #include "bench/study/study_runs.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::study {
@@ -112,11 +113,20 @@ std::vector<Cell> cells_of(const Json& first) {
   return cells;
 }
 
-// what must be alike in all parts
+// what must be alike in all parts: the programs, too
 Json study_of(Json first) {
   first.erase("shard");
-  first.erase("context");
+  for (const char* of_one : {"date", "cpu"}) first.at("context").erase(of_one);
   return first;
+}
+
+// whether a line of ours may have begun so
+bool is_begun(const std::string& text) {
+  for (const std::string& line :
+       {fmt::format("{{\"format\":\"{}\"", kPartFormat), std::string("{\"piece\":")}) {
+    if (text.compare(0, line.size(), line, 0, text.size()) == 0) return true;
+  }
+  return false;
 }
 
 // a file of a part as it is
@@ -127,10 +137,14 @@ class Part {
     if (!in) fail(path, "{}", std::error_code(errno, std::generic_category()).message());
     std::string line;
     while (std::getline(in, line)) {
-      if (in.eof()) return;  // it has no end: whoever wrote it was killed meanwhile
+      if (in.eof()) {  // it has no end: whoever wrote it was killed meanwhile
+        if (!is_begun(line)) refuse("its last line is none of ours");
+        return;
+      }
       take(line);
       end_ += line.size() + 1;
     }
+    if (in.bad()) fail(path, "{}", std::error_code(errno, std::generic_category()).message());
   }
 
   bool empty() const { return first_.is_null(); }
@@ -146,20 +160,35 @@ class Part {
         if (j.value("format", "") != kPartFormat)
           throw std::runtime_error(
               fmt::format("its first line has no \"format\": \"{}\"", kPartFormat));
+        index_ = j.at("shard").at(0).get<int>(), count_ = j.at("shard").at(1).get<int>();
+        cells_ = cells_of(j).size();
         first_ = j;
+        if (index_ < 1 || count_ < index_) throw std::runtime_error("\"shard\" is no part");
         return;
       }
-      pieces_[j.at("piece").get<int>()] = added_of(j.at("adds"));
+      const int piece = j.at("piece").get<int>();
+      if (piece < 0 || piece >= first_.at("pieces").get<int>() || piece % count_ != index_ - 1)
+        throw std::runtime_error(fmt::format("piece {} is not of this part", piece));
+      Added added = added_of(j.at("adds"));
+      for (const auto& [cell, counts] : added) {
+        if (cell >= cells_) throw std::runtime_error(fmt::format("there is no cell {}", cell));
+      }
+      if (!pieces_.emplace(piece, std::move(added)).second)
+        throw std::runtime_error(fmt::format("piece {} is there twice", piece));
     } catch (const std::exception& e) {
-      fail(path_, "no part of a study, as tauext-detect --shard writes it: line {}: {}",
-           first_.is_null() ? 1 : pieces_.size() + 2, one_line(e.what()));
+      refuse(fmt::format("line {}: {}", first_.is_null() ? 1 : pieces_.size() + 2,
+                         one_line(e.what())));
     }
+  }
+  [[noreturn]] void refuse(const std::string& why) const {
+    fail(path_, "no part of a study, as tauext-detect --shard writes it: {}", why);
   }
 
   std::string path_;
   Json first_;
   std::map<int, Added> pieces_;
-  std::size_t end_ = 0;
+  std::size_t end_ = 0, cells_ = 0;
+  int index_ = 1, count_ = 1;
 };
 
 }  // namespace
@@ -226,17 +255,19 @@ bool run_part(const DetectionStudy& study, const StudyAbout& about, const Shard&
 }
 
 Merged merge_parts(const std::vector<std::string>& paths) {
-  if (paths.empty()) throw std::invalid_argument("nothing to merge");
   Json first;                     // of the part with the smallest number
   std::map<int, std::string> in;  // which file has a piece
   std::optional<StudySum> sum;
   for (const std::string& path : paths) {
+    claim_input(path);
     const Part part(path);
     if (part.empty()) fail(path, "is empty");
     if (first.is_null()) {
       sum.emplace(cells_of(part.first()));
     } else if (study_of(part.first()) != study_of(first)) {
-      fail(path, "is a part of another study than {}", paths.front());
+      fail(path, "is a part of another study than {}, or another program made it", paths.front());
+    } else if (part.first().at("shard").at(1) != first.at("shard").at(1)) {
+      fail(path, "is one of another number of parts than {}", paths.front());
     }
     if (first.is_null() || part.first().at("shard") < first.at("shard")) first = part.first();
     for (const auto& [piece, added] : part.pieces()) {

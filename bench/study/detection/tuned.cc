@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -24,7 +26,7 @@ Json to_json(const TunedRow& p) {
   j["detector"] = p.detector;
   j["recall"] = p.recall;
   j["before"] = p.before;
-  j["recall_before"] = p.recall_before;
+  j["recall_before"] = std::isnan(p.recall_before) ? Json() : Json(p.recall_before);
   j["evaluations"] = p.evaluations;
   if (!p.at_ends.empty()) j["at_ends_of_ranges"] = p.at_ends;
   return j;
@@ -39,7 +41,9 @@ TunedRow row_of(const Json& j) {
   p.detector = j.at("detector").get<std::string>();
   p.recall = j.at("recall").get<double>();
   p.before = j.at("before").get<std::string>();
-  p.recall_before = j.at("recall_before").get<double>();
+  const auto& before = j.at("recall_before");
+  p.recall_before =
+      before.is_null() ? std::numeric_limits<double>::quiet_NaN() : before.get<double>();
   p.evaluations = j.at("evaluations").get<int>();
   p.at_ends = j.value("at_ends_of_ranges", std::vector<std::string>());
   return p;
@@ -52,16 +56,16 @@ bool is_tuned(const TunedRow& row, const Robot& robot, const std::string& condit
          (!row.arm.empty() || row.robot == robot.name());
 }
 
-bool is_tuned(const std::vector<TunedRow>& rows, const Robot& robot, const std::string& condition) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [&](const TunedRow& row) { return is_tuned(row, robot, condition); });
-}
-
 void append(const TunedStudy& more, TunedStudy& to) {
   Thresholds& t = to.thresholds;
   const auto join = [](const std::string& text, std::string& all) {
-    if (all.find(text) == all.npos) all += (all.empty() ? "" : "; ") + text;
+    if (!text.empty() && ("; " + all + "; ").find("; " + text + "; ") == all.npos)
+      all += (all.empty() ? "" : "; ") + text;
   };
+  if (!t.sets.empty() && t.margin != more.thresholds.margin)
+    throw std::invalid_argument(
+        fmt::format("{}: its margin is {}, and that of what is added {}: use another file", t.path,
+                    t.margin, more.thresholds.margin));
   t.margin = more.thresholds.margin;
   join(more.thresholds.trained_on, t.trained_on);
   join(more.made_by, to.made_by);

@@ -19,7 +19,7 @@ struct TunedRow {
   std::string estimator, detector;   ///< specifications, with what was found
   std::string before;                ///< what it was before, as estimator+detector
   double recall = 0;                 ///< [1] mean over kinds of regions, without a false alarm
-  double recall_before = 0;          ///< [1] likewise
+  double recall_before = 0;          ///< [1] likewise; NaN if it made no estimates
   int evaluations = 0;               ///< that were made
   std::vector<std::string> at_ends;  ///< keys whose best value is at an end of its range
 };
@@ -27,16 +27,15 @@ struct TunedRow {
 /// A file of them.
 struct TunedStudy {
   Thresholds thresholds;       ///< a set for each condition
-  std::vector<TunedRow> rows;  ///< by robot, condition, estimator and detector
+  std::vector<TunedRow> rows;  ///< in the order in which they were added
   std::string made_by;         ///< commands, apart by "; "
 };
 
 /// Whether a pair was tuned for this robot under that condition.
 bool is_tuned(const TunedRow& row, const Robot& robot, const std::string& condition);
-/// Whether any was.
-bool is_tuned(const std::vector<TunedRow>& rows, const Robot& robot, const std::string& condition);
 
 /// Adds what `more` has.
+/// @throws std::invalid_argument if their margins differ
 void append(const TunedStudy& more, TunedStudy& to);
 
 /// The file appears whole or not at all.

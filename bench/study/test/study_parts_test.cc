@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <memory>
 
 #include "bench/study/detection/detection_report.h"
 #include "bench/study/detection/journal.h"
 #include "mjcf/test/error_of.h"
+#include "mjcf/trace/input_file.h"
 
 namespace tauext::study::test {
 namespace {
@@ -46,6 +47,13 @@ class StudyParts : public ::testing::Test {
     const DetectionStudy study(o, {});
     return run_part(study, about(o, {}), shard_of(shard), path(name), o);
   }
+  // programs that merge do nothing else with these files
+  static Merged merged(const std::vector<std::string>& paths) {
+    const std::shared_ptr<void> last(nullptr, [&](void*) {
+      for (const std::string& p : paths) release_input(p);
+    });
+    return merge_parts(paths);
+  }
   static std::string json(const std::vector<Cell>& cells) { return study_json("", cells, {}); }
 
   std::filesystem::path folder_;
@@ -61,10 +69,10 @@ TEST_F(StudyParts, PutTogetherAreTheWholeToTheLastByte) {
     mine.threads = shard[0] - '0';
     EXPECT_TRUE(run(shard, parts.back().substr(folder_.string().size() + 1), mine));
   }
-  const Merged merged = merge_parts(parts);
-  EXPECT_EQ(json(merged.cells), whole);
-  EXPECT_EQ(merged.about.robot, "wallmobot3");
-  EXPECT_EQ(merged.about.plan.at("collisions"), 90);
+  const Merged whole_again = merged(parts);
+  EXPECT_EQ(json(whole_again.cells), whole);
+  EXPECT_EQ(whole_again.about.robot, "wallmobot3");
+  EXPECT_EQ(whole_again.about.plan.at("collisions"), 90);
 }
 
 TEST_F(StudyParts, OneThatWasStoppedOrKilledGoesOn) {
@@ -74,14 +82,14 @@ TEST_F(StudyParts, OneThatWasStoppedOrKilledGoesOn) {
   o.stop = [&asked] { return ++asked > 4; };
   EXPECT_FALSE(run("1/1", "p", o));
   const auto done = std::filesystem::file_size(path("p"));
-  EXPECT_NE(error_of([&] { merge_parts({path("p")}); }).find("are missing, of --shard 1/1"),
+  EXPECT_NE(error_of([&] { merged({path("p")}); }).find("are missing, of --shard 1/1"),
             std::string::npos);
   // killed within a line
   std::ofstream(path("p"), std::ios::app) << R"({"piece":17,"adds":{"0":{"ru)";
   o.stop = nullptr;
   EXPECT_TRUE(run("1/1", "p", o));
   EXPECT_GT(std::filesystem::file_size(path("p")), done);
-  EXPECT_EQ(json(merge_parts({path("p")}).cells), json(detection_study(o, {})));
+  EXPECT_EQ(json(merged({path("p")}).cells), json(detection_study(o, {})));
   const auto all = std::filesystem::file_size(path("p"));
   EXPECT_TRUE(run("1/1", "p", o));
   EXPECT_EQ(std::filesystem::file_size(path("p")), all) << "nothing is done twice";
@@ -99,20 +107,19 @@ TEST_F(StudyParts, AnotherStudysAreRefused) {
             std::string::npos);
   run("2/2", "b", o);
   EXPECT_NE(error_of([&] {
-              merge_parts({path("a"), path("b")});
+              merged({path("a"), path("b")});
             }).find("another study than"),
             std::string::npos);
   EXPECT_NE(error_of([&] {
-              merge_parts({path("a"), path("a")});
+              merged({path("a"), path("a")});
             }).find("has a piece that"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { merge_parts({path("a")}); }).find("of --shard 2/2"), std::string::npos);
+  EXPECT_NE(error_of([&] { merged({path("a")}); }).find("of --shard 2/2"), std::string::npos);
   std::ofstream(path("x")) << "t,q1\n0,0\n";
-  EXPECT_NE(error_of([&] { merge_parts({path("x")}); }).find("line 1: "), std::string::npos);
+  EXPECT_NE(error_of([&] { merged({path("x")}); }).find("line 1: "), std::string::npos);
   EXPECT_NE(error_of([&] { run("1/2", "x", o); }).find("no part of a study"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(path("x")), 9u) << "and left as it was";
-  EXPECT_NE(error_of([&] { merge_parts({path("nothing")}); }).find("No such file"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { merged({path("nothing")}); }).find("No such file"), std::string::npos);
 }
 
 TEST_F(StudyParts, HaveOneWriter) {
