@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bench/score/metric_list.h"
 #include "bench/score/table.h"
 #include "mjcf/scenarios/region_runs.h"
 #include "mjcf/trace/table_writer.h"
@@ -187,7 +188,7 @@ nlohmann::ordered_json comparisons_json(std::span<const Cell> cells) {
     nlohmann::ordered_json j = {{"condition", cells.front().condition},
                                 {"touches_of", c.what},
                                 {"touches", c.touches},
-                                {"false_alarms_per_hour", kCommonAlarms}};
+                                {key_of(Metric::kFalseAlarmsPerHour), kCommonAlarms}};
     j["groups"] = j["too_loud"] = nlohmann::ordered_json::array();
     for (const std::vector<Standing>& group : c.groups) {
       auto& of_group = j["groups"].emplace_back(nlohmann::ordered_json::array());
@@ -196,8 +197,8 @@ nlohmann::ordered_json comparisons_json(std::span<const Cell> cells) {
                             {"threshold_factor", std::round(1e4 * s.factor) / 1e4},
                             {"found", s.found},
                             {"recall", s.recall()},
-                            {"recall_low", s.interval.low},
-                            {"recall_high", s.interval.high}});
+                            {key_of(Metric::kRecallLow), s.interval.low},
+                            {key_of(Metric::kRecallHigh), s.interval.high}});
     }
     for (const Cell* const cell : c.loud) j["too_loud"].push_back(name_of(*cell));
     all.push_back(std::move(j));
