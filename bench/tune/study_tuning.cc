@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -50,13 +49,13 @@ std::vector<std::string> keys_of_detector(const Robot& r, const std::string& det
 }
 
 // the numbers of a detector that its specification leaves open
-std::vector<TunedKey> keys_of(const Robot& r, const TunedPair& pair) {
+std::vector<TunedKey> open_keys(const Robot& r, const TunedPair& pair) {
   std::vector<std::string> texts;
   for (const std::string& text : keys_of_detector(r, pair.detector)) {
     if (!key_of(pair.detector, text.substr(0, text.find('=')))) texts.push_back(text);
   }
-  return tauext::keys_of(texts, pair, r.estimator_fields(name_of_specification(pair.estimator)),
-                         r.detector_fields(name_of_specification(pair.detector)));
+  return keys_of(texts, pair, r.estimator_fields(name_of_specification(pair.estimator)),
+                 r.detector_fields(name_of_specification(pair.detector)));
 }
 
 constexpr std::array kBandwidths = {5., 12., 30., 75., 190.};  // [rad/s]
@@ -85,7 +84,7 @@ study::TunedRow tuned(const Robot& r, const std::string& condition, const TunedP
                       const StudyTuning& o, int evaluations) {
   study::TunedRow found{r.name(), r.fingerprint(), condition, pair.estimator, pair.detector};
   TuneOptions t;
-  t.keys = keys_of(r, pair);
+  t.keys = open_keys(r, pair);
   if (t.keys.empty()) {
     found.recall = found.recall_before = runs.recall(seen, pair, o.margin);
     found.evaluations = 1;

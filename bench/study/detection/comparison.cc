@@ -32,10 +32,6 @@ that reach the best pair's. groups: how many there are, the best of each being w
 one before, with 95 % each. too loud: pairs that no factor up to 8 makes so quiet.
 )";
 
-std::string name_of(const Cell& c) {
-  return c.estimator + "+" + c.detector;
-}
-
 // "0.10", "25%", .. without the regions
 std::vector<std::string> region_kinds() {
   std::vector<std::string> all;
@@ -122,7 +118,7 @@ std::string format_regions(std::span<const Cell> cells) {
   columns.push_back({"exceeded", "%"});
   TableWriter table(columns);
   for (const Cell& c : cells) {
-    std::vector<std::string> row = {c.estimator + "+" + c.detector};
+    std::vector<std::string> row = {c.name()};
     double exceeded = 0, all = 0;
     for (const std::string& kind : region_kinds()) {
       int found = 0, touches = 0;
@@ -174,7 +170,7 @@ std::string format_comparisons(std::span<const Cell> cells) {
       row.push_back(fmt::to_string(n));
     std::vector<std::string> names;
     for (const Standing& s : best) {
-      if (names.size() < 3) names.push_back(name_of(*s.cell));
+      if (names.size() < 3) names.push_back(s.cell->name());
     }
     row.push_back(fmt::format("{}{}", fmt::join(names, ", "), best.size() > 3 ? ", .." : ""));
     table.add(row);
@@ -193,14 +189,14 @@ nlohmann::ordered_json comparisons_json(std::span<const Cell> cells) {
     for (const std::vector<Standing>& group : c.groups) {
       auto& of_group = j["groups"].emplace_back(nlohmann::ordered_json::array());
       for (const Standing& s : group)
-        of_group.push_back({{"pair", name_of(*s.cell)},
+        of_group.push_back({{"pair", s.cell->name()},
                             {"threshold_factor", std::round(1e4 * s.factor) / 1e4},
                             {"found", s.found},
                             {"recall", s.recall()},
                             {key_of(Metric::kRecallLow), s.interval.low},
                             {key_of(Metric::kRecallHigh), s.interval.high}});
     }
-    for (const Cell* const cell : c.loud) j["too_loud"].push_back(name_of(*cell));
+    for (const Cell* const cell : c.loud) j["too_loud"].push_back(cell->name());
     all.push_back(std::move(j));
   }
   return all;

@@ -54,7 +54,7 @@ std::vector<TableWriter::Column> detection_columns() {
 }
 
 std::vector<std::string> cells_of(const Cell& c) {
-  return {c.estimator + "+" + c.detector,
+  return {c.name(),
           percent(c.detected, c.blows),
           percent(metrics::share_interval(c.detected, c.blows).low, c.blows == 0 ? 0 : 1),
           milliseconds(quantile(c.delays, 0.5)),
@@ -98,18 +98,22 @@ Json number(double x) {
   return std::isnan(x) ? Json(nullptr) : Json(x);
 }
 
+// a share with its 95 % interval; nothing of nothing
+void put_recall(Json& j, int found, int of) {
+  if (of == 0) return;
+  const metrics::Interval recall = metrics::share_interval(found, of);
+  j[key_of(Metric::kRecall)] = static_cast<double>(found) / of;
+  j[key_of(Metric::kRecallLow)] = recall.low;
+  j[key_of(Metric::kRecallHigh)] = recall.high;
+}
+
 Json roc_of(const Cell& c) {
   Json roc;
   for (std::size_t i = 0; i < kLevels.size(); ++i) {
     Json point;
     point["threshold_factor"] = std::round(1e4 * kLevels[i]) / 1e4;
-    point[key_of(Metric::kRecall)] =
-        c.blows == 0 ? 0. : static_cast<double>(c.detected_at[i]) / c.blows;
-    if (c.blows > 0) {
-      const metrics::Interval recall = metrics::share_interval(c.detected_at[i], c.blows);
-      point[key_of(Metric::kRecallLow)] = recall.low;
-      point[key_of(Metric::kRecallHigh)] = recall.high;
-    }
+    point[key_of(Metric::kRecall)] = 0.;
+    put_recall(point, c.detected_at[i], c.blows);
     if (c.quiet_samples > 0)
       point[key_of(Metric::kFalseAlarmsPerHour)] = c.alarms_at[i] / c.hours();
     int touches = 0, found = 0;
@@ -131,19 +135,12 @@ Json regions_of(const Cell& c) {
     const RegionClass& of = region_classes()[i];
     const RegionCount& r = c.regions[i];
     if (r.touches == 0) continue;
-    const metrics::Interval recall = metrics::share_interval(r.found, r.touches);
-    Json j = {{"class", of.name},
-              {"region", of.region->name},
-              {"kind", of.kind},
-              {"limit_N", of.limit()},
-              {"touches", r.touches},
-              {"found", r.found},
-              {key_of(Metric::kRecall), static_cast<double>(r.found) / r.touches},
-              {key_of(Metric::kRecallLow), recall.low},
-              {key_of(Metric::kRecallHigh), recall.high},
-              {"delay_p50_s", number(quantile(r.delays, 0.5))},
-              {"delay_p95_s", number(quantile(r.delays, 0.95))},
-              {"exceeded", r.exceeded()}};
+    Json j = {{"class", of.name},      {"region", of.region->name}, {"kind", of.kind},
+              {"limit_N", of.limit()}, {"touches", r.touches},      {"found", r.found}};
+    put_recall(j, r.found, r.touches);
+    j["delay_p50_s"] = number(quantile(r.delays, 0.5));
+    j["delay_p95_s"] = number(quantile(r.delays, 0.95));
+    j["exceeded"] = r.exceeded();
     const auto rounded = [](double x) {
       return std::round(x * 1e5) / 1e5;
     };  // a file of 1 MB, not 10
@@ -166,11 +163,7 @@ Json to_json(const Cell& c) {
   j["collisions"] = c.blows;
   j["detected"] = c.detected;
   j[key_of(Metric::kRecall)] = c.recall();
-  if (c.blows > 0) {
-    const metrics::Interval recall = metrics::share_interval(c.detected, c.blows);
-    j[key_of(Metric::kRecallLow)] = recall.low;
-    j[key_of(Metric::kRecallHigh)] = recall.high;
-  }
+  put_recall(j, c.detected, c.blows);
   j["delay_p50_s"] = number(quantile(c.delays, 0.5));
   j["delay_p95_s"] = number(quantile(c.delays, 0.95));
   if (!c.delays.empty()) {

@@ -63,6 +63,8 @@ struct Cell {
 
   std::vector<RegionCount> regions;  ///< by region_classes(); or empty
 
+  /// Of the pair.
+  std::string name() const { return estimator + "+" + detector; }
   /// [h] without a touch.
   double hours() const { return static_cast<double>(quiet_samples) * Ts / 3600; }
   /// The lowest of kLevels from which on upwards there are at most so many false alarms an hour;

@@ -162,8 +162,9 @@ class Part {
               fmt::format("its first line has no \"format\": \"{}\"", kPartFormat));
         index_ = j.at("shard").at(0).get<int>(), count_ = j.at("shard").at(1).get<int>();
         cells_ = cells_of(j).size();
-        first_ = j;
+        study_of(j), j.at("pieces").get<int>();  // which throw if they are not there
         if (index_ < 1 || count_ < index_) throw std::runtime_error("\"shard\" is no part");
+        first_ = j;
         return;
       }
       const int piece = j.at("piece").get<int>();

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 
 #include "bench/study/detection/detection_report.h"
 #include "bench/study/detection/journal.h"
@@ -119,7 +120,42 @@ TEST_F(StudyParts, AnotherStudysAreRefused) {
   EXPECT_NE(error_of([&] { merged({path("x")}); }).find("line 1: "), std::string::npos);
   EXPECT_NE(error_of([&] { run("1/2", "x", o); }).find("no part of a study"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(path("x")), 9u) << "and left as it was";
+  // one line without an end may be somebody's note
+  std::ofstream(path("note")) << "a note";
+  EXPECT_NE(error_of([&] { run("1/2", "note", o); }).find("its last line is none of ours"),
+            std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(path("note")), 6u);
   EXPECT_NE(error_of([&] { merged({path("nothing")}); }).find("No such file"), std::string::npos);
+}
+
+// the text with one part of it replaced
+std::string edited(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(StudyParts, WhatIsNotOfAPartIsRefusedWithItsLine) {
+  StudyOptions o = small();
+  o.conditions = {"known_150"};
+  o.regions = 0;
+  run("1/2", "a", o);
+  std::stringstream text;
+  text << std::ifstream(path("a")).rdbuf();
+  const auto error = [&](const std::string& from, const std::string& to) {
+    std::ofstream(path("bad")) << edited(text.str(), from, to);
+    const std::string what = error_of([&] { merged({path("bad")}); });
+    EXPECT_EQ(what.find(path("bad") + ": no part of a study"), 0u) << what;
+    return what;
+  };
+  EXPECT_NE(error("{\"piece\":0,", "{\"piece\":1,").find("piece 1 is not of this part"),
+            std::string::npos);
+  EXPECT_NE(error("{\"piece\":0,", "{\"piece\":99998,").find("piece 99998"), std::string::npos);
+  EXPECT_NE(error("\"adds\":{\"0\":", "\"adds\":{\"77\":").find("there is no cell 77"),
+            std::string::npos);
+  EXPECT_NE(error("\"shard\":[1,2]", "\"shard\":[1,0]").find("line 1: "), std::string::npos);
+  EXPECT_NE(error("\"pieces\"", "\"pisces\"").find("line 1: "), std::string::npos);
+  EXPECT_NE(error("\"context\"", "\"contest\"").find("line 1: "), std::string::npos);
 }
 
 TEST_F(StudyParts, HaveOneWriter) {

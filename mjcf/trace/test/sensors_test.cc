@@ -10,19 +10,12 @@
 #include <string>
 
 #include "mjcf/test/error_of.h"
+#include "mjcf/trace/test/still.h"
 
 namespace tauext::test {
 namespace {
 
 using Eigen::MatrixXd;
-
-Trace still(int samples) {
-  Trace t;
-  for (int k = 0; k < samples; ++k) t.t.push_back(k * 1e-3);
-  t.q = MatrixXd::Constant(3, samples, 0.12345);
-  t.qd = t.tau = t.tau_ext = MatrixXd::Zero(3, samples);
-  return t;
-}
 
 TEST(Sensors, IdealOnesChangeNothing) {
   const Trace t = still(100), m = measure(t, {});

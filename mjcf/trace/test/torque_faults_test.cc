@@ -9,24 +9,16 @@
 
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/sensors.h"
+#include "mjcf/trace/test/still.h"
 
 namespace tauext::test {
 namespace {
 
 using Eigen::MatrixXd;
 
-// at rest
-Trace at_rest(int samples) {
-  Trace t;
-  for (int k = 0; k < samples; ++k) t.t.push_back(k * 1e-3);
-  t.q = MatrixXd::Constant(3, samples, 0.12345);
-  t.qd = t.tau = t.tau_ext = MatrixXd::Zero(3, samples);
-  return t;
-}
-
 // sensors of torque, in shares of what joints are used to
 TEST(TorqueFaults, AreSharesOfWhatAJointIsUsedTo) {
-  Trace t = at_rest(20000);
+  Trace t = still(20000);
   t.usual_torque = Eigen::Vector3d(10, 100, 1000);
   t.tau = t.usual_torque * Eigen::RowVectorXd::Ones(t.size());
   t.q.row(0).setLinSpaced(t.size(), 0, 1), t.q.row(1) = t.q.row(2) = t.q.row(0);
@@ -60,7 +52,7 @@ TEST(TorqueFaults, AreSharesOfWhatAJointIsUsedTo) {
 }
 
 TEST(TorqueFaults, OfATorqueThatRisesAndFallsHysteresisLeavesALoop) {
-  Trace t = at_rest(2001);
+  Trace t = still(2001);
   t.usual_torque = Eigen::Vector3d::Constant(100);
   for (int k = 0; k < t.size(); ++k) t.tau.col(k).setConstant(50 - std::abs(k - 1000) * 0.1);
   const Trace m = measure(t, {.torque = {.hysteresis = 0.02}});
@@ -69,7 +61,7 @@ TEST(TorqueFaults, OfATorqueThatRisesAndFallsHysteresisLeavesALoop) {
 }
 
 TEST(TorqueFaults, RippleIsThatOfWhereTheMotorWasWhenTorqueWasRead) {
-  Trace t = at_rest(2000);
+  Trace t = still(2000);
   t.usual_torque = Eigen::Vector3d::Constant(100);
   for (int k = 0; k < t.size(); ++k) t.q.col(k).setConstant(2 * t.t[static_cast<std::size_t>(k)]);
   const TorqueFaults ripple{.ripple = 0.01};
@@ -80,10 +72,10 @@ TEST(TorqueFaults, RippleIsThatOfWhereTheMotorWasWhenTorqueWasRead) {
 }
 
 TEST(TorqueFaults, SharesOfTorquesThatNobodyKnowsAreAnError) {
-  const std::string error = error_of([] { measure(at_rest(10), {.torque = {.gain = 0.1}}); });
+  const std::string error = error_of([] { measure(still(10), {.torque = {.gain = 0.1}}); });
   EXPECT_NE(error.find("known of a simulated arm alone"), std::string::npos) << error;
   EXPECT_NE(error_of([] {
-              measure(at_rest(10), {.torque = {.ripple = 20}});
+              measure(still(10), {.torque = {.ripple = 20}});
             }).find("torque ripple [1] must be 0 to 10, not 20"),
             std::string::npos);
 }
