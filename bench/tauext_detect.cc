@@ -197,8 +197,8 @@ int run_study(Flags& f) {
 
 int merge(const Flags& f) {
   table_format(f.format);
-  if (!f.out.empty()) AtomicFile{f.out};
   const study::Merged m = study::merge_parts(f.parts);
+  if (!f.out.empty()) AtomicFile{f.out};  // a path that cannot be written, or one of the parts
   write_study(f, m.about, m.cells);
   return kGood;
 }

@@ -36,8 +36,8 @@ struct Flags {
   std::string columns, channel, format = "text";
   TunedPair pair;
   std::vector<std::string> keys, limits, scenario, logs, test_logs;
-  std::vector<std::string> conditions;  // of the study
-  std::string out;
+  std::vector<std::string> conditions, parts;  // of the study; to merge
+  std::string shard, out;
   int evaluations = 60;
   SuiteOptions suite;
 };
@@ -69,11 +69,12 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--channel", f.channel)->group("");
   list("--conditions", f.conditions,
-       "of tauext-detect: tune all pairs for each, or only these estimators..")
+       "tune all pairs of tauext-detect; --shard I/N: a part; then merge PART..")
       ->type_name("NAME,..");
   app.add_option("--out", f.out, "file of pairs and thresholds, of --conditions, to which is added")
       ->type_name("FILE.json")
       ->check(not_empty);
+  app.add_option("--shard", f.shard)->group("")->check(not_empty);
   app.add_option("--evaluations", f.evaluations, "that may be made")
       ->check(CLI::Range(3, 100000).description(""))
       ->capture_default_str()
@@ -217,7 +218,7 @@ void require_flags(const Flags& f) {
 }
 
 int run(const CLI::App& app, Flags& f) {
-  require_mode(app, !f.conditions.empty(), "--conditions", {"--out"});
+  require_mode(app, !f.conditions.empty(), "--conditions", {"--out", "--shard"});
   if (!f.conditions.empty()) {
     const char* why = "one pair, not with --conditions";
     require_mode(app, false, why,
@@ -225,7 +226,7 @@ int run(const CLI::App& app, Flags& f) {
                   "--test_seeds", "--log", "--test_log", "--columns", "--channel"});
     require_mode(app, false, why, recording_flags());
     return tune_conditions({with_lock(f.robot, f.lock), f.conditions, f.pair.estimator,
-                            f.pair.detector, f.evaluations, f.out, f.format});
+                            f.pair.detector, f.evaluations, f.shard, f.out, f.format});
   }
   require_flags(f);
   const TableFormat format = table_format(f.format);
@@ -281,14 +282,19 @@ int run(const CLI::App& app, Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Finds the best parameters of an estimator, and of a detector behind it, on training seeds "
-      "or\n"
-      "recordings, and tells what they are worth on others. Exit code 1: no place keeps the "
-      "limits.\n\n"
+      "Finds the best parameters of an estimator, and of a detector behind it, on training seeds\n"
+      "or recordings, and tells what they are worth on others. Exit code 1: none keeps a limit.\n\n"
       "  tauext-tune --robot wallmobot3 --estimator mo2 --tune bandwidth=5:300 --limit "
       "noise_Nm=1\n",
       "tauext-tune");
   Flags f;
   add_flags(app, f);
-  return run_program(app, argc, argv, [&] { return run(app, f); });
+  CLI::App* const merging = app.add_subcommand("merge", "put files of --shard together");
+  merging->group("")->add_option("parts", f.parts, "their files")->required();
+  merging->add_option("--out", f.out, "file of all of them")->required();
+  return run_program(app, argc, argv, [&] {
+    if (!merging->parsed()) return run(app, f);
+    merge_tuned(f.parts, f.out);
+    return int{kGood};
+  });
 }

@@ -17,6 +17,17 @@
 /// with S factorised and never inverted. Of the symmetric blocks one triangle is computed and
 /// mirrored.
 ///
+/// With window > 0 it adapts, as a strong tracking filter: Zhou and Frank, "Strong tracking
+/// filtering of nonlinear time-varying stochastic systems with coloured noise", International
+/// Journal of Control 1996 (after others' code). In (ii) Phi P Phi^T, what is there without the
+/// densities, is multiplied by
+///     f = max(1, tr N / tr M),   M = (Phi P Phi^T)_pp,
+///     N = V - weakening R / h - h Q_p - h^3/3 Q_d                                       (iv)
+/// with V the mean of nu nu^T, nu = B qd - p before (iii), over the window, and each joint's entry
+/// divided by that of R, so that joints of all sizes count: where the innovations are larger than
+/// they should be, the filter forgets what it knew, and follows. The weakening keeps it from doing
+/// so where V only varies by chance.
+///
 /// In steady state, with Q_p = 0 and Q_d = w^4 R h, this is mo2 of bandwidth w. R moves with the
 /// pose, by orders of magnitude where a straight arm is nearly singular, so a Q_d that is constant
 /// suits one pose; what is tuned for a bandwidth takes Q_d from each pose's R.
@@ -31,16 +42,17 @@
 
 namespace tauext {
 
-/// Disturbance Kalman filter over a robot model M.
-template <RobotModel M>
+/// Disturbance Kalman filter over a robot model M; `kAdapts` gives what is made for a bandwidth a
+/// window of 50 ms, and another name.
+template <RobotModel M, bool kAdapts = false>
 class DisturbanceKalmanFilter {
  public:
-  static constexpr const char* kName = "dkf";
+  static constexpr const char* kName = kAdapts ? "dkf_adaptive" : "dkf";
   static constexpr int kDof = M::kDof;
   using Scalar = ScalarOf<M>;  ///< double, or a Pack for several runs at once
   using Model = M;             ///< of the arm
   template <class Other>
-  using For = DisturbanceKalmanFilter<Other>;  ///< the same over another model
+  using For = DisturbanceKalmanFilter<Other, kAdapts>;  ///< the same over another model
 
   /// Neither w nor Q_d has a default that fits every arm.
   struct Parameters {
@@ -62,6 +74,8 @@ class DisturbanceKalmanFilter {
         Mat<kDof, Scalar>::Zero();  ///< [(N m)^2] of the first d, symmetric, at least 0
     /// [1] standard deviations by which the momentum may jump; a blow makes hundreds
     Scalar gate = 1000;
+    Scalar weakening = 2;  ///< [1] of (iv), at least 1: larger adapts to larger loads alone
+    double window = 0;     ///< [s] of (iv): shorter takes chance for a load sooner; 0: never adapts
     TorqueSampling torque = TorqueSampling::kHeld;  ///< when tau acted
     double max_gap = 0.05;                          ///< [s] a longer gap restarts the filter
 
@@ -73,6 +87,8 @@ class DisturbanceKalmanFilter {
           Field{"Q_p", &P::Q_p, "(N m)^2 s", 0, 1e20, "the model's error; larger is slower"},
           Field{"Q_qd", &P::Q_qd, "(rad/s)^2 s", 1e-30, 1e6, "the noise of qd; larger is slower"},
           Field{"P0_qd", &P::P0_qd, "(rad/s)^2", 0, 1e12, "variance of the first qd"},
+          Field{"weakening", &P::weakening, "1", 1, 1e6, "larger adapts to larger loads alone"},
+          Field{"window", &P::window, "s", 0, 1e3, "over which it adapts; 0: not at all"},
           gate_field<P>(), torque_field<P>(), max_gap_field<P>());
     }
 
@@ -87,6 +103,7 @@ class DisturbanceKalmanFilter {
       Parameters p;
       p.w = w;
       p.P0_qd = kRoot2 * w * p.Q_qd;
+      if (kAdapts) p.window = 0.05;
       return p;
     }
   };
@@ -125,6 +142,8 @@ class DisturbanceKalmanFilter {
       Q_d_ = p_.w * p_.w * p_.w * p_.w * R;
       mirror(Q_d_);
     }
+    if (p_.window > 0) [[unlikely]]
+      fade(sampling_.h(), step, R);
     predict(sampling_.h(), step.n);
     const Mat<kDof, Scalar> S = P_pp_ + R / sampling_.h();
     status = sampling_.confirm(beyond<kDof, Scalar>(p_.gate, step.p - p_hat_, nu_, S.diagonal()));
@@ -150,7 +169,7 @@ class DisturbanceKalmanFilter {
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
   /// What a run is at: all that changes from sample to sample. See runs/runs.h.
   auto memory() noexcept {
-    return std::tuple_cat(std::tie(sampling_, Q_d_, p_hat_, nu_, d_, P_pp_, P_dp_, P_dd_),
+    return std::tuple_cat(std::tie(sampling_, Q_d_, p_hat_, nu_, d_, V_, P_pp_, P_dp_, P_dd_),
                           momentum_.memory());
   }
 
@@ -160,6 +179,7 @@ class DisturbanceKalmanFilter {
   void start(const MomentumStep<kDof, Scalar>& step) noexcept {
     p_hat_ = step.p;
     nu_.setZero();
+    V_.setZero();
     P_pp_.noalias() = step.B * p_.P0_qd.asDiagonal() * step.B.transpose();
     mirror(P_pp_);
     P_dp_.setZero();
@@ -177,6 +197,24 @@ class DisturbanceKalmanFilter {
     P_pp_.diagonal() += h * p_.Q_p;
     P_dp_ -= h * P_dd_ + 0.5 * h * h * Q_d_;
     P_dd_ += h * Q_d_;
+  }
+
+  // (iv), before (ii): Phi (f P) Phi^T is f times Phi P Phi^T. R times h
+  [[gnu::noinline]] void fade(const Scalar& h, const MomentumStep<kDof, Scalar>& step,
+                              const Mat<kDof, Scalar>& R_h) noexcept {
+    using std::exp, std::max;
+    const Vec<kDof, Scalar> nu = step.p - p_hat_ - h * (step.n - d_), R = R_h.diagonal() / h;
+    const Vec<kDof, Scalar> known =
+        P_pp_.diagonal() + h * (h * P_dd_.diagonal() - Scalar(2) * P_dp_.diagonal());
+    const Scalar stays = exp(Scalar(-h / p_.window));
+    V_ = stays * V_ + (Scalar(1) - stays) * nu.cwiseAbs2();
+    const Vec<kDof, Scalar> unexplained =
+        V_ - p_.weakening * R - h * (p_.Q_p + h * h / 3 * Q_d_.diagonal());
+    const Scalar f =
+        max(Scalar(1), Scalar(unexplained.cwiseQuotient(R).sum() / known.cwiseQuotient(R).sum()));
+    P_pp_ *= f;
+    P_dp_ *= f;
+    P_dd_ *= f;
   }
 
   // (iii); false if S is not positive definite
@@ -214,8 +252,13 @@ class DisturbanceKalmanFilter {
   Vec<kDof, Scalar> p_hat_ = Vec<kDof, Scalar>::Zero();  // [N m s]
   Vec<kDof, Scalar> nu_ = Vec<kDof, Scalar>::Zero();  // [N m s] innovation of the last correction
   Vec<kDof, Scalar> d_ = Vec<kDof, Scalar>::Zero();   // [N m] the last estimate
+  Vec<kDof, Scalar> V_ = d_;                          // [(N m s)^2] diagonal of V
   // blocks of P
   Mat<kDof, Scalar> P_pp_ = Mat<kDof, Scalar>::Zero(), P_dp_ = P_pp_, P_dd_ = P_pp_;
 };
+
+/// The one that adapts.
+template <RobotModel M>
+using AdaptiveKalmanFilter = DisturbanceKalmanFilter<M, true>;
 
 }  // namespace tauext

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "estimators/concepts.h"
-#include "estimators/friction.h"
+#include "estimators/math/friction.h"
 #include "estimators/math/sin_cos.h"
 #include "estimators/sampling.h"
 

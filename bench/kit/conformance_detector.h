@@ -150,6 +150,7 @@ class DetectorClaims {
         const double t = k * kTs;
         Measurement<N> y;
         y.t = t;
+        y.qd = Vec<N>::Constant(kSpeed);
         if (k == 1005 || k == 3100) y.qd[j] = std::numeric_limits<double>::quiet_NaN();
         const double load = touch(t, t > 2.5);
         const Detection x = step(d, y, load);
@@ -219,7 +220,8 @@ class DetectorClaims {
   }
 
  private:
-  static constexpr double kTs = 1e-3;  // [s]
+  static constexpr double kTs = 1e-3;    // [s]
+  static constexpr double kSpeed = 0.1;  // [rad/s]
   static constexpr int kSamples = 6000;
 
   // a half sine of 30 ms at 1 s, or a straight line at 3 s that stays; through 50 rad/s it would be
@@ -238,7 +240,7 @@ class DetectorClaims {
   static Detection step(D& d, int k, double load, double shift = 0) {
     Measurement<N> y;
     y.t = k * kTs + shift;
-    y.qd = Vec<N>::Constant(0.1);
+    y.qd = Vec<N>::Constant(kSpeed);
     return step(d, y, load);
   }
 

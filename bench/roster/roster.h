@@ -16,11 +16,14 @@
 #include "estimators/detectors/contact_classifier.h"
 #include "estimators/detectors/cusum.h"
 #include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/energy.h"
+#include "estimators/detectors/glr.h"
 #include "estimators/detectors/high_pass.h"
 #include "estimators/detectors/pan_tompkins.h"
 #include "estimators/detectors/threshold.h"
 #include "estimators/disturbance_kalman_filter.h"
 #include "estimators/ekf.h"
+#include "estimators/extended_state_observer.h"
 #include "estimators/higher_order_momentum_observer.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/momentum_observer.h"
@@ -121,8 +124,10 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   at_bandwidth(std::type_identity<MomentumObserver3<M>>());
   at_bandwidth(std::type_identity<NdobInertia<M>>());
   at_bandwidth(std::type_identity<DisturbanceKalmanFilter<M>>());
+  at_bandwidth(std::type_identity<AdaptiveKalmanFilter<M>>());
   at_bandwidth(std::type_identity<SlidingModeObserver<M>>());
   at_bandwidth(std::type_identity<ActiveObserver<M>>());
+  at_bandwidth(std::type_identity<ExtendedStateObserver<M>>());
 }
 
 /// Calls visit(make) for every estimator of a robot that is not named below. The NDOB is there as
@@ -176,6 +181,8 @@ void for_each_study_detector(Visit&& visit) {
   visit([] { return HighPass<N>(); });
   visit([] { return BandPass<N>(); });
   visit([] { return Cusum<N>(); });
+  visit([] { return Glr<N>(); });
+  visit([] { return Energy<N>(); });
 }
 
 /// Calls visit(make) for every detector of N joints; make() builds one.

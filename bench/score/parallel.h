@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -16,6 +17,15 @@ namespace tauext {
 /// Number of threads for `jobs` of them: 0 means one a core.
 inline int thread_count(int jobs) {
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// The i-th of 0 to n - 1 in an order in which every stretch has work of all kinds, where
+/// neighbours are alike: so the share that is done tells how much time is left, whenever it is
+/// asked.
+inline int mixed(int i, int n) {
+  int step = std::max(1, static_cast<int>(0.618 * n));
+  while (std::gcd(step, n) != 1) --step;
+  return static_cast<int>(static_cast<long long>(i) * step % n);
 }
 
 /// Calls work(i) for i = 0 to n - 1 from several threads, in no order. After an exception no new

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -21,14 +22,16 @@ namespace {
 
 using study::StudyRuns;
 
-// what is tuned of our detectors; of another one all its numbers but those of its marks
+// what is tuned of our detectors; of another one all its numbers above 0, but those of its marks
 const std::map<std::string, std::vector<std::string>>& keys_of_detectors() {
   static const std::map<std::string, std::vector<std::string>> all = {
       {"threshold", {}},
-      {"dynamic_threshold", {"speed=0.05:10"}},
+      {"dynamic_threshold", {"speed=0.05:10", "share=0.001:0.5"}},
       {"high_pass", {"w=1:300"}},
       {"band_pass", {"w_low=1:60", "w_high=65:400"}},
       {"cusum", {"drift", "w=1:200"}},
+      {"glr", {"w=1:200", "span=0.01:0.25"}},
+      {"energy", {"w=5:300"}},
       {"pan_tompkins", {"stride=1:16", "hold=0.002:0.2"}},
       {"clamping", {"w_baseline=0.05:5", "w_smooth=10:300", "duration=0.005:0.5"}},
       {"contact_classifier",
@@ -43,7 +46,7 @@ std::vector<std::string> keys_of_detector(const Robot& r, const std::string& det
   std::vector<std::string> keys;
   for (const FieldHelp& f : r.detector_fields(name)) {
     const bool of_marks = f.key == "refractory" || f.key == "start_up" || f.key == "threshold";
-    if (!of_marks && !f.unit.empty()) keys.push_back(f.key);
+    if (!of_marks && !f.unit.empty() && std::atof(f.value.c_str()) > 0) keys.push_back(f.key);
   }
   return keys;
 }
@@ -54,11 +57,11 @@ std::vector<TunedKey> open_keys(const Robot& r, const TunedPair& pair) {
   for (const std::string& text : keys_of_detector(r, pair.detector)) {
     if (!key_of(pair.detector, text.substr(0, text.find('=')))) texts.push_back(text);
   }
-  return keys_of(texts, pair, r.estimator_fields(name_of_specification(pair.estimator)),
-                 r.detector_fields(name_of_specification(pair.detector)));
+  // an estimator may have a key of that name, too
+  return keys_of(texts, pair, {}, r.detector_fields(name_of_specification(pair.detector)));
 }
 
-constexpr std::array kBandwidths = {5., 12., 30., 75., 190.};  // [rad/s]
+constexpr std::array kBandwidths = {5., 15., 50., 150., 450.};  // [rad/s]
 
 // an estimator as it is, and at each bandwidth, if it has one and does not say it
 std::vector<std::string> designs_of(const Robot& r, const std::string& estimator) {
@@ -135,15 +138,18 @@ void check(const StudyTuning& o) {
 // the pairs of one condition
 class OfCondition {
  public:
+  // `unit` numbers the estimators of all conditions, of which each is of one part
   OfCondition(const StudyTuning& o, const StudyRuns& runs, const std::string& condition,
-              const std::vector<study::TunedRow>& known)
+              const std::vector<study::TunedRow>& known, int& unit)
       : o_(o), robot_(robot(runs.robot)), runs_(runs), condition_(condition) {
     const std::vector<std::string> detectors = study::chosen_detectors(robot_, o.detectors);
     for (const std::string& e : study::chosen_estimators(robot_, o.estimators)) {
+      if (unit++ % o.shard.count != o.shard.index - 1) continue;
       const std::size_t first = rows_.size();
       for (const std::string& d : detectors) {
         if (is_known(known, robot_, condition, {e, d})) continue;
         rows_.push_back({.estimator = e, .detector = d});
+        open_keys(robot_, {e, d});  // which may throw, before it takes its time
       }
       if (rows_.size() == first) continue;
       const std::vector<std::string> designs = designs_of(robot_, e);
@@ -227,10 +233,11 @@ void tune_study(const StudyTuning& o, const std::vector<study::TunedRow>& known)
   check(o);
   const StudyRuns& runs = study::touched_runs(o.robot);
   double begun = 0;
+  int unit = 0;
   for (const std::string& name : o.conditions) {
     if (o.stop && o.stop()) break;
     const std::vector<study::TunedRow> found =
-        OfCondition(o, runs, name, known).run([&](double share) {
+        OfCondition(o, runs, name, known, unit).run([&](double share) {
           if (o.progress)
             o.progress((begun + 0.9 * share) / static_cast<double>(o.conditions.size()));
         });

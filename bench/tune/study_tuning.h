@@ -4,7 +4,7 @@
 /// with the same budget for each, before anybody compares them.
 ///
 /// Each detector's own numbers are searched (tune.h) behind the estimator as it is, and behind it
-/// at five bandwidths from 5 to 190 rad/s. What counts is the share of meetings with regions of a
+/// at five bandwidths from 5 to 450 rad/s. What counts is the share of meetings with regions of a
 /// body that a pair finds, as the mean over their kinds, with thresholds that no training run
 /// without a touch reaches. All of it happens on training seeds, on which the arm moves otherwise
 /// than in a test (brisk_motion).
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/roster/thresholds.h"
+#include "bench/study/detection/study_parts.h"
 #include "bench/study/detection/tuned.h"
 
 namespace tauext {
@@ -25,6 +26,7 @@ struct StudyTuning {
   std::vector<std::string> conditions;   ///< each for itself
   std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
   std::vector<std::string> detectors;    ///< specifications; empty: all
+  study::Shard shard;                    ///< of the estimators of all conditions
   int evaluations = 60;                  ///< of each pair, at most; shared by its bandwidths
   int free_runs = 16;                    ///< of 30 s without a touch, for each evaluation
   int meetings = 3;                      ///< of each kind, at least, likewise

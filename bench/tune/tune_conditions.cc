@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -39,7 +40,7 @@ std::string command_of(const ConditionsToTune& f) {
       fmt::format(" --conditions {} --evaluations {}", fmt::join(f.conditions, ","), f.evaluations);
   if (!f.estimators.empty()) text += " --estimator " + f.estimators;
   if (!f.detectors.empty()) text += " --detector " + f.detectors;
-  return text + " --out " + f.out;
+  return text + " --out FILE.json";  // whose name says nothing, nor that it was made in parts
 }
 
 }  // namespace
@@ -65,6 +66,7 @@ int tune_conditions(const ConditionsToTune& f) {
   o.estimators = list_of(f.estimators);
   o.detectors = list_of(f.detectors);
   o.evaluations = f.evaluations;
+  if (!f.shard.empty()) o.shard = study::shard_of(f.shard);
   o.progress = progress.callback();
   o.stop = [&] {
     if (interrupt.seen() && !told.exchange(true))
@@ -97,6 +99,26 @@ int tune_conditions(const ConditionsToTune& f) {
     fmt::print("{}", table.format(format));
   if (told) say("stopped; the same command goes on from here");
   return told ? kInterrupted : int{kGood};
+}
+
+void merge_tuned(const std::vector<std::string>& paths, const std::string& out) {
+  study::TunedStudy all;
+  for (const std::string& path : paths) {
+    const study::TunedStudy more = study::read_tuned(path);
+    if (more.rows.empty())
+      throw std::runtime_error(path + ": has no pairs that tauext-tune --conditions has tuned");
+    for (const study::TunedRow& p : more.rows) {
+      if (std::any_of(all.rows.begin(), all.rows.end(), [&](const study::TunedRow& k) {
+            return k.robot == p.robot && k.arm == p.arm && k.condition == p.condition &&
+                   k.before == p.before;
+          }))
+        throw std::runtime_error(fmt::format("{}: {} for {} on {} is in a file before it, too",
+                                             path, p.before, p.condition, p.robot));
+    }
+    append(more, all);
+  }
+  study::write_tuned(all, out);
+  say(fmt::format("{}: {} pairs", out, all.rows.size()));
 }
 
 }  // namespace tauext

@@ -14,6 +14,7 @@ struct ConditionsToTune {
   std::vector<std::string> conditions;  ///< names
   std::string estimators, detectors;    ///< specifications, apart by commas; "" for all
   int evaluations;                      ///< of each pair
+  std::string shard;                    ///< "I/N", or "" for all of it
   std::string out;                      ///< the file, to which is added
   std::string format;                   ///< of the table
 };
@@ -22,5 +23,9 @@ struct ConditionsToTune {
 /// @returns an ExitCode: kInterrupted if there are pairs left
 /// @throws as tune_study(), and std::runtime_error naming the file
 int tune_conditions(const ConditionsToTune& what);
+
+/// Puts files of tuned pairs together, in any order: the file that one machine makes.
+/// @throws std::runtime_error naming the file for what is none, and for a pair that is there twice
+void merge_tuned(const std::vector<std::string>& paths, const std::string& out);
 
 }  // namespace tauext

@@ -2,8 +2,10 @@
 /// @file
 /// A limit that grows with speed, since errors of friction and inertia do: Sotoudehnejad and
 /// Kermani, "Velocity-based variable thresholds for improving collision detection in manipulators",
-/// ICRA 2014, in its simplest form.
-///     mark where max_i(|tau_ext_i| / (threshold_i (1 + |qd_i| / speed))) rises through 1
+/// ICRA 2014, in its simplest form; and with the torque that holds and moves the arm, since errors
+/// of gains, masses and payloads do (ours).
+///     mark where max_i((|tau_ext_i| - share |tau_i|) / (threshold_i (1 + |qd_i| / speed))) rises
+///     through 1
 #pragma once
 
 #include <tuple>
@@ -21,6 +23,7 @@ struct DynamicThresholdParameters {
   /// 1.2 m
   Vec<N> threshold = Vec<N>::Constant(100);
   double speed = 0.5;       ///< [rad/s] at which the limit has doubled: smaller trusts motion less
+  double share = 0;         ///< [1] of tau that may be wrong: larger trusts model and sensor less
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
 
@@ -28,7 +31,8 @@ struct DynamicThresholdParameters {
     using P = DynamicThresholdParameters;
     return std::tuple_cat(
         std::tuple(threshold_field<P>("N m"),
-                   Field{"speed", &P::speed, "rad/s", 1e-6, 1e6, "where the limit has doubled"}),
+                   Field{"speed", &P::speed, "rad/s", 1e-6, 1e6, "where the limit has doubled"},
+                   Field{"share", &P::share, "1", 0, 1e3, "of tau that may be wrong"}),
         marking_fields<P>());
   }
 };
@@ -39,7 +43,7 @@ class DynamicThreshold {
  public:
   static constexpr const char* kName = "dynamic_threshold";
   static constexpr int kDof = N;
-  static constexpr int kDegree = 1;
+  static constexpr int kDegree = 1;                  ///< at least: the share does not grow
   using Parameters = DynamicThresholdParameters<N>;  ///< what can be set
   template <class Other>
   using For = DynamicThreshold<N, Other>;  ///< the same, computed with another number
@@ -58,20 +62,22 @@ class DynamicThreshold {
   DetectionOf<Scalar> update(
       const Measurement<N, Scalar>& y,
       const Vec<N, Scalar>& tau_ext) noexcept requires std::is_same_v<Scalar, double> {
-    if (!within(y.qd, kMeasurementLimit)) return marking_.held();
-    return update(y.t, y.qd, tau_ext);
+    if (!within(y.qd, kMeasurementLimit) || !within(y.tau, kMeasurementLimit))
+      return marking_.held();
+    return update(y.t, y.qd, y.tau, tau_ext);
   }
-  /// The same of qd [rad/s] at t [s] that is measured.
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd,
+  /// The same of qd [rad/s] and tau [N m] at t [s] that are measured.
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd, const Vec<N, Scalar>& tau,
                              const Vec<N, Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     const Vec<N, Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
-    statistic_ = tau_ext.cwiseAbs().cwiseQuotient(growth);
+    const Vec<N, Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
+    statistic_ = beyond.cwiseMax(Scalar(0)).cwiseQuotient(growth);
     return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
                     Contact::kCollision);
   }
 
-  /// [N m] |tau_ext| as it would count at rest.
+  /// [N m] |tau_ext| as it would count at rest and without a torque.
   const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
 
  private:

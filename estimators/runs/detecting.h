@@ -25,13 +25,15 @@ concept DetectsRuns = CollisionDetector<D> && requires(const D& d) {
 
 /// The next sample of all runs.
 /// @param d a detector of runs: For<Pack<W>> of one that DetectsRuns
-/// @param y the samples, all at the time of the first; else only qd [rad/s] is read, by detectors
-/// that want it: numbers within kMeasurementLimit
+/// @param y the samples, all at the time of the first; else only qd [rad/s] and tau [N m] are read,
+/// by detectors that want them: numbers within kMeasurementLimit
 /// @param tau_ext [N m] their estimates, all of them used()
 template <class D, class Scalar>
 [[gnu::always_inline]] inline RunsDetection<Scalar> detect_runs(
     D& d, const Measurement<D::kDof, Scalar>& y, const Vec<D::kDof, Scalar>& tau_ext) noexcept {
-  if constexpr (requires { d.update(y.t[0], y.qd, tau_ext); }) {
+  if constexpr (requires { d.update(y.t[0], y.qd, y.tau, tau_ext); }) {
+    return d.update(y.t[0], y.qd, y.tau, tau_ext);
+  } else if constexpr (requires { d.update(y.t[0], y.qd, tau_ext); }) {
     return d.update(y.t[0], y.qd, tau_ext);
   } else {
     return d.update(y.t[0], tau_ext);

@@ -3,6 +3,7 @@
 // bench/kit/conformance.h.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -12,9 +13,13 @@
 #include "estimators/detectors/clamping.h"
 #include "estimators/detectors/cusum.h"
 #include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/energy.h"
+#include "estimators/detectors/glr.h"
 #include "estimators/detectors/high_pass.h"
 #include "estimators/detectors/pan_tompkins.h"
 #include "estimators/detectors/threshold.h"
+#include "estimators/test/arm.h"
+#include "estimators/testbed1.h"
 
 namespace tauext::test {
 namespace {
@@ -59,6 +64,15 @@ TEST(DynamicThreshold, HasTwiceTheLimitAtItsSpeed) {
   EXPECT_DOUBLE_EQ(score(0), 1);
   EXPECT_DOUBLE_EQ(score(0.4), 0.5);
   EXPECT_DOUBLE_EQ(score(-1.2), 0.25);
+}
+
+TEST(DynamicThreshold, LeavesOutTheShareOfTheTorqueThatMayBeWrong) {
+  DynamicThreshold<3> d({.threshold = Vec<3>::Constant(100), .speed = 1e6, .share = 0.1});
+  Measurement<3> y;
+  y.tau = Vec<3>(-400, 1e4, 0);  // joint 2 bears much, and sees nothing
+  EXPECT_NEAR(d.update(y, on_joint_1(90)).score, 0.5, 1e-12);
+  EXPECT_NEAR(d.statistic()[0], 50, 1e-9);
+  EXPECT_EQ(d.statistic()[1], 0);
 }
 
 TEST(HighPass, AnswersAStepByExp) {
@@ -128,6 +142,70 @@ TEST(DynamicThreshold, MarksALoadThatRisesWithABadSpeed) {
   EXPECT_EQ(marks, 1);
 }
 
+TEST(Glr, MarksAStepWhereItsHeightTimesTheRootOfWhatHasPassedReachesTheThreshold) {
+  // after 64 samples the span of 64, the longest below 0.1 s, has all of the step;
+  constexpr double kHeight = 30;
+  // and the slow mean takes less than 1e-4 of it
+  const Glr<3> d(
+      {.threshold = Vec<3>::Constant(kHeight * std::sqrt(0.064) * (1 - 2e-4)), .w = 1e-3});
+  EXPECT_NEAR(first_mark(d, step(kHeight)) - 0.5, 0.063, 1e-9);
+  EXPECT_EQ(first_mark(d, step(0.99 * kHeight)), -1);
+  EXPECT_NEAR(first_mark(d, step(-2 * kHeight)) - 0.5, 0.015, 1.1e-3);
+}
+
+TEST(Glr, FindsShortAndLongTouchesOfOneEnergyAlike) {
+  // a^2 T is the same, and so is g: at 1 kHz as at 2 kHz
+  for (const double Ts : {1e-3, 0.5e-3}) {
+    for (const double T : {0.004, 0.016, 0.064}) {
+      Glr<3> d({.w = 1e-3});
+      double most = 0;
+      for (int k = 0; k * Ts < 1; ++k) {
+        const double t = k * Ts;
+        d.update(t, on_joint_1(t > 0.5 - Ts / 2 && t < 0.5 + T - Ts / 2 ? 5 / std::sqrt(T) : 0));
+        most = std::max(most, d.statistic()[0]);
+      }
+      EXPECT_NEAR(most, 5, 0.01) << T << " s, every " << Ts;
+    }
+  }
+}
+
+TEST(Energy, IsTheFilteredPowerOfTheContact) {
+  constexpr double kW = 60, kSpeed = 0.4, kLoad = 50;
+  Energy<3> d({.threshold = Vec<3>::Constant(1e3), .w = kW});
+  Measurement<3> y;
+  y.qd[0] = kSpeed;
+  d.update(y, Vec<3>::Zero());
+  for (int k = 1; k < 300; ++k) {
+    y.t = k * 1e-3;
+    d.update(y, on_joint_1(-kLoad));
+    const double power = kSpeed * kLoad * (1 - std::exp(-kW * (k - 1) * 1e-3));
+    ASSERT_NEAR(d.statistic()[0], power, 1e-9);
+    ASSERT_EQ(d.statistic()[0], d.statistic()[2]) << "one number for the arm";
+  }
+}
+
+TEST(Energy, IsWhatTheBalanceOfKineticEnergySays) {
+  // (i) as it is printed, by the trapezoidal rule, with the sign of (3)
+  const Testbed1 arm({.theta4 = 0});
+  constexpr double kW = 40, h = 0.1e-3;
+  const auto load = [](double t) -> Vec<1> { return Vec<1>(t < 0.5 ? 0 : 8 * std::sin(7 * t)); };
+  Energy<1> d({.threshold = Vec<1>::Constant(1e3), .w = kW});
+  double begun = 0, integral = 0, rate = 0, r = 0;
+  bool first = true;
+  for (const auto& y : simulate<Testbed1>(grid(2, h), load, {.amplitude = 0.3, .w = 3}, arm)) {
+    d.update(y, load(y.t));
+    const double kinetic = 0.5 * y.qd.dot(arm.inertia(y.q) * y.qd);
+    const double now = y.qd.dot(y.tau - arm.gravity(y.q) - arm.friction(y.qd));
+    if (first) begun = kinetic;
+    if (!first) integral += 0.5 * h * (rate + now) - h * r;
+    first = false;
+    rate = now;
+    r = kW * (begun + integral - kinetic);
+    ASSERT_NEAR(std::abs(r), d.statistic()[0], 0.02) << "W at t = " << y.t;
+  }
+  EXPECT_GT(d.statistic()[0], 0.2);
+}
+
 Clamping<3>::Parameters clamping() {
   return {.threshold = Vec<3>::Constant(100), .start_up = 0.4};
 }
@@ -190,7 +268,7 @@ TEST(Detectors, RefuseThresholdsAndCutOffsOfZero) {
 template <class D>
 class EveryDetector : public testing::Test {};
 using Calibratable = testing::Types<Threshold<3>, DynamicThreshold<3>, HighPass<3>, BandPass<3>,
-                                    Cusum<3>, Clamping<3>, PanTompkins<3>>;
+                                    Cusum<3>, Glr<3>, Energy<3>, Clamping<3>, PanTompkins<3>>;
 TYPED_TEST_SUITE(EveryDetector, Calibratable);
 
 TYPED_TEST(EveryDetector, RefusesAThresholdThatIsNoPositiveNumber) {

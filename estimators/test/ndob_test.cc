@@ -51,6 +51,27 @@ TEST(Ndob, ErrorDecaysAtTheRatesOfXOverB) {
   }
 }
 
+TEST(Ndob, IsTheVelocityObserverOfItsGain) {
+  // r = -X (qd - qd_0 - integral of B^-1 (tau - C qd - g - F - r)), with the sign of (3)
+  const WallMoBot3 arm;
+  const ArmNdob::Parameters p = ArmNdob::Parameters::paper();
+  constexpr double h = 0.1e-3;
+  const auto load = [](double t) -> Vec<3> { return Vec<3>(30, -20, 10) * (t < 0.3 ? 0 : 1); };
+  ArmNdob ndob(arm, p);
+  Vec<3> begun = Vec<3>::Zero(), integral = begun, r = begun, before = begun;
+  bool first = true;
+  for (const auto& y : simulate(grid(1.5, h), load, {.amplitude = 0.3, .w = 2})) {
+    const Vec<3> d = ndob.update(y).tau_ext;
+    if (first) begun = y.qd;
+    integral += h * before;
+    if (!first) r = -p.X.cwiseProduct(y.qd - begun - integral);
+    first = false;
+    before = arm.inertia(y.q).inverse() * (y.tau - arm.bias(y.q, y.qd) - arm.friction(y.qd) - r);
+    ASSERT_LT((d - r).norm(), 0.15) << "N m at t = " << y.t;
+  }
+  EXPECT_GT(r.norm(), 30);
+}
+
 // [N m] rms in free motion
 double rms_in_motion(Integration rule) {
   ArmNdob::Parameters p = ArmNdob::Parameters::paper();

@@ -11,10 +11,13 @@
 #include "estimators/detectors/contact_classifier.h"
 #include "estimators/detectors/cusum.h"
 #include "estimators/detectors/dynamic_threshold.h"
+#include "estimators/detectors/energy.h"
+#include "estimators/detectors/glr.h"
 #include "estimators/detectors/high_pass.h"
 #include "estimators/detectors/threshold.h"
 #include "estimators/disturbance_kalman_filter.h"
 #include "estimators/ekf.h"
+#include "estimators/extended_state_observer.h"
 #include "estimators/higher_order_momentum_observer.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/momentum_observer.h"
@@ -64,12 +67,12 @@ int all_refused(const typename T::Parameters& good, Build&& build) {
   return count;
 }
 
+// a design of the widest limits, too
 template <class E>
-int of_estimator() {
+int of_estimator(double most = kMostBandwidth) {
   const WallMoBot3 arm;
   int count = 0;
-  for (const double w :
-       {kLeastBandwidth, 30., kMostBandwidth}) {  // a design of the widest limits, too
+  for (const double w : {kLeastBandwidth, 30., most}) {
     count = all_refused<E>(E::Parameters::for_bandwidth(arm, w), [&](const auto& p) { E(arm, p); });
   }
   return count / 3;
@@ -89,7 +92,8 @@ TEST(Parameters, OfEveryEstimatorAreRefusedBeyondTheirLimitsByName) {
   EXPECT_EQ(of_estimator<MomentumObserver3<M>>(), 2);
   EXPECT_EQ(of_estimator<NdobInertia<M>>(), 2);
   EXPECT_EQ(of_estimator<Ndob<M>>(), 2);
-  EXPECT_EQ(of_estimator<DisturbanceKalmanFilter<M>>(), 5);
+  EXPECT_EQ(of_estimator<DisturbanceKalmanFilter<M>>(), 7);
+  EXPECT_EQ(of_estimator<ExtendedStateObserver<M>>(kMostBandwidth / 2), 2) << "poles of 1.96 w";
   EXPECT_EQ(of_estimator<SlidingModeObserver<M>>(), 5);
   EXPECT_EQ(of_estimator<ActiveObserver<M>>(), 6);
   EXPECT_EQ(of_estimator<Ekf<M>>(), 7);
@@ -97,10 +101,12 @@ TEST(Parameters, OfEveryEstimatorAreRefusedBeyondTheirLimitsByName) {
 
 TEST(Parameters, OfEveryDetectorAreRefusedBeyondTheirLimitsByName) {
   EXPECT_EQ(of_detector<Threshold<3>>(), 3);
-  EXPECT_EQ(of_detector<DynamicThreshold<3>>(), 4);
+  EXPECT_EQ(of_detector<DynamicThreshold<3>>(), 5);
   EXPECT_EQ(of_detector<HighPass<3>>(), 4);
   EXPECT_EQ(of_detector<BandPass<3>>(), 5);
   EXPECT_EQ(of_detector<Cusum<3>>(), 5);
+  EXPECT_EQ(of_detector<Glr<3>>(), 5);
+  EXPECT_EQ(of_detector<Energy<3>>(), 4);
   EXPECT_EQ(of_detector<Clamping<3>>(), 6);
   EXPECT_EQ(of_detector<PanTompkins<3>>(), 5);
   EXPECT_EQ(of_detector<ContactClassifier<3>>(), 2);

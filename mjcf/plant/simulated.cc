@@ -8,7 +8,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "estimators/friction.h"
+#include "estimators/math/friction.h"
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"

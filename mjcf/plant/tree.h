@@ -31,8 +31,8 @@ inline constexpr double kQuickestFriction = 500;
 /// other (mjcf/mujoco/ties.h), whatever gears its actuators have; but where motors on fixed
 /// tendons say what the joint coordinates are (mjcf/mujoco/layout.h, wallmobot3), these. Friction
 /// is the file's damping and frictionloss of joints, the latter smooth over 0.01 rad/s
-/// (estimators/friction.h says why), or over more where its slope would stop the joint faster than
-/// kQuickestFriction. Bodies without a joint belong to the body that carries them.
+/// (estimators/math/friction.h says why), or over more where its slope would stop the joint faster
+/// than kQuickestFriction. Bodies without a joint belong to the body that carries them.
 struct ArmTree {
   std::vector<TreeJoint> joints;    ///< in the file's order
   std::vector<std::string> names;   ///< of these joints; "" without one

@@ -22,7 +22,7 @@ TEST(EveryDetector, Conforms) {
   };
   for_each_detector<3>(check);
   for_each_detector<1>(check);
-  EXPECT_EQ(count, 16);
+  EXPECT_EQ(count, 20);
 }
 
 }  // namespace

@@ -11,6 +11,6 @@ function provenance() {
 if (ENTRIES.length) heat_map(), ranking();
 requestAnimationFrame(() => setTimeout(() => {  // what takes longer, once something is seen
   if (TRACES.length) runs(), step_answers();
-  trade_offs(), detection(), meetings(), costs(), seeds(), history_of_gate(), provenance();
+  trade_offs(), detection(), standings(), meetings(), costs(), seeds(), history_of_gate(), provenance();
   document.body.dataset.done = 'yes';
 }));

@@ -58,6 +58,30 @@ function meetings() {
   }
 }
 
+// which pairs nobody can tell apart
+function standings() {
+  for (const f of of_kind('study').filter((x) => (x.data.comparisons || []).some((c) => c.touches > 0))) {
+    const all = f.data.comparisons.map((c, i) => ({...c, at: `${f.at}/comparisons/${i}`})).filter((c) => c.touches > 0);
+    const conditions = [...new Set(all.map((c) => c.condition))], place = element('div');
+    let condition = conditions[0], what = all[0].touches_of;
+    const draw = () => {
+      const c = all.find((x) => x.condition === condition && x.touches_of === what);
+      if (!c) return place.replaceChildren(element('p', {}, `${what}: nothing of it under ${condition}`));
+      const rows = c.groups.flatMap((group, g) => group.map((s) => ({...s, group: g})));
+      if (rows.length === 0) return place.replaceChildren(element('p', {}, 'no pair is so quiet'));
+      const figure = chart({title: `${condition}, ${what}: ${c.touches} touches, at most ${c.false_alarms_per_hour} false alarm an hour`, rows: rows.map((s) => s.pair), width: Math.max(690, place.clientWidth), x: {label: 'found [1], 95 % interval', range: [0, 1]}}, (plot) => rows.forEach((s, i) => {
+        plot.box(s.recall_low, s.recall_high, i, look(s.group), 9, `group ${s.group + 1}: ${s.found} of ${c.touches}, thresholds times ${s.threshold_factor}`);
+        plot.point([s.recall, i], {...look(s.group), r: 2.5}, `${s.pair}: ${s.recall.toFixed(3)} (${s.recall_low.toFixed(3)} to ${s.recall_high.toFixed(3)})`);
+      }));
+      const loud = c.too_loud.length > 0 ? [element('p', {class: 'note'}, `Louder at every threshold: ${c.too_loud.join(', ')}.`)] : [];
+      place.replaceChildren(figure, ...loud);
+    };
+    section('standings' + f.at.replace(/\D/g, ''), `Which pairs can be told apart: ${f.name}`, 'Each pair with its thresholds times the least factor at which it raises so few false alarms. A colour is a group: intervals that reach that of its best pair, so from these runs nobody can say which is better.',
+      select('condition', conditions, condition, (v) => { condition = v; draw(); }), select('of', [...new Set(all.map((c) => c.touches_of))], what, (v) => { what = v; draw(); }), place);
+    draw();
+  }
+}
+
 // ---- seeds
 function seeds() {
   for (const f of of_kind('seeds')) {

@@ -144,7 +144,8 @@ class SessionOf final : public Session {
     return std::all_of(traces_.begin(), traces_.end(), [&](const Trace& t) {
       return t.t == traces_.front().t &&
              t.torque_at_instants == traces_.front().torque_at_instants &&
-             within(t.qd.reshaped(), kMeasurementLimit);
+             within(t.qd.reshaped(), kMeasurementLimit) &&
+             within(t.tau.reshaped(), kMeasurementLimit);
     });
   }
 

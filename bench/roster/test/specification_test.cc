@@ -108,7 +108,8 @@ TEST(Specification, SetsTheBandwidthOfEveryTunableEstimator) {
 
 TEST(Specification, TunableEstimatorsAreThoseOfBothRobotsThatHaveAFormulaForABandwidth) {
   const std::vector<std::string> tunable{
-      "inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf", "smo", "aob", "ekf", "ndob"};
+      "inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf",
+      "dkf_adaptive",     "smo", "aob", "eso", "ekf",     "ndob"};
   EXPECT_EQ(wallmobot3().tunable(), tunable);
   EXPECT_EQ(robot("testbed1").tunable(), tunable);
 }

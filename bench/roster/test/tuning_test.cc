@@ -31,8 +31,8 @@ Trace held(const Model& model, double pose, double step) {
 // the estimators that every robot has, by name; the worst joint
 std::map<std::string, Answer> answers(const Robot& robot, const Trace& trace, double step) {
   std::map<std::string, Answer> all;
-  for (const char* name : {"inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf", "smo", "aob",
-                           "ekf:bandwidth=30"}) {
+  for (const char* name : {"inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf",
+                           "dkf_adaptive", "smo", "aob", "eso", "ekf:bandwidth=30"}) {
     const Output out = robot.runner(name, "", trace)->run();
     Score score;
     add_error_metrics(trace, out, 0, score);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bench/roster/specification.h"
 #include "bench/score/metric_list.h"
 #include "bench/score/table.h"
 #include "mjcf/scenarios/region_runs.h"
@@ -112,13 +113,24 @@ std::vector<Comparison> compare(std::span<const Cell> cells) {
   return all;
 }
 
+std::string short_name(const Cell& cell, std::span<const Cell> cells) {
+  const auto bare = [](const Cell& c) {
+    return fmt::format("{}+{}", name_of_specification(c.estimator),
+                       name_of_specification(c.detector));
+  };
+  const std::string name = bare(cell);
+  const auto same =
+      std::count_if(cells.begin(), cells.end(), [&](const Cell& c) { return bare(c) == name; });
+  return same == 1 ? name : cell.name();
+}
+
 std::string format_regions(std::span<const Cell> cells) {
   std::vector<TableWriter::Column> columns = {{"estimator+detector", "", true}};
   for (const std::string& kind : region_kinds()) columns.push_back({kind, "%"});
   columns.push_back({"exceeded", "%"});
   TableWriter table(columns);
   for (const Cell& c : cells) {
-    std::vector<std::string> row = {c.name()};
+    std::vector<std::string> row = {short_name(c, cells)};
     double exceeded = 0, all = 0;
     for (const std::string& kind : region_kinds()) {
       int found = 0, touches = 0;
@@ -170,7 +182,7 @@ std::string format_comparisons(std::span<const Cell> cells) {
       row.push_back(fmt::to_string(n));
     std::vector<std::string> names;
     for (const Standing& s : best) {
-      if (names.size() < 3) names.push_back(s.cell->name());
+      if (names.size() < 3) names.push_back(short_name(*s.cell, cells));
     }
     row.push_back(fmt::format("{}{}", fmt::join(names, ", "), best.size() > 3 ? ", .." : ""));
     table.add(row);

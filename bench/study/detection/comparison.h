@@ -41,6 +41,9 @@ struct Comparison {
 /// region, and clamped; then by class.
 std::vector<Comparison> compare(std::span<const Cell> cells);
 
+/// The pair's names without their keys, where no other one of these has them; else as it is.
+std::string short_name(const Cell& cell, std::span<const Cell> cells);
+
 /// What was found of each kind of meeting with regions, as a table. @param cells of one condition
 std::string format_regions(std::span<const Cell> cells);
 std::string region_legend();      ///< what its columns mean

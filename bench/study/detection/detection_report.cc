@@ -29,7 +29,8 @@ fewer of them per hour than `fewer than`. on: share of that time in which the de
 alarm. called: marks there that are called a collision. brisk: share of the pushes of a third of
 the largest blow, in 0.1 s, that were marked. clamping: share of the soft clampings that
 were marked while they held. named: share that was also called a clamping. failed: runs in which
-an estimate was missing; they count like the others.
+an estimate was missing; they count like the others. Keys of specifications stand in the JSON where
+pairs are told apart without them.
 )";
 
 std::string per_hour(double alarms, const Cell& c) {
@@ -53,8 +54,8 @@ std::vector<TableWriter::Column> detection_columns() {
           {"failed", "runs"}};
 }
 
-std::vector<std::string> cells_of(const Cell& c) {
-  return {c.name(),
+std::vector<std::string> cells_of(const Cell& c, const std::string& name) {
+  return {name,
           percent(c.detected, c.blows),
           percent(metrics::share_interval(c.detected, c.blows).low, c.blows == 0 ? 0 : 1),
           milliseconds(quantile(c.delays, 0.5)),
@@ -81,7 +82,7 @@ std::string text(const StudyRuns& runs, const std::vector<Cell>& cells) {
                        condition(runs, first.condition).description, first.blows, first.hours(),
                        first.brisk, first.clampings);
     TableWriter table(detection_columns());
-    for (const Cell& c : of_one) table.add(cells_of(c));
+    for (const Cell& c : of_one) table.add(cells_of(c, short_name(c, of_one)));
     out += table.format();
     if (!first.regions.empty()) out += "\n" + format_regions(of_one);
     regions = regions || !first.regions.empty();
@@ -206,7 +207,7 @@ std::string format_study(const std::string& robot, const std::vector<Cell>& cell
   all.insert(all.begin(), {"condition", "", true});
   TableWriter table(all);
   for (const Cell& c : cells) {
-    std::vector<std::string> row = cells_of(c);
+    std::vector<std::string> row = cells_of(c, c.name());
     row.insert(row.begin(), c.condition);
     table.add(row);
   }

@@ -124,8 +124,10 @@ class DetectionStudy::Study {
   static std::vector<Behind> pairs_of(const StudyOptions& o, const Robot& r, const Condition& c) {
     std::vector<Behind> all;
     const auto add = [&](const std::string& e, const std::string& d) {
-      if (all.empty() || all.back().estimator != e) all.push_back({e, {}, 0});
-      all.back().detectors.push_back(d);
+      auto at =
+          std::find_if(all.begin(), all.end(), [&](const Behind& b) { return b.estimator == e; });
+      if (at == all.end()) at = all.insert(at, {e, {}, 0});
+      at->detectors.push_back(d);
     };
     bool tuned = false;
     for (const TunedRow& p : o.tuned) {
@@ -274,7 +276,7 @@ void run_pieces(const DetectionStudy& study, const StudyOptions& o, StudySum& su
   std::mutex mutex;
   const auto work = [&](int piece) {
     if (o.stop && o.stop()) return;
-    const Added added = study.run(piece);
+    const Added added = study.run(mixed(piece, study.pieces()));
     const std::lock_guard lock(mutex);
     sum.add(added);
   };

@@ -244,7 +244,7 @@ bool run_part(const DetectionStudy& study, const StudyAbout& about, const Shard&
   std::size_t done = 0;
   const auto work = [&](int i) {
     if (o.stop && o.stop()) return;
-    const int piece = missing[static_cast<std::size_t>(i)];
+    const int piece = missing[static_cast<std::size_t>(mixed(i, static_cast<int>(missing.size())))];
     const std::string line =
         Json({{"piece", piece}, {"adds", counts_json(study.run(piece))}}).dump();
     const std::lock_guard lock(mutex);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "bench/roster/threshold_file.h"
 #include "mjcf/import/json_object.h"
@@ -84,6 +85,16 @@ void append(const TunedStudy& more, TunedStudy& to) {
     }
   }
   to.rows.insert(to.rows.end(), more.rows.begin(), more.rows.end());
+  // whoever came first: a file that was made in parts is the one that was made at once
+  const auto key = [](const TunedRow& p) {
+    return std::tie(p.robot, p.arm, p.condition, p.before, p.estimator, p.detector);
+  };
+  std::sort(to.rows.begin(), to.rows.end(),
+            [&](const TunedRow& a, const TunedRow& b) { return key(a) < key(b); });
+  std::sort(t.sets.begin(), t.sets.end(), [](const ThresholdSet& a, const ThresholdSet& b) {
+    return std::tie(a.robot, a.fingerprint, a.condition, a.velocity_noise) <
+           std::tie(b.robot, b.fingerprint, b.condition, b.velocity_noise);
+  });
 }
 
 void write_tuned(const TunedStudy& tuned, const std::string& path) {

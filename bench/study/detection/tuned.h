@@ -27,7 +27,7 @@ struct TunedRow {
 /// A file of them.
 struct TunedStudy {
   Thresholds thresholds;       ///< a set for each condition
-  std::vector<TunedRow> rows;  ///< in the order in which they were added
+  std::vector<TunedRow> rows;  ///< sorted by robot, condition and what the pair was before
   std::string made_by;         ///< commands, apart by "; "
 };
 

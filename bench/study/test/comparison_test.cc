@@ -33,6 +33,14 @@ TEST(Cell, KnowsTheLowestFactorThatIsQuietEnough) {
   EXPECT_EQ(Cell().level_with(1), std::nullopt) << "nothing was quiet";
 }
 
+TEST(Comparison, NamesPairsWithoutTheirKeysUnlessTheyDifferInThem) {
+  const std::vector<Cell> cells = {finding("mo1:bandwidth=50", 1, 0), finding("mo2", 1, 0),
+                                   finding("mo2:bandwidth=9", 1, 0)};
+  EXPECT_EQ(short_name(cells[0], cells), "mo1+high_pass");
+  EXPECT_EQ(short_name(cells[1], cells), "mo2+high_pass");
+  EXPECT_EQ(short_name(cells[2], cells), "mo2:bandwidth=9+high_pass");
+}
+
 // Wilson's intervals of 300: 200 (61.1 to 71.8 %), 180 (54.4 to 65.4), 150 (44.4 to 55.6), 135
 // (39.5 to 50.7), 20 (4.4 to 10.1)
 TEST(Comparison, GroupsThoseWhoseIntervalsReachTheBestOnes) {

@@ -73,7 +73,7 @@ TEST(Tuned, AStudyTriesThesePairsAndNoOthers) {
   o.blows = 1;
   const DetectionStudy both(o, t.thresholds);
   ASSERT_EQ(both.cells().size(), 2u);
-  EXPECT_EQ(both.cells()[0].estimator, "mo2:bandwidth=50");
+  EXPECT_EQ(both.cells()[1].estimator, "mo2:bandwidth=50");
   o.estimators = {"mo1"};
   EXPECT_EQ(DetectionStudy(o, t.thresholds).cells().at(0).detector, "cusum");
   o.estimators = {"ekf"};

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
@@ -51,7 +55,7 @@ TEST(StudyTuning, GivesEachPairItsBudgetAndNothingGetsWorse) {
     robot("wallmobot3").check(r.estimator, r.detector);  // or it throws
   }
   EXPECT_TRUE(better) << "a filter at 10 rad/s is not the best one";
-  EXPECT_EQ(tuned_once().rows[0].evaluations, 6) << "a limit has no numbers: bandwidths alone";
+  EXPECT_EQ(tuned_once().rows[2].evaluations, 6) << "a limit has no numbers: bandwidths alone";
   EXPECT_GE(tuned_once().rows[1].evaluations, 12);
 }
 
@@ -75,6 +79,40 @@ TEST(StudyTuning, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.rows[0].estimator, tuned_once().rows[1].estimator);
   EXPECT_EQ(one.rows[0].detector, tuned_once().rows[1].detector);
   EXPECT_EQ(one.rows[0].recall, tuned_once().rows[1].recall);
+}
+
+TEST(StudyTuning, InPartsIsTheWholeWhicheverComesFirst) {
+  StudyTuning o = small();
+  o.estimators = {"mo1", "mo2", "mo3"};
+  o.detectors = {"threshold"};
+  const auto text_of = [](const study::TunedStudy& t) {
+    const std::string path = std::filesystem::temp_directory_path() / "tuned_parts_test.json";
+    study::write_tuned(t, path);
+    std::stringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  };
+  const std::string whole = text_of(tuned(o));
+  study::TunedStudy sum;
+  std::size_t most = 0;
+  for (const int part : {2, 1}) {
+    o.shard = {part, 2};
+    const study::TunedStudy more = tuned(o);
+    most = std::max(most, more.rows.size());
+    append(more, sum);
+  }
+  EXPECT_EQ(text_of(sum), whole);
+  EXPECT_EQ(most, 2u) << "of 3";
+}
+
+TEST(StudyTuning, SearchesAKeyThatEstimatorAndDetectorBothHave) {
+  StudyTuning o = small();
+  o.estimators = {"eso"};
+  o.detectors = {"high_pass"};
+  const study::TunedStudy found = tuned(o);
+  ASSERT_EQ(found.rows.size(), 1u);
+  EXPECT_NE(found.rows[0].detector, "high_pass") << "w = 10 rad/s is not the best";
+  EXPECT_EQ(found.rows[0].estimator.find(":w="), std::string::npos);
 }
 
 TEST(StudyTuning, SkipsWhatIsKnownAndWhatItHasNoTimeFor) {

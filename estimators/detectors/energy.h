@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The energy observer: Haddadin, De Luca and Albu-Schaeffer, "Robot Collisions: A Survey on
+/// Detection, Isolation, and Identification", IEEE Transactions on Robotics 2017 (its form after
+/// the code of mc_energy_residual). With T the arm's kinetic energy,
+///     r = w (T - integral of (qd^T (tau - g - F) - r)),   rdot = w (-qd^T tau_ext - r)         (i)
+/// so r is the power of the contact through a first-order low-pass, and that is how it is computed
+/// here, behind any estimator:
+///     mark where |r| / threshold rises through 1
+/// One number for the whole arm, and blind where the arm rests.
+#pragma once
+
+#include <tuple>
+#include <type_traits>
+
+#include "estimators/concepts.h"
+#include "estimators/detectors/filters.h"
+#include "estimators/detectors/marking.h"
+
+namespace tauext {
+
+/// What can be chosen of an Energy.
+template <int N>
+struct EnergyParameters {
+  /// [W] per joint, of which the least counts: larger misses more and alarms less; by default 80 N
+  /// at 0.25 m/s
+  Vec<N> threshold = Vec<N>::Constant(20);
+  double w = 60;            ///< [rad/s] of the low-pass: larger is quicker, and noisier
+  double refractory = 0.2;  ///< [s] after a mark without another
+  double start_up = 0;      ///< [s] after the first sample without a mark
+
+  static constexpr auto fields() {
+    using P = EnergyParameters;
+    return std::tuple_cat(std::tuple(threshold_field<P>("W"),
+                                     Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
+                                           "low-pass; larger is quicker, noisier"}),
+                          marking_fields<P>());
+  }
+};
+
+/// Energy observer of N joints.
+template <int N, class Scalar = double>
+class Energy {
+ public:
+  static constexpr const char* kName = "energy";
+  static constexpr int kDof = N;
+  static constexpr int kDegree = 1;
+  using Parameters = EnergyParameters<N>;  ///< what can be set
+  template <class Other>
+  using For = Energy<N, Other>;  ///< the same, computed with another number
+
+  /// @throws std::invalid_argument for parameters out of range
+  explicit Energy(const Parameters& p = {})
+      : p_(check_parameters(p, kName)), power_(p.w), marking_(p.refractory, p.start_up) {}
+
+  const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
+
+  void reset() noexcept {
+    marking_.reset();
+    forget();
+  }
+
+  DetectionOf<Scalar> update(
+      const Measurement<N, Scalar>& y,
+      const Vec<N, Scalar>& tau_ext) noexcept requires std::is_same_v<Scalar, double> {
+    if (!within(y.qd, kMeasurementLimit)) return marking_.held();
+    return update(y.t, y.qd, tau_ext);
+  }
+  /// The same of qd [rad/s] at t [s] that is measured.
+  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd,
+                             const Vec<N, Scalar>& tau_ext) noexcept {
+    if (!marking_.accept(t)) return marking_.held();
+    if (marking_.starts()) forget();
+    const Vec<1, Scalar> power(qd.dot(tau_ext));
+    if (marking_.silent(t)) {
+      power_.start(t, power);
+    } else {
+      using std::abs;
+      statistic_.setConstant(abs(power_(t, power)[0]));  // (i)
+    }
+    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+                    Contact::kCollision);
+  }
+
+  /// [W] |r|, the same for each joint.
+  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+
+ private:
+  void forget() noexcept { statistic_.setZero(); }
+
+  Parameters p_;
+  LowPass<1, Scalar> power_;
+  BasicMarking<Scalar> marking_;
+  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+};
+
+static_assert(CalibratableDetector<Energy<3>>);
+
+}  // namespace tauext
