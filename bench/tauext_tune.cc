@@ -69,7 +69,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--channel", f.channel)->group("");
   list("--conditions", f.conditions,
-       "tune all pairs of tauext-detect; --shard I/N: a part; then merge PART..")
+       "tune all pairs of tauext-detect (in parts: --shard I/N, merge PART..)")
       ->type_name("NAME,..");
   app.add_option("--out", f.out, "file of pairs and thresholds, of --conditions, to which is added")
       ->type_name("FILE.json")
