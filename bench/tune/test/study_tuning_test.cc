@@ -8,10 +8,12 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/tune/training_runs.h"
+#include "bench/tune/tune_conditions.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -103,6 +105,24 @@ TEST(StudyTuning, InPartsIsTheWholeWhicheverComesFirst) {
   }
   EXPECT_EQ(text_of(sum), whole);
   EXPECT_EQ(most, 2u) << "of 3";
+}
+
+TEST(StudyTuning, MergesFilesOfDifferentPairsAlone) {
+  const std::string folder = testing::TempDir(), part = folder + "merge_part.json",
+                    none = folder + "merge_none.json", sum = folder + "merge_sum.json";
+  study::TunedStudy t = tuned_once();
+  study::write_tuned(t, part);
+  merge_tuned({part}, sum);
+  EXPECT_EQ(study::read_tuned(sum).rows.size(), 3u);
+  const auto refused = [&](const std::vector<std::string>& parts) {
+    return error_of([&] { merge_tuned(parts, folder + "merge_other.json"); });
+  };
+  EXPECT_NE(refused({part, sum}).find(sum + ": mo1+contact_classifier for light on wallmobot3"),
+            std::string::npos);
+  t.rows.clear();
+  study::write_tuned(t, none);
+  EXPECT_NE(refused({part, none}).find(none + ": has no pairs"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder + "merge_other.json")) << "nothing half done";
 }
 
 TEST(StudyTuning, SearchesAKeyThatEstimatorAndDetectorBothHave) {
