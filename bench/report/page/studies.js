@@ -58,6 +58,12 @@ function meetings() {
   }
 }
 
+// names of pairs without their keys, where that tells them apart
+function short_names(pairs) {
+  const bare = pairs.map((p) => p.replace(/:.*?(?=\+[a-z_]|$)/g, ''));
+  return bare.map((name, i) => bare.filter((other) => other === name).length === 1 ? name : pairs[i]);
+}
+
 // which pairs nobody can tell apart
 function standings() {
   for (const f of of_kind('study').filter((x) => (x.data.comparisons || []).some((c) => c.touches > 0))) {
@@ -69,7 +75,7 @@ function standings() {
       if (!c) return place.replaceChildren(element('p', {}, `${what}: nothing of it under ${condition}`));
       const rows = c.groups.flatMap((group, g) => group.map((s) => ({...s, group: g})));
       if (rows.length === 0) return place.replaceChildren(element('p', {}, 'no pair is so quiet'));
-      const figure = chart({title: `${condition}, ${what}: ${c.touches} touches, at most ${c.false_alarms_per_hour} false alarm an hour`, rows: rows.map((s) => s.pair), width: Math.max(690, place.clientWidth), x: {label: 'found [1], 95 % interval', range: [0, 1]}}, (plot) => rows.forEach((s, i) => {
+      const figure = chart({title: `${condition}, ${what}: ${c.touches} touches, at most ${c.false_alarms_per_hour} false alarm an hour`, rows: short_names(rows.map((s) => s.pair)), width: Math.max(690, place.clientWidth), x: {label: 'found [1], 95 % interval', range: [0, 1]}}, (plot) => rows.forEach((s, i) => {
         plot.box(s.recall_low, s.recall_high, i, look(s.group), 9, `group ${s.group + 1}: ${s.found} of ${c.touches}, thresholds times ${s.threshold_factor}`);
         plot.point([s.recall, i], {...look(s.group), r: 2.5}, `${s.pair}: ${s.recall.toFixed(3)} (${s.recall_low.toFixed(3)} to ${s.recall_high.toFixed(3)})`);
       }));
