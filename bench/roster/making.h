@@ -195,8 +195,8 @@ std::vector<FieldHelp> fields_of_detector(const Vec<D::kDof>& torques) {
 template <int N>
 struct EstimatorEntry {
   template <class Scalar>
-  using Make =
-      std::function<std::unique_ptr<EstimatorStage<N, Scalar>>(const Trace&, const Specification&)>;
+  using Make = std::function<std::unique_ptr<EstimatorStage<N, Scalar>>(const MadeFor<N>&,
+                                                                        const Specification&)>;
   std::string name;
   Make<double> make;
   Make<Pack<kRuns>> make_runs;

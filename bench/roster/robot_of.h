@@ -48,7 +48,7 @@ class RobotOf final : public Robot {
       : Robot(name, N, file), torques_(torques_of<N>(usual_torque())) {
     for_each_estimator(model, [&](auto make) {
       add_estimator(model, make);
-      // on other arms they do one run after the other: each would take a second more to compile
+      // a tree's passes over its joints fill the lanes by themselves
       if constexpr (std::is_same_v<M, WallMoBot3>) add_runs(model, make);
     });
     add_roster_detectors();
@@ -67,15 +67,20 @@ class RobotOf final : public Robot {
     using Stage = EstimatorStageOf<E>;
     refuse_taken(estimators_, "estimator", E::kName);
     EstimatorEntry<N> entry{.name = E::kName};
-    entry.make = [make](const Trace& trace, const Specification& s) -> EstimatorPtr {
+    entry.make = [make](const MadeFor<N>& of, const Specification& s) -> EstimatorPtr {
       refuse_keys(s);
-      return std::make_unique<Stage>(make(trace));
+      return std::make_unique<Stage>(make(of.trace));
     };
     if constexpr (requires { E(model, std::declval<typename E::Parameters>()); }) {
       entry.tunable = is_tunable<E, M>();
       entry.fields = fields_of(parameters_of<E>(make, model, {}), entry.tunable);
-      entry.make = [make, model](const Trace& trace, const Specification& s) -> EstimatorPtr {
-        if (s.keys.empty()) return std::make_unique<Stage>(make(trace));
+      entry.make = [make, model](const MadeFor<N>& of, const Specification& s) -> EstimatorPtr {
+        if constexpr (requires { make.parameters, model.within(*of.terms); }) {
+          if (of.terms)
+            return std::make_unique<Stage>(
+                E(model_of(make, model).within(*of.terms), parameters_of<E>(make, model, s)));
+        }
+        if (s.keys.empty()) return std::make_unique<Stage>(make(of.trace));
         return std::make_unique<Stage>(E(model_of(make, model), parameters_of<E>(make, model, s)));
       };
     }
@@ -104,7 +109,7 @@ class RobotOf final : public Robot {
     for (const std::string& e : estimators()) {
       if (e == text) fail_taken("estimator", text, name());
     }
-    estimator_of(text, Trace());
+    estimator_of(text, {Trace()});
     specifications_.push_back(text);
   }
 
@@ -141,23 +146,26 @@ class RobotOf final : public Robot {
   std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
                                  const Trace& trace, const DetectorSettings& s) const override {
     require_joints(trace.dof());
-    return std::make_unique<RunnerOf<N>>(estimator_of(estimator, trace), detector_of(detector, s),
+    return std::make_unique<RunnerOf<N>>(estimator_of(estimator, {trace}), detector_of(detector, s),
                                          trace);
   }
 
   std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
                                    const Trace& trace, const DetectorSettings& s) const override {
     if (trace.size() > 0) require_joints(trace.dof());
-    return std::make_unique<StepperOf<N>>(estimator_of(estimator, trace), detector_of(detector, s));
+    return std::make_unique<StepperOf<N>>(estimator_of(estimator, {trace}),
+                                          detector_of(detector, s));
   }
 
   std::unique_ptr<Session> session(std::span<const Trace> traces) const override {
     for (const Trace& t : traces) require_joints(t.dof());
     Makers<N, kRuns> make;
-    make.estimator = [this](std::string_view e, const Trace& t) { return estimator_of(e, t); };
+    make.estimator = [this](std::string_view e, const MadeFor<N>& of) {
+      return estimator_of(e, of);
+    };
     make.detector = [this](const Asked& d) { return detector_of(d.detector, d.settings); };
-    make.estimator_of_runs = [this](std::string_view e, const Trace& t) {
-      return estimator_of_runs(e, t);
+    make.estimator_of_runs = [this](std::string_view e, const MadeFor<N>& of) {
+      return estimator_of_runs(e, of);
     };
     make.detector_of_runs = [this](const Asked& d) { return detector_of_runs(d); };
     return std::make_unique<SessionOf<N>>(traces, std::move(make));
@@ -213,14 +221,14 @@ class RobotOf final : public Robot {
     return made(d.make_runs, d, asked.detector, asked.settings);
   }
 
-  EstimatorPtr estimator_of(std::string_view text, const Trace& trace) const {
+  EstimatorPtr estimator_of(std::string_view text, const MadeFor<N>& of) const {
     const auto& e = find(estimators_, "estimator", text);
-    if (needs_truth(text) && !trace.has_truth()) fail_truth(e.name);
-    return made(e.make, e, at_instants(e.fields, text, trace), trace);
+    if (needs_truth(text) && !of.trace.has_truth()) fail_truth(e.name);
+    return made(e.make, e, at_instants(e.fields, text, of.trace), of);
   }
-  auto estimator_of_runs(std::string_view text, const Trace& trace) const {
+  auto estimator_of_runs(std::string_view text, const MadeFor<N>& of) const {
     const auto& e = find(estimators_, "estimator", text);
-    return made(e.make_runs, e, at_instants(e.fields, text, trace), trace);
+    return made(e.make_runs, e, at_instants(e.fields, text, of.trace), of);
   }
 
   // lets the estimator that was added last do several runs at once, if it can
@@ -230,7 +238,7 @@ class RobotOf final : public Robot {
     using Same = typename ComputesAs<E>::type;
     if constexpr (ForRuns<Same>) {
       using Stage = EstimatorStageOf<Runs<Same>, Lanes>;
-      estimators_.back().make_runs = [make, model](const Trace&, const Specification& s) {
+      estimators_.back().make_runs = [make, model](const MadeFor<N>&, const Specification& s) {
         return std::make_unique<Stage>(
             Runs<Same>(model_of(make, model), parameters_of<E>(make, model, s)));
       };

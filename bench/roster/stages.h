@@ -16,6 +16,7 @@
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 #include "estimators/samples/status_counts.h"
+#include "estimators/tree/run_terms.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
@@ -28,6 +29,13 @@ struct EstimateOf;
 template <int N>
 struct EstimateOf<N, double> {
   using type = Estimate<N>;
+};
+
+// what an estimator is made for
+template <int N>
+struct MadeFor {
+  const Trace& trace;
+  RunTerms<N>* terms = nullptr;  // of the trace's samples, if others see them, too
 };
 
 }  // namespace detail

@@ -6,7 +6,7 @@
 ///     S+ = max(0, S+ + h (z - drift)),   S- = max(0, S- + h (-z - drift))                   (i)
 ///     mark where max_i(max(S+_i, S-_i) / threshold_i) rises through 1
 /// Sums are in N m s and weighted by h, so they do not depend on the sampling time. Noise cancels
-/// in them, which is why this detector lasts where a derivative drowns. A sum stops at twice the
+/// in them, which is why this detector lasts where a derivative drowns. A sum stops at 16 times the
 /// threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
@@ -73,7 +73,7 @@ class Cusum {
     } else {
       const Scalar h = t - t_;
       const Vec<N, Scalar> drift = p_.drift.template cast<Scalar>();
-      const Vec<N, Scalar> most = (2 * p_.threshold).template cast<Scalar>();
+      const Vec<N, Scalar> most = (kMost * p_.threshold).template cast<Scalar>();
       const Vec<N, Scalar> z = tau_ext - mean_(t, tau_ext);
       up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
       down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
@@ -95,6 +95,7 @@ class Cusum {
   }
 
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
+  static constexpr double kMost = 16;  // [1] of the threshold: beyond what a study multiplies it by
 
   Parameters p_;
   LowPass<N, Scalar> mean_;

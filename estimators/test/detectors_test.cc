@@ -119,6 +119,21 @@ TEST(Cusum, ForgetsASlowLoadAndDoesNotDependOnTheSamplingTime) {
   }
 }
 
+TEST(Cusum, TellsUpTo16TimesItsThresholdWhatAnotherOneWouldMark) {
+  const auto p = [](double threshold) {
+    return CusumParameters<3>{.threshold = Vec<3>::Constant(threshold), .w = 1e-3};
+  };
+  const auto score_reaches = [&](double level) {
+    Cusum<3> d(p(0.1));
+    for (int k = 0; k < 2000; ++k)
+      if (d.update(k * 1e-3, on_joint_1(step(52)(k * 1e-3))).score >= level) return k * 1e-3;
+    return -1.;
+  };
+  for (const double level : {2., 8., 15.9})
+    EXPECT_EQ(score_reaches(level), first_mark(Cusum<3>(p(0.1 * level)), step(52))) << level;
+  EXPECT_EQ(score_reaches(16.1), -1);
+}
+
 TEST(Cusum, StartsItsMeanAnewAfterAGap) {
   // a push of 96 N m in 0.8 s, of which 0.1 s is lost
   Cusum<3> d;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "estimators/tree/run_terms.h"
 #include "mjcf/plant/tree.h"
 
 namespace tauext {
@@ -59,6 +60,13 @@ class AnyTree {
   /// One with tied joints.
   explicit AnyTree(std::shared_ptr<const TiedTree> arm)
       : arm_(typename TreeModel<N>::Parameters()), tied_(std::move(arm)) {}
+  /// The same arm, which looks into these terms of a run before it computes any. They must outlive
+  /// it; it is then for one thread.
+  AnyTree within(RunTerms<N>& run) const {
+    AnyTree same = *this;
+    same.run_ = &run;
+    return same;
+  }
 
   // as TreeModel has them, with units and signs
 
@@ -94,15 +102,15 @@ class AnyTree {
   }
   /// inertia and bias, sharing the pose.
   Dynamics<N> dynamics(const VecN& q, const VecN& qd) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });
-    return arm_.dynamics(q, qd);
+    if (run_) [[unlikely]]
+      return run_->dynamics(at_, q, qd, [&] { return dynamics_now(q, qd); });
+    return dynamics_now(q, qd);
   }
   /// inertia and momentum_bias, sharing the pose.
   Dynamics<N> momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>([&] { return Tied::momentum_dynamics(*tied_, wide(q), wide(qd)); });
-    return arm_.momentum_dynamics(q, qd);
+    if (run_) [[unlikely]]
+      return run_->momentum_dynamics(at_, q, qd, [&] { return momentum_dynamics_now(q, qd); });
+    return momentum_dynamics_now(q, qd);
   }
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians.
   ForwardDynamics<N> forward_dynamics(const VecN& q, const VecN& qd, const VecN& u) const noexcept {
@@ -152,6 +160,17 @@ class AnyTree {
             narrow(f.by_qd), narrow(f.minus_inverse), f.ok};
   }
 
+  Dynamics<N> dynamics_now(const VecN& q, const VecN& qd) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });
+    return arm_.dynamics(q, qd);
+  }
+  Dynamics<N> momentum_dynamics_now(const VecN& q, const VecN& qd) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>([&] { return Tied::momentum_dynamics(*tied_, wide(q), wide(qd)); });
+    return arm_.momentum_dynamics(q, qd);
+  }
+
   // out of the way of an arm without tied joints
   template <class Result, class Ask>
   [[gnu::noinline]] static Result tied(Ask ask) noexcept {
@@ -160,6 +179,8 @@ class AnyTree {
 
   TreeModel<N> arm_;
   std::shared_ptr<const TiedTree> tied_;
+  RunTerms<N>* run_ = nullptr;
+  mutable typename RunTerms<N>::At at_ = 0;
 };
 
 /// The model of an arm with N coordinates, of which joints may follow others.

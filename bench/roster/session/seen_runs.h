@@ -39,6 +39,7 @@ class SeenRuns {
       : samples_(static_cast<std::size_t>(samples)), estimates_(samples_.size()) {}
 
   int size() const { return static_cast<int>(samples_.size()); }
+  std::span<const Sample> samples() const { return samples_; }
   Sample& sample(int k) { return samples_[static_cast<std::size_t>(k)]; }
   Estimates& estimate(int k) { return estimates_[static_cast<std::size_t>(k)]; }
 

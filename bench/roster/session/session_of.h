@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,7 +19,9 @@
 
 #include "bench/roster/session/seen_runs.h"
 #include "bench/roster/session/session.h"
+#include "bench/roster/stages.h"
 #include "estimators/sampling.h"
+#include "estimators/tree/run_terms.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext::detail {
@@ -28,7 +31,7 @@ template <int N, int W>
 struct Makers {
   using Lanes = Pack<W>;
   template <class Stage>
-  using Of = std::function<std::unique_ptr<Stage>(std::string_view, const Trace&)>;
+  using Of = std::function<std::unique_ptr<Stage>(std::string_view, const MadeFor<N>&)>;
   template <class Stage>
   using With = std::function<std::unique_ptr<Stage>(const Asked&)>;
 
@@ -57,13 +60,14 @@ class SessionOf final : public Session {
 
   std::vector<std::string> estimate(std::string_view estimator) override {
     if (lanes_) {
-      const auto stage = make_.estimator_of_runs(estimator, traces_.front());
+      const auto stage = make_.estimator_of_runs(estimator, {traces_.front()});
       if (stage) return estimate_at_once(*stage);
     }
+    ++alone_for_;
     std::vector<std::string> why;
     bool all_used = true;
     for (std::size_t i = 0; i < traces_.size(); ++i) {
-      alone()[i].run(*make_.estimator(estimator, traces_[i]));
+      alone()[i].run(*make_.estimator(estimator, {traces_[i], terms(i)}));
       const Soundness soundness = alone()[i].soundness().front();
       why.push_back(soundness.why(traces_[i].size()));
       all_used = all_used && soundness.all_used();
@@ -177,6 +181,13 @@ class SessionOf final : public Session {
     return alone_;
   }
 
+  // of a run, once a second estimator sees it
+  RunTerms<N>* terms(std::size_t run) {
+    if (alone_for_ < 2) return nullptr;
+    if (run == terms_.size()) terms_.emplace_back(alone()[run].samples());
+    return &terms_[run];
+  }
+
   // the same, with estimates that were made at once
   const std::vector<SeenRuns<N, double>>& apart() {
     if (one_by_one_) return alone();
@@ -221,6 +232,8 @@ class SessionOf final : public Session {
   std::span<const Trace> traces_;
   Makers<N, W> make_;
   std::vector<SeenRuns<N, double>> alone_;    // each run, once it is asked for
+  std::deque<RunTerms<N>> terms_;             // of each of them
+  int alone_for_ = 0;                         // estimators that saw each run for itself
   std::optional<SeenRuns<N, Lanes>> lanes_;   // all of them, if they are alike
   bool at_once_ = false, one_by_one_ = true;  // whether detectors find estimates there
 };
