@@ -55,12 +55,13 @@ int list_conditions(const std::string& robot_name) {
   return kGood;
 }
 
-study::CalibrationOptions calibration_of(const Flags& f) {
+study::CalibrationOptions calibration_of(const Flags& f, Progress& progress) {
   study::CalibrationOptions o = f.calibration;
   o.robot = f.study.robot;
   o.estimators = f.study.estimators;
   o.detectors = f.study.detectors;
   o.threads = f.study.threads;
+  o.progress = progress.callback();
   return o;
 }
 
@@ -88,10 +89,9 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
     recordings.push_back({path, std::move(log.trace)});
   }
   Progress progress("calibrating");
-  study::CalibrationOptions o = calibration_of(f);
-  o.progress = progress.callback();
   std::vector<study::HeldOut> held_out;
-  const Thresholds thresholds = study::calibrate_on(r, recordings, o, held_out);
+  const Thresholds thresholds =
+      study::calibrate_on(r, recordings, calibration_of(f, progress), held_out);
   TableWriter table({{"estimator", "", true}, {"detector", "", true}, {"alarms", "recordings"}});
   for (const study::HeldOut& h : held_out)
     table.add({h.estimator, h.detector, fmt::format("{} of {}", h.alarms, h.recordings)});
@@ -107,9 +107,7 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
 Thresholds thresholds_of(const Flags& f, const std::vector<std::string>& conditions) {
   if (!f.thresholds.empty()) return read_thresholds(f.thresholds);
   Progress progress("calibrating");
-  study::CalibrationOptions o = calibration_of(f);
-  o.progress = progress.callback();
-  return study::calibrate_for(conditions, o);
+  return study::calibrate_for(conditions, calibration_of(f, progress));
 }
 
 int run_calibration(const Flags& f) {
@@ -210,6 +208,7 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, studies, "a study, not with --calibrate",
                {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
                 "--clampings", "--regions", "--hours", "--seed", "--quick", "--shard"});
+  require_mode(app, f.shard.empty(), "the table of all parts: merge", {"--format"});
   require_mode(app, f.thresholds.empty(), "training, not with --thresholds", {"--margin"});
   require_mode(app, f.thresholds.empty() && f.logs.empty(),
                "training on simulated runs, not with --thresholds or recordings",
@@ -295,6 +294,7 @@ int main(int argc, char** argv) {
   merging->group("")->add_option("parts", f.parts, "their files")->required();
   merging->add_option("--out", f.out, "JSON of it all");
   merging->add_option("--format", f.format, "of the table");
+  for (CLI::Option* of_study : app.get_options()) merging->excludes(of_study);
   keep_freed_memory();
   return run_program(app, argc, argv, [&] { return merging->parsed() ? merge(f) : run(app, f); });
 }

@@ -292,9 +292,7 @@ int main(int argc, char** argv) {
   CLI::App* const merging = app.add_subcommand("merge", "put files of --shard together");
   merging->group("")->add_option("parts", f.parts, "their files")->required();
   merging->add_option("--out", f.out, "file of all of them")->required();
-  return run_program(app, argc, argv, [&] {
-    if (!merging->parsed()) return run(app, f);
-    merge_tuned(f.parts, f.out);
-    return int{kGood};
-  });
+  for (CLI::Option* of_tuning : app.get_options()) merging->excludes(of_tuning);
+  return run_program(app, argc, argv,
+                     [&] { return merging->parsed() ? merge_tuned(f.parts, f.out) : run(app, f); });
 }

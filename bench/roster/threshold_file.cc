@@ -90,19 +90,22 @@ const ThresholdSet* set_for(const Thresholds& t, const Robot& r, double velocity
   return nullptr;
 }
 
-// robot/estimator+detector|detector, of all sets
-std::set<std::string> pairs_of(const Thresholds& t) {
-  std::set<std::string> pairs;
-  for (const ThresholdSet& s : t.sets) {
-    for (const auto& [estimator, detectors] : s.by_estimator) {
-      std::vector<std::string> names;
-      for (const auto& [detector, values] : detectors) names.push_back(detector);
-      pairs.insert(fmt::format("{}{}/{}+{}", s.robot,
-                               s.condition.empty() ? "" : " in " + s.condition, estimator,
-                               fmt::join(names, "|")));
-    }
+// what a file has instead, as close to what was asked for as it has anything
+std::string what_there_is(const Thresholds& t, const ThresholdSet* set,
+                          const std::string& estimator) {
+  std::set<std::string> names;
+  if (set == nullptr) {
+    for (const ThresholdSet& s : t.sets)
+      names.insert(s.robot + (s.condition.empty() ? "" : " in " + s.condition));
+    return fmt::format("it is for {}", fmt::join(names, ", "));
   }
-  return pairs;
+  const auto behind = set->by_estimator.find(estimator);
+  if (behind == set->by_estimator.end()) {
+    for (const auto& [name, detectors] : set->by_estimator) names.insert(name);
+    return fmt::format("there it has those behind {}", fmt::join(names, ", "));
+  }
+  for (const auto& [name, values] : behind->second) names.insert(name);
+  return fmt::format("behind this estimator it has those of {}", fmt::join(names, ", "));
 }
 
 }  // namespace
@@ -178,7 +181,8 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
   const std::vector<std::string> parts = r.trained_parts(detector);
   if (parts.empty()) return {};
   DetectorThresholds known;
-  if (const ThresholdSet* const set = set_for(t, r, velocity_noise, condition)) {
+  const ThresholdSet* const set = set_for(t, r, velocity_noise, condition);
+  if (set != nullptr) {
     const auto behind = set->by_estimator.find(estimator);
     for (const std::string& part : parts) {
       if (behind == set->by_estimator.end()) break;
@@ -192,11 +196,10 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
   }
   if (known.size() == parts.size()) return known;
   throw std::invalid_argument(fmt::format(
-      "{}: has no thresholds for {}/{}+{}{}, it has those of {}; tauext-detect "
-      "--calibrate makes more",
-      t.path, robot_name + (condition.empty() ? "" : " in " + condition), estimator, detector,
+      "{}: has no thresholds for {}/{}+{}{}: {}; tauext-detect --calibrate makes more", t.path,
+      robot_name + (condition.empty() ? "" : " in " + condition), estimator, detector,
       parts.front() == detector ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
-      fmt::join(pairs_of(t), ", ")));
+      what_there_is(t, set, estimator)));
 }
 
 }  // namespace tauext

@@ -74,7 +74,7 @@ double TrainingRuns::recall(const std::vector<study::EstimatedRuns>& seen, const
     for (std::size_t k = 0; k < answers.size(); ++k) {
       const Job& job = jobs_[i][k];
       const auto c = static_cast<std::size_t>(job.region);
-      count_regions(region_classes()[c], answers[k], meetings_of(runs_, job), forces_[i][k],
+      count_regions(region_classes()[c], answers[k], meetings_of(runs_, job), forces_[i][k], {},
                     counts[c]);
     }
   }

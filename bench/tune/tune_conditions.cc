@@ -101,7 +101,7 @@ int tune_conditions(const ConditionsToTune& f) {
   return told ? kInterrupted : int{kGood};
 }
 
-void merge_tuned(const std::vector<std::string>& paths, const std::string& out) {
+int merge_tuned(const std::vector<std::string>& paths, const std::string& out) {
   study::TunedStudy all;
   for (const std::string& path : paths) {
     const study::TunedStudy more = study::read_tuned(path);
@@ -119,6 +119,7 @@ void merge_tuned(const std::vector<std::string>& paths, const std::string& out) 
   }
   study::write_tuned(all, out);
   say(fmt::format("{}: {} pairs", out, all.rows.size()));
+  return kGood;
 }
 
 }  // namespace tauext

@@ -25,7 +25,8 @@ struct ConditionsToTune {
 int tune_conditions(const ConditionsToTune& what);
 
 /// Puts files of tuned pairs together, in any order: the file that one machine makes.
+/// @returns kGood
 /// @throws std::runtime_error naming the file for what is none, and for a pair that is there twice
-void merge_tuned(const std::vector<std::string>& paths, const std::string& out);
+int merge_tuned(const std::vector<std::string>& paths, const std::string& out);
 
 }  // namespace tauext

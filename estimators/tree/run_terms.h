@@ -22,35 +22,49 @@ class RunTerms {
 
   /// @param samples of the run, which must outlive it
   explicit RunTerms(std::span<const Measurement<N>> samples)
-      : samples_(samples), dynamics_(samples.size()), momentum_dynamics_(samples.size()) {}
+      : samples_(samples),
+        dynamics_(samples.size()),
+        momentum_dynamics_(samples.size()),
+        friction_(samples.size()) {}
 
   /// compute(), or what it gave at this sample before; where (q [rad], qd [rad/s]) is none of the
   /// next few samples, always compute().
   template <class Compute>
   Dynamics<N> dynamics(At& at, const Vec<N>& q, const Vec<N>& qd, const Compute& compute) noexcept {
-    return answer(dynamics_, at, q, qd, compute);
+    return answer(dynamics_, at, is_at(q, qd), compute);
   }
   /// The same of momentum_dynamics().
   template <class Compute>
   Dynamics<N> momentum_dynamics(At& at, const Vec<N>& q, const Vec<N>& qd,
                                 const Compute& compute) noexcept {
-    return answer(momentum_dynamics_, at, q, qd, compute);
+    return answer(momentum_dynamics_, at, is_at(q, qd), compute);
+  }
+  /// The same of friction().
+  template <class Compute>
+  Vec<N> friction(At& at, const Vec<N>& qd, const Compute& compute) noexcept {
+    return answer(
+        friction_, at, [&](const Measurement<N>& y) { return y.qd == qd; }, compute);
   }
 
  private:
+  template <class Value>
   struct Answer {
     bool known = false;
-    Dynamics<N> terms;
+    Value value;
   };
 
-  template <class Compute>
-  Dynamics<N> answer(std::vector<Answer>& answers, At& at, const Vec<N>& q, const Vec<N>& qd,
-                     const Compute& compute) noexcept {
+  static auto is_at(const Vec<N>& q, const Vec<N>& qd) noexcept {
+    return [&](const Measurement<N>& y) { return y.q == q && y.qd == qd; };
+  }
+
+  template <class Value, class Here, class Compute>
+  Value answer(std::vector<Answer<Value>>& answers, At& at, const Here& here,
+               const Compute& compute) noexcept {
     for (At k = at; k < samples_.size() && k < at + kAhead; ++k) {
-      if (samples_[k].q != q || samples_[k].qd != qd) continue;
+      if (!here(samples_[k])) continue;
       at = k;
       if (!answers[k].known) answers[k] = {true, compute()};
-      return answers[k].terms;
+      return answers[k].value;
     }
     return compute();
   }
@@ -58,7 +72,8 @@ class RunTerms {
   static constexpr At kAhead = 3;  // an estimator leaves out an outlier
 
   std::span<const Measurement<N>> samples_;
-  std::vector<Answer> dynamics_, momentum_dynamics_;
+  std::vector<Answer<Dynamics<N>>> dynamics_, momentum_dynamics_;
+  std::vector<Answer<Vec<N>>> friction_;
 };
 
 }  // namespace tauext

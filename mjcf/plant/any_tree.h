@@ -91,9 +91,9 @@ class AnyTree {
     return arm_.momentum_bias(q, qd);
   }
   VecN friction(const VecN& qd) const noexcept {  ///< F(qd) [N m]
-    if (tied_) [[unlikely]]
-      return tied<VecN>([&] { return Tied::friction(*tied_, wide(qd)); });
-    return arm_.friction(qd);
+    if (run_) [[unlikely]]
+      return run_->friction(at_, qd, [&] { return friction_now(qd); });
+    return friction_now(qd);
   }
   VecN dry_friction(const VecN& qd) const noexcept {  ///< Coulomb's share of it [N m]
     if (tied_) [[unlikely]]
@@ -160,6 +160,11 @@ class AnyTree {
             narrow(f.by_qd), narrow(f.minus_inverse), f.ok};
   }
 
+  VecN friction_now(const VecN& qd) const noexcept {
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&] { return Tied::friction(*tied_, wide(qd)); });
+    return arm_.friction(qd);
+  }
   Dynamics<N> dynamics_now(const VecN& q, const VecN& qd) const noexcept {
     if (tied_) [[unlikely]]
       return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -42,6 +43,26 @@ class SeenRuns {
   std::span<const Sample> samples() const { return samples_; }
   Sample& sample(int k) { return samples_[static_cast<std::size_t>(k)]; }
   Estimates& estimate(int k) { return estimates_[static_cast<std::size_t>(k)]; }
+
+  // the samples of which no run's estimate is used; nothing where runs differ in that, or where an
+  // estimate is no number or diverged, so that a detector starts anew
+  using LeftOut = std::optional<std::vector<std::size_t>>;
+  LeftOut left_out() const {
+    std::vector<std::size_t> all;
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      if (is_ok(k)) continue;
+      int others = 0;
+      for (int i = 0; i < kWidth; ++i) {
+        if (!is_finite(k, i) || status(k, i) == Status::kDiverged) return std::nullopt;
+        others += !used(status(k, i));
+      }
+      if (others == kWidth) all.push_back(k);
+      if (others % kWidth != 0) return std::nullopt;
+    }
+    return all;
+  }
+  // detectors are silent there
+  void leave_out(std::vector<std::size_t> samples) { left_out_ = std::move(samples); }
 
   void run(EstimatorStage<N, Scalar>& estimator) { estimator.run(samples_, estimates_); }
 
@@ -76,8 +97,12 @@ class SeenRuns {
   template <class Look>
   void watch(DetectorStage<N, Scalar>& d, double from, const Look& look) const {
     DetectionOf<Scalar> said;
+    auto silent = left_out_.begin();
     for (std::size_t k = 0; k < samples_.size(); ++k) {
-      d.run({&samples_[k], 1}, {&estimates_[k], 1}, {&said, 1});
+      if (silent != left_out_.end() && *silent == k)
+        ++silent;
+      else
+        d.run({&samples_[k], 1}, {&estimates_[k], 1}, {&said, 1});
       if (of_run(samples_[k].t, 0) >= from) look(d);
     }
   }
@@ -90,9 +115,24 @@ class SeenRuns {
   template <class Look>
   void run(DetectorStage<N, Scalar>& d, std::size_t k, const Look& look) const {
     std::array<DetectionOf<Scalar>, kBlock> said;
-    const std::size_t n = std::min(kBlock, samples_.size() - k);
-    d.run({&samples_[k], n}, {&estimates_[k], n}, {said.data(), n});
-    for (std::size_t i = 0; i < n; ++i) look(of_run(samples_[k + i].t, 0), said[i]);
+    const std::size_t end = std::min(k + kBlock, samples_.size());
+    auto silent = std::lower_bound(left_out_.begin(), left_out_.end(), k);
+    for (std::size_t from = k, to; from < end; from = to + 1) {
+      to = silent == left_out_.end() ? end : std::min(*silent++, end);
+      d.run({&samples_[from], to - from}, {&estimates_[from], to - from},
+            {&said[from - k], to - from});
+      if (to < end) said[to - k] = nothing();
+    }
+    for (std::size_t i = k; i < end; ++i) look(of_run(samples_[i].t, 0), said[i - k]);
+  }
+
+  // what detect() says of an estimate that is none
+  static DetectionOf<Scalar> nothing() {
+    if constexpr (kWidth == 1) {
+      return {};
+    } else {
+      return {no<Scalar>(), Scalar(0), contact_as<Scalar>(Detection().contact)};
+    }
   }
 
   Status status(std::size_t k, int i) const { return of_run(estimates_[k].status, i); }
@@ -111,6 +151,7 @@ class SeenRuns {
 
   std::vector<Sample> samples_;
   std::vector<Estimates> estimates_;
+  std::vector<std::size_t> left_out_;
 };
 
 }  // namespace tauext::detail

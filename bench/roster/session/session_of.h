@@ -46,6 +46,7 @@ struct Makers {
 template <int N, int W = kRuns>
 class SessionOf final : public Session {
   using Lanes = Pack<W>;
+  using LeftOut = typename SeenRuns<N, double>::LeftOut;
 
  public:
   // the traces must outlive it; more than W go one by one
@@ -65,16 +66,18 @@ class SessionOf final : public Session {
     }
     ++alone_for_;
     std::vector<std::string> why;
-    bool all_used = true;
+    LeftOut left_out;
     for (std::size_t i = 0; i < traces_.size(); ++i) {
-      alone()[i].run(*make_.estimator(estimator, {traces_[i], terms(i)}));
-      const Soundness soundness = alone()[i].soundness().front();
-      why.push_back(soundness.why(traces_[i].size()));
-      all_used = all_used && soundness.all_used();
+      SeenRuns<N, double>& run = alone()[i];
+      run.run(*make_.estimator(estimator, {traces_[i], terms(i)}));
+      why.push_back(run.soundness().front().why(traces_[i].size()));
+      if (i == 0) left_out = run.left_out();
+      if (i > 0 && left_out != run.left_out()) left_out.reset();
     }
     one_by_one_ = true;
-    at_once_ = lanes_ && all_used;
-    if (at_once_) go_together();
+    at_once_ = lanes_ && left_out;
+    if (at_once_) go_together(*left_out);
+    if (at_once_ && alone_for_ == 1) alone_.clear(), one_by_one_ = false;  // there may be no other
     return why;
   }
 
@@ -156,12 +159,12 @@ class SessionOf final : public Session {
   std::vector<std::string> estimate_at_once(EstimatorStage<N, Lanes>& stage) {
     lanes_->run(stage);
     std::vector<std::string> why;
-    at_once_ = true;
     const auto soundness = lanes_->soundness();
-    for (std::size_t i = 0; i < traces_.size(); ++i) {
+    for (std::size_t i = 0; i < traces_.size(); ++i)
       why.push_back(soundness[i].why(lanes_->size()));
-      at_once_ = at_once_ && soundness[i].all_used();
-    }
+    LeftOut left_out = lanes_->left_out();
+    at_once_ = left_out.has_value();
+    if (at_once_) lanes_->leave_out(*std::move(left_out));
     one_by_one_ = false;
     return why;
   }
@@ -205,11 +208,15 @@ class SessionOf final : public Session {
   }
 
   // estimates that were made one by one, all at once
-  void go_together() {
+  void go_together(const std::vector<std::size_t>& left_out) {
     in_lanes([&](int k, std::size_t run, int lane) {
       const Estimate<N>& e = alone_[run].estimate(k);
-      for (int j = 0; j < N; ++j) lanes_->estimate(k).tau_ext[j].set(lane, e.tau_ext[j]);
+      auto& all = lanes_->estimate(k);
+      for (int j = 0; j < N; ++j) all.tau_ext[j].set(lane, e.tau_ext[j]);
+      all.status[static_cast<std::size_t>(lane)] = e.status;
+      all.joints[static_cast<std::size_t>(lane)] = e.joints;
     });
+    lanes_->leave_out(left_out);
   }
 
   // what f(samples, stage) says of each run

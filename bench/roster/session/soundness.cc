@@ -6,7 +6,6 @@
 namespace tauext {
 
 void Soundness::look(double t, Status status, bool is_finite) {
-  all_used_ = all_used_ && is_finite && used(status);
   const bool fails = status == Status::kSingularInertia || status == Status::kDiverged;
   if ((is_finite && !fails) || !why_.empty()) return;
   why_ = fmt::format("{} at t = {} s", is_finite ? name_of(status) : "not finite", t);

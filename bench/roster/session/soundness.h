@@ -27,15 +27,12 @@ class Soundness {
   /// The same of one that was counted.
   void look(double t, Status status, bool is_finite);
 
-  /// Whether detectors go on at every sample.
-  bool all_used() const { return all_used_; }
   /// What is wrong with a run of so many samples; "" if nothing is.
   std::string why(std::int64_t samples) const;
 
  private:
   StatusCounts counts_;
   std::string why_;
-  bool all_used_ = true;
 };
 
 }  // namespace tauext

@@ -141,6 +141,8 @@ Json regions_of(const Cell& c) {
     put_recall(j, r.found, r.touches);
     j["delay_p50_s"] = number(quantile(r.delays, 0.5));
     j["delay_p95_s"] = number(quantile(r.delays, 0.95));
+    j["moved_p50_m"] = number(quantile(r.moved, 0.5));
+    j["moved_p95_m"] = number(quantile(r.moved, 0.95));
     j["exceeded"] = r.exceeded();
     const auto rounded = [](double x) {
       return std::round(x * 1e5) / 1e5;

@@ -16,6 +16,7 @@
 #include "bench/roster/threshold_file.h"
 #include "bench/score/parallel.h"
 #include "bench/study/detection/calibration.h"
+#include "bench/study/moved_on.h"
 #include "bench/study/study_runs.h"
 
 namespace tauext::study {
@@ -168,14 +169,16 @@ class DetectionStudy::Study {
   }
 
   // what one run adds
-  Cell counted(const Job& job, const Answers& answers, const std::vector<double>& force) const {
+  Cell counted(const Job& job, const Answers& answers, const std::vector<double>& force,
+               const std::vector<double>& moved) const {
     Cell cell{.runs = 1};
     if (job.region < 0) {
       count(job.kind, answers, runs_.touches(job.kind, job.seed), cell);
     } else {
       const auto c = static_cast<std::size_t>(job.region);
       cell.regions.resize(region_classes().size());
-      count_regions(region_classes()[c], answers, meetings_of(runs_, job), force, cell.regions[c]);
+      count_regions(region_classes()[c], answers, meetings_of(runs_, job), force, moved,
+                    cell.regions[c]);
     }
     return cell;
   }
@@ -184,13 +187,15 @@ class DetectionStudy::Study {
     const Model& model = models_.at(jobs.front().plant);
     std::vector<Trace> truths = simulated(runs_, jobs, model);
     if (is_first_of_plant(jobs)) require_mujoco_agrees(runs_, jobs.front(), model, truths.front());
+    const auto moved = moved_on(runs_, jobs, model, truths);
     Views views(std::move(truths), jobs);
     for (const Tried& t : tried_) {
-      if (plant_of(*t.condition) == jobs.front().plant) look(jobs, t, views, sums);
+      if (plant_of(*t.condition) == jobs.front().plant) look(jobs, t, views, moved, sums);
     }
   }
 
   void look(std::span<const Job> jobs, const Tried& t, Views& views,
+            const std::vector<std::vector<double>>& moved,
             std::map<std::size_t, Cell>& sums) const {
     const Condition& c = *t.condition;
     const std::vector<Trace> seen = views.by(c.degradation.sensors, c.every);
@@ -202,7 +207,7 @@ class DetectionStudy::Study {
       std::size_t cell = b.cell;
       for (const std::vector<Answers>& of_runs : session->answers(asked, kLevels, kScoreFrom)) {
         for (std::size_t i = 0; i < jobs.size(); ++i) {
-          Cell adds = counted(jobs[i], of_runs[i], views.contact_force(i));
+          Cell adds = counted(jobs[i], of_runs[i], views.contact_force(i), moved[i]);
           adds.failed_runs = !why[i].empty();
           add(adds, sums[cell]);
         }

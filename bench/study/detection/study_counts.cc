@@ -111,7 +111,7 @@ double RegionCount::exceeded() const {
 
 void count_regions(const RegionClass& of, const Answers& answers,
                    const std::vector<RegionTouch>& touches, const std::vector<double>& force,
-                   RegionCount& to) {
+                   const std::vector<double>& moved, RegionCount& to) {
   const auto sample = [&](double t) {
     return std::min(static_cast<std::size_t>(std::lround(std::max(t, 0.) * 1e3)), force.size());
   };
@@ -139,6 +139,8 @@ void count_regions(const RegionClass& of, const Answers& answers,
     if (!found) continue;
     ++to.found;
     to.delays.push_back(rounded(mark->t - begin));
+    if (!moved.empty())
+      to.moved.push_back(rounded(moved[std::min(sample(mark->t), moved.size() - 1)]));
   }
 }
 
@@ -151,6 +153,7 @@ void add(const Cell& run, Cell& sum) {
     s.found += r.found;
     for (std::size_t l = 0; l < kLevels.size(); ++l) s.found_at[l] += r.found_at[l];
     s.delays.insert(s.delays.end(), r.delays.begin(), r.delays.end());
+    s.moved.insert(s.moved.end(), r.moved.begin(), r.moved.end());
     s.peaks.insert(s.peaks.end(), r.peaks.begin(), r.peaks.end());
     s.until_found.insert(s.until_found.end(), r.until_found.begin(), r.until_found.end());
   }
@@ -167,7 +170,7 @@ void add(const Cell& run, Cell& sum) {
 void sort_values(Cell& sum) {
   std::sort(sum.delays.begin(), sum.delays.end());
   for (RegionCount& r : sum.regions) {
-    for (auto* values : {&r.delays, &r.peaks, &r.until_found})
+    for (auto* values : {&r.delays, &r.moved, &r.peaks, &r.until_found})
       std::sort(values->begin(), values->end());
   }
 }

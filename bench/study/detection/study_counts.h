@@ -31,10 +31,12 @@ inline constexpr auto kLevels = [] {
 inline constexpr std::size_t kOwnLevel = 12;
 static_assert(kLevels[kOwnLevel] == 1);
 
-/// What became of meetings of one of region_classes(). Times and forces are rounded to 1e-5.
+/// What became of meetings of one of region_classes(). Times, distances and forces are rounded to
+/// 1e-5.
 struct RegionCount {
   int touches = 0, found = 0;       ///< found: by a mark until metrics::kGrace after the contact
   std::vector<double> delays;       ///< [s] from the begin of one that was found to its mark
+  std::vector<double> moved;        ///< [m] moved_on() at that mark
   std::vector<double> peaks;        ///< [1] of the limit: the largest force of each
   std::vector<double> until_found;  ///< [1] of the limit: the same until the mark, if there was one
   std::array<int, kLevels.size()> found_at{};  ///< with thresholds times kLevels
@@ -96,9 +98,10 @@ void count(TouchKind kind, const Answers& answers, const std::vector<Touch>& tou
 
 /// Counts a run of meetings of that class.
 /// @param force [N] on the arm at each sample, 1 kHz
+/// @param moved of moved_on(), at each sample; empty: nobody asks how far
 void count_regions(const RegionClass& of, const Answers& answers,
                    const std::vector<RegionTouch>& touches, const std::vector<double>& force,
-                   RegionCount& to);
+                   const std::vector<double>& moved, RegionCount& to);
 
 /// Adds a run to the sum; the names in `sum` stay.
 void add(const Cell& run, Cell& sum);

@@ -34,14 +34,14 @@ template <class... Args>
 }
 
 Json counts_json(const RegionCount& r) {
-  return {r.touches, r.found, r.delays, r.peaks, r.until_found, r.found_at};
+  return {r.touches, r.found, r.delays, r.moved, r.peaks, r.until_found, r.found_at};
 }
 
 RegionCount region_of(const Json& j) {
   RegionCount r;
   j.at(0).get_to(r.touches), j.at(1).get_to(r.found);
-  j.at(2).get_to(r.delays), j.at(3).get_to(r.peaks), j.at(4).get_to(r.until_found);
-  j.at(5).get_to(r.found_at);
+  j.at(2).get_to(r.delays), j.at(3).get_to(r.moved), j.at(4).get_to(r.peaks);
+  j.at(5).get_to(r.until_found), j.at(6).get_to(r.found_at);
   return r;
 }
 

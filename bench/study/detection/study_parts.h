@@ -17,7 +17,7 @@
 
 namespace tauext::study {
 
-inline constexpr const char* kPartFormat = "tauext-detection-part-1";  ///< of its first line
+inline constexpr const char* kPartFormat = "tauext-detection-part-2";  ///< of its first line
 
 /// The index-th of `count` parts, counted from 1: every count-th piece.
 struct Shard {

@@ -88,6 +88,7 @@ TEST(DetectionStudy, MeetsEachKindOfRegion) {
   EXPECT_EQ(hand.at("class"), "hand_0.10");
   EXPECT_EQ(hand.at("limit_N"), 280);
   EXPECT_EQ(hand.at("touches"), all[0].regions[0].touches);
+  EXPECT_LE(hand.at("moved_p50_m"), hand.at("moved_p95_m"));
   EXPECT_NE(format_study("", all, TableFormat::kText).find("exceeded"), std::string::npos);
 }
 
@@ -102,8 +103,11 @@ TEST(DetectionStudy, OfRegionsCountsTheFirstMarkAndWhatWasPressedUntilThen) {
   answers.rises.front() = {0.9};
   answers.rises[kOwnLevel] = {0.5, 1.011};
   RegionCount r;
-  count_regions(of, answers, {touch}, force, r);
+  std::vector<double> moved(3000, 0.);
+  moved[1011] = 2e-3;
+  count_regions(of, answers, {touch}, force, moved, r);
   EXPECT_EQ(r.found, 1);
+  EXPECT_EQ(r.moved, std::vector{2e-3});
   EXPECT_NEAR(r.delays.at(0), 0.011, 1e-12);
   EXPECT_NEAR(r.until_found.at(0), 100 / 280., 0.5001e-5);
   EXPECT_NEAR(r.peaks.at(0), 390 / 280., 0.5001e-5);
@@ -112,7 +116,7 @@ TEST(DetectionStudy, OfRegionsCountsTheFirstMarkAndWhatWasPressedUntilThen) {
   EXPECT_EQ(r.found_at[kOwnLevel], 1);
   EXPECT_EQ(r.found_at.back(), 0);
   answers.marks = {{1.3, Contact::kCollision}};  // 0.26 s after the contact
-  count_regions(of, answers, {touch}, force, r);
+  count_regions(of, answers, {touch}, force, moved, r);
   EXPECT_EQ(r.found, 1);
   EXPECT_EQ(r.touches, 2);
   EXPECT_EQ(r.exceeded(), 0.5);

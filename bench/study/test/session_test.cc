@@ -111,6 +111,15 @@ TEST(Session, BearsASampleThatOneRunLost) {
   expect_alike(traces, {"mo1"});  // all one by one
 }
 
+TEST(Session, BearsASampleThatEstimatorsLeaveOut) {
+  std::vector<Trace> traces = blows("wallmobot6", "noise", 3);
+  traces[0].q(1, 6789) += 0.5;  // a jump of one run
+  expect_alike(traces, {"mo1", "eso"}, "wallmobot6");
+  for (Trace& t : traces) t.q(2, 12345) += 0.5, t.q(1, 12800) -= 0.5;  // of all at once, twice
+  traces[0].q(1, 6789) -= 0.5;
+  expect_alike(traces, {"mo1", "eso"}, "wallmobot6");
+}
+
 TEST(Session, BearsRunsOfOtherClocksAndLengths) {
   std::vector<Trace> traces = blows(2);
   traces[1] = select_samples(traces[1], [] {

@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <tuple>
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/study/detection/calibration.h"
+#include "bench/study/detection/detection_study.h"
+#include "bench/study/moved_on.h"
+#include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::study::test {
@@ -57,13 +61,13 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
   EXPECT_EQ(of("wallmobot3", "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
   EXPECT_TRUE(of("wallmobot3", "mo1", "").empty());
   EXPECT_TRUE(trained_for({}, "wallmobot3", 0, "mo1", "high_pass").empty());  // no file
-  for (const auto& [robot, e, d] : {std::tuple{"wallmobot3", "mo1", "high_pass:w=90"},
-                                    {"wallmobot3", "mo1:bandwidth=60", "high_pass"},
-                                    {"wallmobot3", "mo1", "cusum"},
-                                    {"testbed1", "mo1", "high_pass"}}) {
-    EXPECT_NE(error_of([&, robot = robot, e = e, d = d] {
-                of(robot, e, d);
-              }).find("it has those of wallmobot3/mo1+high_pass|high_pass:w=60"),
+  const std::string behind_it = "behind this estimator it has those of high_pass, high_pass:w=60;";
+  for (const auto& [robot, e, d, why] :
+       {std::tuple{"wallmobot3", "mo1", "high_pass:w=90", behind_it},
+        {"wallmobot3", "mo1", "cusum", behind_it},
+        {"wallmobot3", "mo1:bandwidth=60", "high_pass", "there it has those behind mo1;"},
+        {"testbed1", "mo1", "high_pass", "it is for wallmobot3;"}}) {
+    EXPECT_NE(error_of([&, robot = robot, e = e, d = d] { of(robot, e, d); }).find(why),
               std::string::npos)
         << robot << e << d;
   }
@@ -151,6 +155,28 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
     EXPECT_LT(rests(training), 0.02) << "detectors are trained on other motions: sines,";
     EXPECT_GT(rests(run(hard, kTrainingSeed + 1)), 0.1) << "and moves of another kind";
   }
+}
+
+TEST(MovedOn, IsFromWhereTheMeetingBeganToWhereOurOwnModelSaysThePointIs) {
+  const StudyRuns& runs = touched_runs(TAUEXT_EXAMPLES "/arm6.xml");
+  const Job job{plant_of(condition(runs, "hard")), TouchKind::kSlowPush, 1, 0};
+  const Model model = runs.model(job.plant);
+  const Trace truth = std::move(simulated(runs, {&job, 1}, model).front());
+  std::vector<RegionTouch> touches = meetings_of(runs, job);
+  for (RegionTouch& t : touches) t.at = {};  // the end effector
+  const std::vector<double> moved = moved_on(touches, model, truth);
+  const auto point = tree_of(model).point(kEndEffector);
+  const auto arm = tree_model<6>(model);
+  const auto at = [&](int k) { return arm.position(truth.q.col(k), point.joint, point.place); };
+  int seen = 0;
+  for (const RegionTouch& t : touches) {
+    const int begin = static_cast<int>(std::ceil(t.begin * 1e3 - 1e-6));
+    for (int k = begin; k < begin + 200; ++k, ++seen)
+      ASSERT_NEAR(moved[static_cast<std::size_t>(k)], (at(k) - at(begin)).norm(), 1e-9) << k;
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_EQ(moved.front(), 0);
+  EXPECT_GT(*std::max_element(moved.begin(), moved.end()), 1e-2);
 }
 
 }  // namespace
