@@ -134,14 +134,16 @@ TEST_F(Speed, RunsAtOnceTakeLessThanARunAlone) {
 }
 
 // pushes as a cycle with three estimators makes them, five times as often, while the other thread
-// takes them out
-void push_for_a_second(live::Histogram& push_ns) {
+// takes them out; and what the clock takes to be read
+void push_for_a_second(live::Histogram& push_ns, live::Histogram& clock_ns) {
   LiveStream stream(nullptr, live::streams_of({"a", "b", "c"}, "d"), 200);
   LiveSample s;
   s.reading.n = 3;
   for (int cycle = 0; cycle < 5000; ++cycle) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     s.reading.utime = 1000 * cycle;
+    const auto woken = std::chrono::steady_clock::now();
+    clock_ns.add((std::chrono::steady_clock::now() - woken).count());
     for (s.stream = 0; s.stream < 3; ++s.stream) {
       const auto begin = std::chrono::steady_clock::now();
       ASSERT_TRUE(stream.push(s));
@@ -152,17 +154,20 @@ void push_for_a_second(live::Histogram& push_ns) {
 
 TEST(Push, CostsTheLoopNextToNothing) {
   // the best of up to five: a neighbour can spoil a second, a push that waits spoils them all; what
-  // a virtual machine takes from one push in a thousand says nothing of us
-  double median = 1e9, rare = 1e9;
-  for (int attempt = 0; attempt < 5 && (median >= 150 || rare >= 10'000); ++attempt) {
-    live::Histogram push_ns;
-    push_for_a_second(push_ns);
-    median = std::min(median, push_ns.quantile(0.5));
+  // a virtual machine takes from one push in a thousand says nothing of us. In times that the clock
+  // takes to be read after such a sleep: how fast a machine wakes differs from hour to hour.
+  constexpr double kMost = 5;
+  double share = 1e9, median = 0, rare = 1e9;
+  for (int attempt = 0; attempt < 5 && (share >= kMost || rare >= 10'000); ++attempt) {
+    live::Histogram push_ns, clock_ns;
+    push_for_a_second(push_ns, clock_ns);
+    median = push_ns.quantile(0.5);
+    share = std::min(share, median / clock_ns.quantile(0.5));
     rare = std::min(rare, push_ns.quantile(0.99));
   }
-  std::printf("a push: %.0f ns (median), %.0f ns (99 %%), the clock's own time included\n", median,
-              rare);
-  EXPECT_LT(median, 150);
+  std::printf("a push: %.0f ns (median), %.1f times a clock's reading; %.0f ns (99 %%)\n", median,
+              share, rare);
+  EXPECT_LT(share, kMost);
   EXPECT_LT(rare, 10'000);
 }
 
