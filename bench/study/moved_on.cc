@@ -7,6 +7,11 @@
 #include "mjcf/plant/plant.h"
 
 namespace tauext::study {
+namespace {
+
+constexpr double kSample = 1.5e-3;  // [s] and half of one, for rounding
+
+}  // namespace
 
 std::vector<double> moved_on(const std::vector<RegionTouch>& touches, const Model& model,
                              const Trace& truth) {
@@ -15,13 +20,14 @@ std::vector<double> moved_on(const std::vector<RegionTouch>& touches, const Mode
   auto touch = touches.begin();
   Plant::Place from, to;
   Eigen::Vector3d start;
-  double last = 0;  // [s] when there was a force
+  double last = 0;  // [s] of the last sample with a force: the contact lasts until the next one
   for (int k = 0; k < truth.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     const bool begins = touch != touches.end() && truth.t[at] >= touch->begin - 1e-9;
     if (begins) from = plant.place(touch->at.from), to = plant.place(touch->at.to);
     if (begins || truth.contact_force[at] > 0) last = truth.t[at];
-    if ((!begins && touch == touches.begin()) || truth.t[at] > last + metrics::kGrace) continue;
+    if ((!begins && touch == touches.begin()) || truth.t[at] > last + metrics::kGrace + kSample)
+      continue;
     const RegionTouch& now = begins ? *touch++ : *(touch - 1);
     plant.set_state(truth.q.col(k), truth.qd.col(k));
     const Eigen::Vector3d point =

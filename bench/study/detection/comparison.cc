@@ -147,7 +147,7 @@ std::string format_regions(std::span<const Cell> cells) {
       row.push_back(percent(found, touches));
     }
     std::sort(moved.begin(), moved.end());
-    row.push_back(milliseconds(metrics::quantile(moved, 0.5)));
+    row.push_back(moved.empty() ? "-" : fmt::format("{:.1f}", 1e3 * metrics::quantile(moved, 0.5)));
     row.push_back(percent(exceeded, all));
     table.add(row);
   }

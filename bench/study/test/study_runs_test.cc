@@ -175,6 +175,11 @@ TEST(MovedOn, IsFromWhereTheMeetingBeganToWhereOurOwnModelSaysThePointIs) {
       ASSERT_NEAR(moved[static_cast<std::size_t>(k)], (at(k) - at(begin)).norm(), 1e-9) << k;
   }
   EXPECT_GT(seen, 1000);
+  // a mark counts until kGrace after the sample behind the last force
+  auto last = std::size_t(0);
+  for (std::size_t k = 0; k < moved.size(); ++k) last = truth.contact_force[k] > 0 ? k : last;
+  EXPECT_GT(moved.at(last + 201), 0);
+  EXPECT_EQ(moved.at(last + 203), 0);
   EXPECT_EQ(moved.front(), 0);
   EXPECT_GT(*std::max_element(moved.begin(), moved.end()), 1e-2);
 }

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model_error.h"
@@ -254,37 +253,6 @@ TEST(Ties, ThatCannotBeKeptAreNamed) {
   has(error("<joint joint1='a' polycoef='2 0 0 0 0'/>"), "joint 1 'a' is held at 2, outside its r");
   has(error("<joint joint1='a' joint2='b' polycoef='1e9 1 0 0 0'/>"), "polycoef is 1e+09");
   has(error("<connect body1='one' anchor='0 0 0'/>"), "body 'one' is tied to");
-}
-
-TEST(RunTerms, AreComputedOnceAtASampleAndAlwaysElsewhere) {
-  std::vector<Measurement<1>> samples(5);
-  for (int k = 0; k < 5; ++k) samples[static_cast<std::size_t>(k)].q[0] = k;
-  RunTerms<1> terms(samples);
-  int computed = 0;
-  const auto ask = [&](RunTerms<1>::At& at, double q, double qd = 0) {
-    return terms
-        .dynamics(at, Vec<1>(q), Vec<1>(qd),
-                  [&] {
-                    ++computed;
-                    return Dynamics<1>{Mat<1>(q), Vec<1>(qd)};
-                  })
-        .B(0, 0);
-  };
-  RunTerms<1>::At first = 0, second = 0;
-  for (const double q : {0., 1., 2., 3., 4.}) EXPECT_EQ(ask(first, q), q);
-  EXPECT_EQ(computed, 5);
-  for (const double q : {0., 0., 1., 3., 4.}) EXPECT_EQ(ask(second, q), q) << "one left out";
-  EXPECT_EQ(computed, 5);
-  EXPECT_EQ(ask(second, 4, 0.1), 4) << "another speed";
-  EXPECT_EQ(ask(second, 0.5), 0.5) << "no sample";
-  EXPECT_EQ(ask(second, 0), 0) << "one of the past";
-  EXPECT_EQ(computed, 8);
-  RunTerms<1>::At other = 0;
-  terms.momentum_dynamics(other, Vec<1>(0.), Vec<1>(0.), [&] {
-    ++computed;
-    return Dynamics<1>();
-  });
-  EXPECT_EQ(computed, 9) << "another function";
 }
 
 }  // namespace
