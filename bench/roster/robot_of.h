@@ -48,8 +48,7 @@ class RobotOf final : public Robot {
       : Robot(name, N, file), torques_(torques_of<N>(usual_torque())) {
     for_each_estimator(model, [&](auto make) {
       add_estimator(model, make);
-      // a tree's passes over its joints fill the lanes by themselves
-      if constexpr (std::is_same_v<M, WallMoBot3>) add_runs(model, make);
+      if constexpr (std::is_same_v<M, WallMoBot3> || kLarge) add_runs(model, make);
     });
     add_roster_detectors();
     for (const auto& add : registered_estimators<M>()) add(model, *this);
@@ -75,11 +74,6 @@ class RobotOf final : public Robot {
       entry.tunable = is_tunable<E, M>();
       entry.fields = fields_of(parameters_of<E>(make, model, {}), entry.tunable);
       entry.make = [make, model](const MadeFor<N>& of, const Specification& s) -> EstimatorPtr {
-        if constexpr (requires { make.parameters, model.within(*of.terms); }) {
-          if (of.terms)
-            return std::make_unique<Stage>(
-                E(model_of(make, model).within(*of.terms), parameters_of<E>(make, model, s)));
-        }
         if (s.keys.empty()) return std::make_unique<Stage>(make(of.trace));
         return std::make_unique<Stage>(E(model_of(make, model), parameters_of<E>(make, model, s)));
       };
@@ -185,6 +179,8 @@ class RobotOf final : public Robot {
   }
 
  private:
+  // arms for whose algebra lanes are worth their compiling; Eigen's of 8 joints branches by numbers
+  static constexpr bool kLarge = N == 6 || N == 7;
   using Lanes = Pack<kRuns>;
   using EstimatorPtr = std::unique_ptr<EstimatorStage<N>>;
   using DetectorPtr = std::unique_ptr<DetectorStage<N>>;
@@ -232,15 +228,20 @@ class RobotOf final : public Robot {
   }
 
   // lets the estimator that was added last do several runs at once, if it can
-  template <class Make>
-  void add_runs(const WallMoBot3& model, const Make& make) {
+  template <RobotModel M, class Make>
+  void add_runs(const M& model, const Make& make) {
     using E = std::decay_t<decltype(make(std::declval<const Trace&>()))>;
     using Same = typename ComputesAs<E>::type;
     if constexpr (ForRuns<Same>) {
       using Stage = EstimatorStageOf<Runs<Same>, Lanes>;
-      estimators_.back().make_runs = [make, model](const MadeFor<N>&, const Specification& s) {
-        return std::make_unique<Stage>(
-            Runs<Same>(model_of(make, model), parameters_of<E>(make, model, s)));
+      estimators_.back().make_runs = [make, model](const MadeFor<N>& of, const Specification& s) {
+        const auto arm = model_of(make, model);
+        const auto p = parameters_of<E>(make, model, s);
+        auto of_all = arm.template with<Lanes>();
+        if constexpr (requires { of_all.within(*of.terms); }) {
+          if (of.terms) of_all = of_all.within(*of.terms);
+        }
+        return std::make_unique<Stage>(Runs<Same>(arm, of_all, p));
       };
     }
   }

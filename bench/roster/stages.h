@@ -15,6 +15,7 @@
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
+#include "estimators/math/pack.h"
 #include "estimators/samples/status_counts.h"
 #include "estimators/tree/run_terms.h"
 #include "mjcf/trace/trace.h"
@@ -31,11 +32,11 @@ struct EstimateOf<N, double> {
   using type = Estimate<N>;
 };
 
-// what an estimator is made for
-template <int N>
+// what an estimator is made for; W runs at once (in its name: session/session_of.h)
+template <int N, int W = kRuns>
 struct MadeFor {
-  const Trace& trace;
-  RunTerms<N>* terms = nullptr;  // of the trace's samples, if others see them, too
+  const Trace& trace;                     // of several runs the first
+  RunTerms<N, Pack<W>>* terms = nullptr;  // of all runs' samples, if other estimators see them, too
 };
 
 }  // namespace detail

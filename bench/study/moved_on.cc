@@ -29,9 +29,9 @@ std::vector<double> moved_on(const std::vector<RegionTouch>& touches, const Mode
     if ((!begins && touch == touches.begin()) || truth.t[at] > last + metrics::kGrace + kSample)
       continue;
     const RegionTouch& now = begins ? *touch++ : *(touch - 1);
-    plant.set_state(truth.q.col(k), truth.qd.col(k));
+    plant.set_pose(truth.q.col(k));
     const Eigen::Vector3d point =
-        (1 - now.at.share) * plant.point(from).position + now.at.share * plant.point(to).position;
+        (1 - now.at.share) * plant.position(from) + now.at.share * plant.position(to);
     if (begins) start = point;
     moved[at] = (point - start).norm();
   }

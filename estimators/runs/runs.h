@@ -80,17 +80,19 @@ class Runs {
   using Model = typename E::Model;            ///< of doubles
   using Parameters = typename E::Parameters;  ///< of a run
   using Sample = Measurement<kDof, Pack<W>>;  ///< of all runs
+  /// The same model of all runs.
+  using ModelOfAll = decltype(std::declval<Model>().template with<Pack<W>>());
 
   /// Runs of different parameters.
   /// @throws std::invalid_argument for parameters out of range, and where runs differ in what is no
   /// number (a choice), or in max_gap or Ts
   Runs(const Model& model, const std::array<Parameters, W>& p)
-      : one_(made(model, p, std::make_index_sequence<W>())),
-        all_(model.template with<Pack<W>>(), detail::packed<typename All::Parameters>(p)) {
-    reset();
-  }
+      : Runs(model, model.template with<Pack<W>>(), p) {}
   /// Runs that differ in their samples alone.
   Runs(const Model& model, const Parameters& p) : Runs(model, repeated(p)) {}
+  /// The same, where there is a better one of all runs: one that knows what comes, or remembers.
+  Runs(const Model& model, const ModelOfAll& of_all, const Parameters& p)
+      : Runs(model, of_all, repeated(p)) {}
 
   /// All runs forget everything.
   void reset() noexcept {
@@ -111,7 +113,14 @@ class Runs {
   }
 
  private:
-  using All = typename E::template For<decltype(std::declval<Model>().template with<Pack<W>>())>;
+  using All = typename E::template For<ModelOfAll>;
+
+  Runs(const Model& model, const ModelOfAll& of_all, const std::array<Parameters, W>& p)
+      : one_(made(model, p, std::make_index_sequence<W>())),
+        all_(of_all, detail::packed<typename All::Parameters>(p)) {
+    reset();
+  }
+
   E& one(int i) noexcept { return one_[static_cast<std::size_t>(i)]; }
   Sampling<kDof, Pack<W>>& sampling() noexcept { return std::get<0>(all_.memory()); }
   static auto everything(All& all) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The terms of an arm's equation of motion at the samples of a run, for all estimators that see
-/// them: each is computed once, by the first that asks.
+/// The terms of an arm's equation of motion at the samples of a run, or of several at once, for all
+/// estimators that see them: each is computed once, by the first that asks.
 #pragma once
 
 #include <cstddef>
@@ -13,37 +13,36 @@
 
 namespace tauext {
 
-/// What one arm answers at the samples of one run. Not for several threads at once.
-template <int N>
+/// What one arm answers at the samples of a run; with a Pack for Scalar, of several runs. Not for
+/// several threads at once.
+template <int N, class Scalar = double>
 class RunTerms {
  public:
+  using VecN = Vec<N, Scalar>;  ///< a number of each joint
   /// Where in the run who asks is; each has one of its own.
   using At = std::size_t;
 
   /// @param samples of the run, which must outlive it
-  explicit RunTerms(std::span<const Measurement<N>> samples)
-      : samples_(samples),
-        dynamics_(samples.size()),
-        momentum_dynamics_(samples.size()),
-        friction_(samples.size()) {}
+  explicit RunTerms(std::span<const Measurement<N, Scalar>> samples) : samples_(samples) {}
 
   /// compute(), or what it gave at this sample before; where (q [rad], qd [rad/s]) is none of the
-  /// next few samples, always compute().
+  /// next samples, always compute().
   template <class Compute>
-  Dynamics<N> dynamics(At& at, const Vec<N>& q, const Vec<N>& qd, const Compute& compute) noexcept {
+  Dynamics<N, Scalar> dynamics(At& at, const VecN& q, const VecN& qd,
+                               const Compute& compute) noexcept {
     return answer(dynamics_, at, is_at(q, qd), compute);
   }
   /// The same of momentum_dynamics().
   template <class Compute>
-  Dynamics<N> momentum_dynamics(At& at, const Vec<N>& q, const Vec<N>& qd,
-                                const Compute& compute) noexcept {
+  Dynamics<N, Scalar> momentum_dynamics(At& at, const VecN& q, const VecN& qd,
+                                        const Compute& compute) noexcept {
     return answer(momentum_dynamics_, at, is_at(q, qd), compute);
   }
   /// The same of friction().
   template <class Compute>
-  Vec<N> friction(At& at, const Vec<N>& qd, const Compute& compute) noexcept {
+  VecN friction(At& at, const VecN& qd, const Compute& compute) noexcept {
     return answer(
-        friction_, at, [&](const Measurement<N>& y) { return y.qd == qd; }, compute);
+        friction_, at, [&](const auto& y) { return same(y.qd, qd); }, compute);
   }
 
  private:
@@ -53,8 +52,15 @@ class RunTerms {
     Value value;
   };
 
-  static auto is_at(const Vec<N>& q, const Vec<N>& qd) noexcept {
-    return [&](const Measurement<N>& y) { return y.q == q && y.qd == qd; };
+  static bool same(const VecN& a, const VecN& b) noexcept {
+    using tauext::all;
+    for (int j = 0; j < N; ++j) {
+      if (!all(a[j] == b[j])) return false;
+    }
+    return true;
+  }
+  static auto is_at(const VecN& q, const VecN& qd) noexcept {
+    return [&](const auto& y) { return same(y.q, q) && same(y.qd, qd); };
   }
 
   template <class Value, class Here, class Compute>
@@ -63,17 +69,18 @@ class RunTerms {
     for (At k = at; k < samples_.size() && k < at + kAhead; ++k) {
       if (!here(samples_[k])) continue;
       at = k;
+      answers.resize(samples_.size());
       if (!answers[k].known) answers[k] = {true, compute()};
       return answers[k].value;
     }
     return compute();
   }
 
-  static constexpr At kAhead = 3;  // an estimator leaves out an outlier
+  static constexpr At kAhead = 64;  // an estimator may have left out so many
 
-  std::span<const Measurement<N>> samples_;
-  std::vector<Answer<Dynamics<N>>> dynamics_, momentum_dynamics_;
-  std::vector<Answer<Vec<N>>> friction_;
+  std::span<const Measurement<N, Scalar>> samples_;
+  std::vector<Answer<Dynamics<N, Scalar>>> dynamics_, momentum_dynamics_;
+  std::vector<Answer<VecN>> friction_;
 };
 
 }  // namespace tauext

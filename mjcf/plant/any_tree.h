@@ -4,9 +4,12 @@
 /// decided then, too, so that every estimator is compiled once.
 #pragma once
 
+#include <concepts>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
+#include "estimators/math/pack.h"
 #include "estimators/tree/run_terms.h"
 #include "mjcf/plant/tree.h"
 
@@ -45,6 +48,9 @@ struct Tied {
 
 }  // namespace detail
 
+template <int N, int W>
+class TreeOfRuns;
+
 /// A TreeModel<N>, or a TiedTree of N coordinates.
 template <int N>
 class AnyTree {
@@ -60,12 +66,14 @@ class AnyTree {
   /// One with tied joints.
   explicit AnyTree(std::shared_ptr<const TiedTree> arm)
       : arm_(typename TreeModel<N>::Parameters()), tied_(std::move(arm)) {}
-  /// The same arm, which looks into these terms of a run before it computes any. They must outlive
-  /// it; it is then for one thread.
-  AnyTree within(RunTerms<N>& run) const {
-    AnyTree same = *this;
-    same.run_ = &run;
-    return same;
+  /// The same arm, for the runs of a Pack S.
+  template <class S>
+  auto with() const {
+    if constexpr (std::is_same_v<S, double>) {
+      return *this;
+    } else {
+      return TreeOfRuns<N, S::kWidth>(*this);
+    }
   }
 
   // as TreeModel has them, with units and signs
@@ -91,9 +99,9 @@ class AnyTree {
     return arm_.momentum_bias(q, qd);
   }
   VecN friction(const VecN& qd) const noexcept {  ///< F(qd) [N m]
-    if (run_) [[unlikely]]
-      return run_->friction(at_, qd, [&] { return friction_now(qd); });
-    return friction_now(qd);
+    if (tied_) [[unlikely]]
+      return tied<VecN>([&] { return Tied::friction(*tied_, wide(qd)); });
+    return arm_.friction(qd);
   }
   VecN dry_friction(const VecN& qd) const noexcept {  ///< Coulomb's share of it [N m]
     if (tied_) [[unlikely]]
@@ -102,15 +110,15 @@ class AnyTree {
   }
   /// inertia and bias, sharing the pose.
   Dynamics<N> dynamics(const VecN& q, const VecN& qd) const noexcept {
-    if (run_) [[unlikely]]
-      return run_->dynamics(at_, q, qd, [&] { return dynamics_now(q, qd); });
-    return dynamics_now(q, qd);
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });
+    return arm_.dynamics(q, qd);
   }
   /// inertia and momentum_bias, sharing the pose.
   Dynamics<N> momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
-    if (run_) [[unlikely]]
-      return run_->momentum_dynamics(at_, q, qd, [&] { return momentum_dynamics_now(q, qd); });
-    return momentum_dynamics_now(q, qd);
+    if (tied_) [[unlikely]]
+      return tied<Dynamics<N>>([&] { return Tied::momentum_dynamics(*tied_, wide(q), wide(qd)); });
+    return arm_.momentum_dynamics(q, qd);
   }
   /// qdd = B^-1 (u - C qd - F - g) for u = tau - tau_ext [N m], with its Jacobians.
   ForwardDynamics<N> forward_dynamics(const VecN& q, const VecN& qd, const VecN& u) const noexcept {
@@ -160,22 +168,6 @@ class AnyTree {
             narrow(f.by_qd), narrow(f.minus_inverse), f.ok};
   }
 
-  VecN friction_now(const VecN& qd) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<VecN>([&] { return Tied::friction(*tied_, wide(qd)); });
-    return arm_.friction(qd);
-  }
-  Dynamics<N> dynamics_now(const VecN& q, const VecN& qd) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>([&] { return Tied::dynamics(*tied_, wide(q), wide(qd)); });
-    return arm_.dynamics(q, qd);
-  }
-  Dynamics<N> momentum_dynamics_now(const VecN& q, const VecN& qd) const noexcept {
-    if (tied_) [[unlikely]]
-      return tied<Dynamics<N>>([&] { return Tied::momentum_dynamics(*tied_, wide(q), wide(qd)); });
-    return arm_.momentum_dynamics(q, qd);
-  }
-
   // out of the way of an arm without tied joints
   template <class Result, class Ask>
   [[gnu::noinline]] static Result tied(Ask ask) noexcept {
@@ -184,8 +176,90 @@ class AnyTree {
 
   TreeModel<N> arm_;
   std::shared_ptr<const TiedTree> tied_;
-  RunTerms<N>* run_ = nullptr;
-  mutable typename RunTerms<N>::At at_ = 0;
+};
+
+/// The same arm in W runs at once (estimators/runs/runs.h), each term run by run: a tree's passes
+/// over its joints fill the lanes by themselves. What an estimator does with terms goes at once.
+template <int N, int W>
+class TreeOfRuns {
+ public:
+  static constexpr int kDof = N;
+  using Number = Pack<W>;             ///< of what its numbers are
+  using VecN = Vec<N, Number>;        ///< a number of each coordinate
+  using MatN = Mat<N, Number>;        ///< over the coordinates
+  using Terms = RunTerms<N, Number>;  ///< of all runs
+  using Both = Dynamics<N, Number>;   ///< two of them
+
+  explicit TreeOfRuns(const AnyTree<N>& arm) : arm_(arm) {}  ///< of that arm
+  /// One that looks into these terms before it computes any. They must outlive it; it is then for
+  /// one thread.
+  TreeOfRuns within(Terms& terms) const {
+    TreeOfRuns same = *this;
+    same.terms_ = &terms;
+    return same;
+  }
+  /// The same arm, for one run.
+  template <std::same_as<double>>
+  const AnyTree<N>& with() const {
+    return arm_;
+  }
+
+  // as AnyTree has them
+
+  MatN inertia(const VecN& q) const noexcept {  ///< B(q) [kg m^2]
+    return of_all<MatN>([&](int i) { return arm_.inertia(of(q, i)); });
+  }
+  VecN gravity(const VecN& q) const noexcept {  ///< g(q) [N m]
+    return of_all<VecN>([&](int i) { return arm_.gravity(of(q, i)); });
+  }
+  VecN bias(const VecN& q, const VecN& qd) const noexcept {  ///< C qd + g [N m]
+    return of_all<VecN>([&](int i) { return arm_.bias(of(q, i), of(qd, i)); });
+  }
+  VecN momentum_bias(const VecN& q, const VecN& qd) const noexcept {  ///< C^T qd - g [N m]
+    return of_all<VecN>([&](int i) { return arm_.momentum_bias(of(q, i), of(qd, i)); });
+  }
+  VecN friction(const VecN& qd) const noexcept {  ///< F(qd) [N m]
+    const auto now = [&] { return of_all<VecN>([&](int i) { return arm_.friction(of(qd, i)); }); };
+    return terms_ ? terms_->friction(at_, qd, now) : now();
+  }
+  /// inertia and bias, sharing the pose.
+  Both dynamics(const VecN& q, const VecN& qd) const noexcept {
+    const auto now = [&] {
+      return of_all<Both>([&](int i) { return arm_.dynamics(of(q, i), of(qd, i)); });
+    };
+    return terms_ ? terms_->dynamics(at_, q, qd, now) : now();
+  }
+  /// inertia and momentum_bias, sharing the pose.
+  Both momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
+    const auto now = [&] {
+      return of_all<Both>([&](int i) { return arm_.momentum_dynamics(of(q, i), of(qd, i)); });
+    };
+    return terms_ ? terms_->momentum_dynamics(at_, q, qd, now) : now();
+  }
+
+ private:
+  static Vec<N> of(const VecN& all, int i) noexcept {
+    Vec<N> one;
+    for (int j = 0; j < N; ++j) one[j] = all[j][i];
+    return one;
+  }
+  template <class One, class All>
+  static void put(const One& one, int i, All& all) noexcept {
+    for (Eigen::Index k = 0; k < one.size(); ++k) all.data()[k].set(i, one.data()[k]);
+  }
+  static void put(const Dynamics<N>& one, int i, Both& all) noexcept {
+    put(one.B, i, all.B), put(one.bias, i, all.bias);
+  }
+  template <class All, class Term>
+  [[gnu::noinline]] static All of_all(const Term& term) noexcept {
+    All all;
+    for (int i = 0; i < W; ++i) put(term(i), i, all);
+    return all;
+  }
+
+  AnyTree<N> arm_;
+  Terms* terms_ = nullptr;
+  mutable typename Terms::At at_ = 0;
 };
 
 /// The model of an arm with N coordinates, of which joints may follow others.

@@ -63,6 +63,11 @@ void Plant::set_state(const VectorXd& q, const VectorXd& qd) {
   mj_forward(model_.get(), data_.get());
 }
 
+void Plant::set_pose(const VectorXd& q) {
+  put_arm(q, VectorXd::Zero(dof()));
+  mj_fwdPosition(model_.get(), data_.get());
+}
+
 void Plant::put_arm(const VectorXd& q, const VectorXd& qd) {
   Eigen::Map<VectorXd>(data_->qpos, model_->nq)(layout_.arm) = layout_.T * q + layout_.rho0;
   Eigen::Map<VectorXd>(data_->qvel, model_->nv)(layout_.arm) = layout_.T * qd;

@@ -42,6 +42,8 @@ class Plant {
   /// Puts the arm at q [rad], qd [rad/s], at rest from inputs, and the scene at its begin: a load
   /// is held beside the arm.
   void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
+  /// Puts the arm at q [rad] for position() alone, which costs a fraction.
+  void set_pose(const Eigen::VectorXd& q);
 
   /// Applies tau [N m] and tau_ext [N m, sign of (3)] from now on. tau beyond what the motors can
   /// do is clipped.
@@ -66,7 +68,9 @@ class Plant {
   /// A site, the origin of a body, or kEndEffector.
   /// @throws std::invalid_argument for an unknown name
   Place place(const std::string& name) const;
-  /// Where such a point is.
+  /// Where such a point is [m].
+  Eigen::Vector3d position(const Place& c) const;
+  /// The same, and how it moves.
   Point point(const Place& c) const;
   /// place(name), there.
   Point site(const std::string& name) const { return point(place(name)); }
@@ -107,7 +111,6 @@ class Plant {
 
   void put_arm(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
   void apply_to_load();
-  Eigen::Vector3d position(const BodyPoint& c) const;
   Eigen::MatrixXd jacobian(const BodyPoint& c) const;  // by MuJoCo's degrees of freedom
   Eigen::VectorXd of_arm(const double* force) const;   // a generalised force, in joint coordinates
   template <class Counts>

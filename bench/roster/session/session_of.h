@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -31,7 +30,7 @@ template <int N, int W>
 struct Makers {
   using Lanes = Pack<W>;
   template <class Stage>
-  using Of = std::function<std::unique_ptr<Stage>(std::string_view, const MadeFor<N>&)>;
+  using Of = std::function<std::unique_ptr<Stage>(std::string_view, const MadeFor<N, W>&)>;
   template <class Stage>
   using With = std::function<std::unique_ptr<Stage>(const Asked&)>;
 
@@ -57,27 +56,31 @@ class SessionOf final : public Session {
     in_lanes([&](int k, std::size_t run, int lane) {
       put(traces[run].template measurement<N>(k), lane, lanes_->sample(k));
     });
+    terms_.emplace(lanes_->samples());
   }
 
   std::vector<std::string> estimate(std::string_view estimator) override {
     if (lanes_) {
-      const auto stage = make_.estimator_of_runs(estimator, {traces_.front()});
+      const auto stage =
+          make_.estimator_of_runs(estimator, {traces_.front(), ++asked_ > 1 ? &*terms_ : nullptr});
       if (stage) return estimate_at_once(*stage);
     }
-    ++alone_for_;
     std::vector<std::string> why;
     LeftOut left_out;
     for (std::size_t i = 0; i < traces_.size(); ++i) {
       SeenRuns<N, double>& run = alone()[i];
-      run.run(*make_.estimator(estimator, {traces_[i], terms(i)}));
+      run.run(*make_.estimator(estimator, {traces_[i]}));
       why.push_back(run.soundness().front().why(traces_[i].size()));
       if (i == 0) left_out = run.left_out();
       if (i > 0 && left_out != run.left_out()) left_out.reset();
     }
     one_by_one_ = true;
     at_once_ = lanes_ && left_out;
-    if (at_once_) go_together(*left_out);
-    if (at_once_ && alone_for_ == 1) alone_.clear(), one_by_one_ = false;  // there may be no other
+    if (at_once_) {
+      go_together(*left_out);
+      alone_.clear();
+      one_by_one_ = false;
+    }
     return why;
   }
 
@@ -184,13 +187,6 @@ class SessionOf final : public Session {
     return alone_;
   }
 
-  // of a run, once a second estimator sees it
-  RunTerms<N>* terms(std::size_t run) {
-    if (alone_for_ < 2) return nullptr;
-    if (run == terms_.size()) terms_.emplace_back(alone()[run].samples());
-    return &terms_[run];
-  }
-
   // the same, with estimates that were made at once
   const std::vector<SeenRuns<N, double>>& apart() {
     if (one_by_one_) return alone();
@@ -239,9 +235,9 @@ class SessionOf final : public Session {
   std::span<const Trace> traces_;
   Makers<N, W> make_;
   std::vector<SeenRuns<N, double>> alone_;    // each run, once it is asked for
-  std::deque<RunTerms<N>> terms_;             // of each of them
-  int alone_for_ = 0;                         // estimators that saw each run for itself
   std::optional<SeenRuns<N, Lanes>> lanes_;   // all of them, if they are alike
+  std::optional<RunTerms<N, Lanes>> terms_;   // there; from the second estimator on
+  int asked_ = 0;                             // for so many estimators
   bool at_once_ = false, one_by_one_ = true;  // whether detectors find estimates there
 };
 

@@ -32,7 +32,7 @@ struct StudyOptions {
   /// Of a condition that is named here these pairs are tried, and no others. Of them `estimators`
   /// and `detectors` choose by specification or name.
   std::vector<TunedRow> tuned;
-  int blows = 500;         ///< at least so many for each condition
+  int blows = 300;         ///< at least so many for each condition
   int brisk_pushes = 100;  ///< at least so many for each condition
   int clampings = 100;     ///< at least so many for each condition
   int regions = 0;         ///< at least so many meetings of each of region_classes(), likewise

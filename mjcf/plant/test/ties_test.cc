@@ -11,6 +11,7 @@
 #include <fstream>
 #include <string>
 
+#include "estimators/runs/runs.h"
 #include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model_error.h"
 #include "mjcf/plant/plant.h"
@@ -128,6 +129,41 @@ TEST(Ties, FollowChainsWithTheirOffsetsAndReferences) {
   const auto lanes = arm.motion(q, qd, u - arm.dry_friction(qd), &lanes_of_B);
   EXPECT_LT((lanes.by_q.matrix() + B * f.dqdd_dq).norm(), 1e-12);
   EXPECT_LT((lanes_of_B.matrix() - B).norm(), 1e-12);
+}
+
+TEST(Ties, OfSeveralRunsAreThoseOfEachRun) {
+  const AnyTree<2> arm = any_tree<2>(
+      tied_model("<body><joint name='a' axis='0 1 0' damping='1' frictionloss='1'/>"
+                 "<inertial pos='.1 0 .2' mass='2' diaginertia='.1 .2 .3'/>"
+                 "<body pos='0 0 .3'><joint name='b' axis='0 1 0'/><inertial pos='0 0 .2' mass='1' "
+                 "diaginertia='.1 .1 .1'/></body></body><body><joint name='c' axis='1 0 0'/>"
+                 "<inertial pos='0 .1 .2' mass='1' diaginertia='.1 .1 .1'/></body>",
+                 "<joint joint1='b' joint2='a' polycoef='0 2 0 0 0'/>"));
+  constexpr int kWidth = 4;
+  using Lanes = Pack<kWidth>;
+  Measurement<2, Lanes> y;
+  for (int i = 0; i < kWidth; ++i)
+    put<2, kWidth>({.q = Vec<2>(0.4 * i, -1.1), .qd = Vec<2>(0.7, 0.3 - i)}, i, y);
+  RunTerms<2, Lanes> terms({&y, 1});
+  for (const auto& runs : {arm.with<Lanes>(), arm.with<Lanes>().within(terms)}) {
+    for (int asked = 1; asked <= 2; ++asked) {  // the second time from memory
+      const auto both = runs.dynamics(y.q, y.qd), momentum = runs.momentum_dynamics(y.q, y.qd);
+      const Vec<2, Lanes> friction = runs.friction(y.qd), gravity = runs.gravity(y.q);
+      for (int i = 0; i < kWidth; ++i) {
+        const auto of = [i](const Lanes& x) { return x[i]; };
+        const Vec<2> q = y.q.unaryExpr(of), qd = y.qd.unaryExpr(of);
+        EXPECT_EQ(both.B.unaryExpr(of), arm.dynamics(q, qd).B);
+        EXPECT_EQ(both.bias.unaryExpr(of), arm.dynamics(q, qd).bias);
+        EXPECT_EQ(momentum.B.unaryExpr(of), arm.momentum_dynamics(q, qd).B);
+        EXPECT_EQ(momentum.bias.unaryExpr(of), arm.momentum_dynamics(q, qd).bias);
+        EXPECT_EQ(friction.unaryExpr(of), arm.friction(qd));
+        EXPECT_EQ(gravity.unaryExpr(of), arm.gravity(q));
+        EXPECT_EQ(runs.inertia(y.q).unaryExpr(of), arm.inertia(q));
+        EXPECT_EQ(runs.bias(y.q, y.qd).unaryExpr(of), arm.bias(q, qd));
+        EXPECT_EQ(runs.momentum_bias(y.q, y.qd).unaryExpr(of), arm.momentum_bias(q, qd));
+      }
+    }
+  }
 }
 
 // two wheels that brake one joint brake it twice as fast, and one rotor's inertia mends both
