@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/python/arm.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+
+#include "estimators/testbed1.h"
+#include "estimators/wallmobot3.h"
+#include "mjcf/plant/any_tree.h"
+
+namespace tauext::python {
+namespace {
+
+template <class M>
+class ArmOf final : public Arm {
+ public:
+  explicit ArmOf(const M& model) : model_(model) {}
+
+  std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd, Eigen::VectorXd> terms(
+      const Eigen::VectorXd& q, const Eigen::VectorXd& qd) const override {
+    if (q.size() != M::kDof || qd.size() != M::kDof)
+      throw std::invalid_argument(
+          fmt::format("q and qd of {} joints, and the arm has {}", q.size(), M::kDof));
+    const Vec<M::kDof> at = q, rate = qd;
+    return {model_.inertia(at), model_.bias(at, rate), model_.momentum_bias(at, rate),
+            model_.friction(rate)};
+  }
+
+ private:
+  M model_;
+};
+
+template <std::size_t... I>
+std::unique_ptr<const Arm> of_file(const Model& model, int joints, std::index_sequence<I...>) {
+  using Make = std::unique_ptr<const Arm> (*)(const Model&);
+  static constexpr std::array<Make, sizeof...(I)> kMakers = {
+      [](const Model& m) -> std::unique_ptr<const Arm> {
+        constexpr int N = static_cast<int>(I) + 1;
+        return std::make_unique<ArmOf<AnyTree<N>>>(any_tree<N>(m));
+      }...};
+  return kMakers.at(static_cast<std::size_t>(joints) - 1)(model);
+}
+
+}  // namespace
+
+std::unique_ptr<const Arm> arm_of(const Robot& robot) {
+  if (robot.name() == "wallmobot3") return std::make_unique<ArmOf<WallMoBot3>>(WallMoBot3());
+  if (robot.name() == "testbed1") return std::make_unique<ArmOf<Testbed1>>(Testbed1());
+  return of_file(robot.model(), robot.dof(), std::make_index_sequence<kMaxFileJoints>());
+}
+
+}  // namespace tauext::python
