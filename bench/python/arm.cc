@@ -6,10 +6,10 @@
 #include <array>
 #include <cstddef>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
-#include "estimators/testbed1.h"
-#include "estimators/wallmobot3.h"
+#include "bench/roster/roster.h"
 #include "mjcf/plant/any_tree.h"
 
 namespace tauext::python {
@@ -48,8 +48,11 @@ std::unique_ptr<const Arm> of_file(const Model& model, int joints, std::index_se
 }  // namespace
 
 std::unique_ptr<const Arm> arm_of(const Robot& robot) {
-  if (robot.name() == "wallmobot3") return std::make_unique<ArmOf<WallMoBot3>>(WallMoBot3());
-  if (robot.name() == "testbed1") return std::make_unique<ArmOf<Testbed1>>(Testbed1());
+  std::unique_ptr<const Arm> arm;
+  for_each_robot([&](const char* name, const auto& model) {
+    if (robot.name() == name) arm = std::make_unique<ArmOf<std::decay_t<decltype(model)>>>(model);
+  });
+  if (arm) return arm;
   return of_file(robot.model(), robot.dof(), std::make_index_sequence<kMaxFileJoints>());
 }
 

@@ -36,16 +36,6 @@ std::vector<std::string> names_of(std::vector<std::string> all) {
   return all;
 }
 
-Degradation degradation_of(const std::string& degrade, std::uint64_t seed) {
-  Degradation d;
-  if (degrade.starts_with('{'))
-    set_degradation(degrade, d);
-  else if (!degrade.empty())
-    read_degradation(degrade, d);
-  d.sensors.seed = seed;
-  return d;
-}
-
 Trace record(const Robot& robot, const std::string& scenario, const std::string& degrade,
              std::uint64_t seed) {
   return unlocked([&] {
@@ -75,7 +65,7 @@ Output given(const Array& tau_ext) {
 
 Detections detected(const Robot& robot, const std::string& detector, const Trace& run,
                     const Output& estimates, const std::string& thresholds,
-                    const std::string& estimator) {
+                    const std::string& estimator, const std::string& condition) {
   robot.require_joints(run.dof());
   if (estimates.tau_ext.cols() != run.size())
     throw std::invalid_argument(
@@ -83,7 +73,7 @@ Detections detected(const Robot& robot, const std::string& detector, const Trace
   DetectorSettings settings;
   if (!thresholds.empty())
     settings.thresholds =
-        trained_for(read_thresholds(thresholds), robot.name(), 0, estimator, detector);
+        trained_for(read_thresholds(thresholds), robot.name(), 0, estimator, detector, condition);
   return {robot.detect(detector, run, estimates, settings)};
 }
 
@@ -142,6 +132,16 @@ void bind_answers(py::module_& m) {
 }
 
 }  // namespace
+
+Degradation degradation_of(const std::string& degrade, std::uint64_t seed) {
+  Degradation d;
+  if (degrade.starts_with('{'))
+    set_degradation(degrade, d);
+  else if (!degrade.empty())
+    read_degradation(degrade, d);
+  d.sensors.seed = seed;
+  return d;
+}
 
 void bind_robots(py::module_& m) {
   bind_answers(m);

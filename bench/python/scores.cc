@@ -14,9 +14,9 @@
 
 #include "bench/outside/outside_score.h"
 #include "bench/python/arrays.h"
+#include "bench/python/robots.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/score/degradation.h"
 #include "bench/score/metric_list.h"
 #include "bench/score/suite.h"
 #include "bench/study/detection/calibration.h"
@@ -63,12 +63,7 @@ std::vector<py::dict> suite(const Robot& robot, const std::vector<std::string>& 
     Score score;
   };
   const auto all = unlocked([&] {
-    Degradation d;
-    if (degrade.starts_with('{'))
-      set_degradation(degrade, d);
-    else if (!degrade.empty())
-      read_degradation(degrade, d);
-    d.sensors.seed = seed;
+    const Degradation d = degradation_of(degrade, seed);
     Suite suite(
         {.sensors = d.sensors, .model_error = d.model_error, .recording = {.drives = d.drives}});
     const auto wanted = entry_filter(filter);

@@ -163,12 +163,14 @@ class Robot:
         return self._robot.estimate(estimator, run)
 
     def detect(self, detector: str, run: Run, estimates: Estimates | ArrayLike, *,
-               thresholds: str | os.PathLike[str] = "", estimator: str = "") -> Detections:
+               thresholds: str | os.PathLike[str] = "", estimator: str = "",
+               condition: str = "") -> Detections:
         """What a detector makes of estimates.
 
         thresholds: a file of tauext-detect --calibrate, which has those behind `estimator`
+        condition: of the study, for which such a file may have others
         """
-        return self._robot.detect(detector, run, _estimates(estimates), os.fspath(thresholds), estimator)
+        return self._robot.detect(detector, run, _estimates(estimates), os.fspath(thresholds), estimator, condition)
 
     def score(self, run: Run, estimates: Estimates | ArrayLike, detections: Detections | None = None, *,
               scenario: str = "", score_from: float | None = None) -> dict[str, float]:
@@ -187,7 +189,8 @@ class Robot:
         """Estimators through the scenarios, as tauext-bench scores them, but for times.
 
         Each row has the name ROBOT/SCENARIO/ESTIMATOR[+DETECTOR], "metrics" by their keys and, where
-        it failed, an "error". filter is a regular expression of names.
+        it failed, an "error". filter is a regular expression of names. Without detectors those of
+        tauext-bench run where there is something to detect.
         """
         return _core.suite(self._robot, _list(estimators, self.estimators), _list(detectors, list),
                            filter, _text(degrade), seed)

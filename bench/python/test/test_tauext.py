@@ -135,6 +135,21 @@ def test_detections_mark_what_the_suite_finds(arm):
     assert tauext.CONTACTS[detections.contact.max()] in ("collision", "clamping")
 
 
+def test_thresholds_of_a_file_are_those_of_their_condition(arm, tmp_path):
+    run = arm.record("contact")
+    estimates = arm.estimate("mo2", run)
+    scores = []
+    for condition in ("light", "hard"):  # whose sensors are worse, and so are its thresholds
+        file = tmp_path / f"{condition}.json"
+        subprocess.run([f"{BIN}/tauext-detect", "--robot", "wallmobot3", "--calibrate", file, "--train", condition,
+                        "--estimator", "mo2", "--detector", "threshold", "--runs", "2"], check=True, capture_output=True)
+        d = arm.detect("threshold", run, estimates, thresholds=file, estimator="mo2", condition=condition)
+        scores.append(d.score.max())
+        with pytest.raises(ValueError):
+            arm.detect("threshold", run, estimates, thresholds=file, estimator="ekf", condition=condition)
+    assert scores[0] > 1.5 * scores[1] > 0
+
+
 def test_runs_go_through_files(arm, tmp_path):
     run = arm.record("step")
     for name in ("run.csv", "run.npz"):
