@@ -90,7 +90,7 @@ class ActiveObserver {
   Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    const Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);
+    const Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);  // put_right() asks, too
     const Ldlt<kDof, Scalar> B(now.B);
     if (!B.ok()) {
       sampling_.reset();
@@ -150,7 +150,7 @@ class ActiveObserver {
   // a_ anew, since the last sample's tau was an outlier and is now this one [N m]; and q turns with
   // its encoder
   [[gnu::noinline]] void put_right(const Vec<kDof, Scalar>& tau) noexcept {
-    const Dynamics<kDof, Scalar> last = dynamics(model_, q_, qd_);
+    const Dynamics<kDof, Scalar>& last = dynamics(model_, q_, qd_);
     const Ldlt<kDof, Scalar> B(last.B);
     if (B.ok()) a_ = B.solve(Vec<kDof, Scalar>(tau - last.bias - model_.friction(qd_)));
     if (sampling_.wrapped()) q_ += sampling_.turns();

@@ -54,12 +54,12 @@ struct Dynamics {
 
 /// B and C qd + g of one state; a model that shares work between the two offers `dynamics` itself.
 template <RobotModel M>
-[[gnu::always_inline]] inline Dynamics<M::kDof, ScalarOf<M>> dynamics(
+[[gnu::always_inline]] inline decltype(auto) dynamics(
     const M& m, const Vec<M::kDof, ScalarOf<M>>& q, const Vec<M::kDof, ScalarOf<M>>& qd) noexcept {
   if constexpr (requires { m.dynamics(q, qd); }) {
     return m.dynamics(q, qd);
   } else {
-    return {m.inertia(q), m.bias(q, qd)};
+    return Dynamics<M::kDof, ScalarOf<M>>{m.inertia(q), m.bias(q, qd)};
   }
 }
 

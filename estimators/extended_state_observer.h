@@ -72,7 +72,7 @@ class ExtendedStateObserver {
   Estimate<kDof, Scalar> update(const Measurement<kDof, Scalar>& y) noexcept {
     Status status = sampling_.accept(y);
     if (!used(status)) return {tau_ext_, status, sampling_.joints()};
-    const Dynamics<kDof, Scalar> now = dynamics(model_, y.q, y.qd);
+    const Dynamics<kDof, Scalar>& now = dynamics(model_, y.q, y.qd);
     const Ldlt<kDof, Scalar> B(now.B);
     if (!B.ok()) {
       sampling_.reset();

@@ -37,7 +37,7 @@ class Momentum {
     MomentumStep<kDof, Scalar> s;
     Vec<kDof, Scalar> rest;
     if constexpr (requires { model_.momentum_dynamics(y.q, y.qd); }) {
-      const Dynamics<kDof, Scalar> now = model_.momentum_dynamics(y.q, y.qd);
+      const Dynamics<kDof, Scalar>& now = model_.momentum_dynamics(y.q, y.qd);
       s.B = now.B;
       s.p = s.B * y.qd;
       rest = now.bias - model_.friction(y.qd);

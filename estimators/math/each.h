@@ -17,10 +17,13 @@ namespace tauext::detail {
 template <int N, class Scalar = double>
 inline constexpr int kPadded = N == 1 || !std::is_same_v<Scalar, double> ? N : (N + 3) / 4 * 4;
 
-/// Bodies of a piece: those of a register. Up to 4 bodies, and other scalars than double, are one
-/// piece; 5 to 8 are two, computed one after the other where no body needs the other piece.
+/// Bodies of a piece: those of a register. Up to 4 bodies are one piece; 5 to 8 are two, computed
+/// one after the other where no body needs the other piece. Of other scalars, which fill registers
+/// by themselves, each body is one.
 template <int P, class Scalar>
-inline constexpr int kPiece = P > 4 && std::is_same_v<Scalar, double> ? 4 : P;
+inline constexpr int kPiece = !std::is_same_v<Scalar, double> ? 1
+                              : P > 4                         ? 4
+                                                              : P;
 
 /// A number of each of P bodies.
 template <int P, class Scalar>
@@ -62,15 +65,13 @@ struct Each {
   }  ///< that of body i
   [[gnu::always_inline]] void set(int i, const Scalar& a) noexcept {
     x[i] = a;
-  }                                                        ///< that of body i
-  const Each& piece(int) const noexcept { return *this; }  ///< the bodies of a piece: here, all
-  void put(int, const Each& e) noexcept { *this = e; }     ///< sets the bodies of a piece
-  /// The same, or, if that saves work, 0 of the bodies before `first`.
-  Each since([[maybe_unused]] int first) const noexcept { return *this; }
-  /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
-  void add(const Each& a, const Scalar& times, int first, int last) noexcept {
-    for (int i = first; i <= last; ++i) x[i] += times * a.x[i];
+  }  ///< that of body i
+  /// The bodies of a piece: here, one.
+  [[gnu::always_inline]] Each<1, Scalar> piece(int k) const noexcept {
+    return Each<1, Scalar>::all(x[k]);
   }
+  /// Sets the bodies of a piece.
+  [[gnu::always_inline]] void put(int k, const Each<1, Scalar>& e) noexcept { x[k] = e.x[0]; }
   /// One by one, as all operators.
   [[gnu::always_inline]] friend Each operator+(const Each& a, const Each& b) noexcept {
     return made([&](int i) __attribute__((always_inline)) { return Scalar(a.x[i] + b.x[i]); });
@@ -152,10 +153,12 @@ requires(P % 4 == 0 || P == 1) struct Each<P, double> {
   [[gnu::always_inline]] void put(int k, const Each<kPiece<P, double>, double>& e) noexcept {
     x[k] = e.x[0];
   }
+  /// The same, or, if that saves work, 0 of the bodies before `first`.
   [[gnu::always_inline]] Each since(int first) const noexcept {
     return made([&](int k)
                     __attribute__((always_inline)) { return k < first / 4 ? Lanes(0) : x[k]; });
   }
+  /// Adds `times` a, which is 0 but for the bodies `first` to `last`.
   [[gnu::always_inline]] void add(const Each& a, double times, int first, int last) noexcept {
     written_out<kCount>([&](int k) __attribute__((always_inline)) {
       if (4 * k <= last && first < 4 * k + 4) x[k] = x[k] + a.x[k] * times;

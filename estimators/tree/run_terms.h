@@ -26,30 +26,31 @@ class RunTerms {
   explicit RunTerms(std::span<const Measurement<N, Scalar>> samples) : samples_(samples) {}
 
   /// compute(), or what it gave at this sample before; where (q [rad], qd [rad/s]) is none of the
-  /// next samples, always compute().
+  /// next samples, always compute(). It stays until the next question.
   template <class Compute>
-  Dynamics<N, Scalar> dynamics(At& at, const VecN& q, const VecN& qd,
-                               const Compute& compute) noexcept {
+  const Dynamics<N, Scalar>& dynamics(At& at, const VecN& q, const VecN& qd,
+                                      const Compute& compute) noexcept {
     return answer(dynamics_, at, is_at(q, qd), compute);
   }
   /// The same of momentum_dynamics().
   template <class Compute>
-  Dynamics<N, Scalar> momentum_dynamics(At& at, const VecN& q, const VecN& qd,
-                                        const Compute& compute) noexcept {
+  const Dynamics<N, Scalar>& momentum_dynamics(At& at, const VecN& q, const VecN& qd,
+                                               const Compute& compute) noexcept {
     return answer(momentum_dynamics_, at, is_at(q, qd), compute);
   }
   /// The same of friction().
   template <class Compute>
-  VecN friction(At& at, const VecN& qd, const Compute& compute) noexcept {
+  const VecN& friction(At& at, const VecN& qd, const Compute& compute) noexcept {
     return answer(
         friction_, at, [&](const auto& y) { return same(y.qd, qd); }, compute);
   }
 
  private:
   template <class Value>
-  struct Answer {
-    bool known = false;
-    Value value;
+  struct Answers {
+    std::vector<bool> known;
+    std::vector<Value> at;  // a sample
+    Value elsewhere;
   };
 
   static bool same(const VecN& a, const VecN& b) noexcept {
@@ -64,23 +65,23 @@ class RunTerms {
   }
 
   template <class Value, class Here, class Compute>
-  Value answer(std::vector<Answer<Value>>& answers, At& at, const Here& here,
-               const Compute& compute) noexcept {
+  const Value& answer(Answers<Value>& answers, At& at, const Here& here,
+                      const Compute& compute) noexcept {
     for (At k = at; k < samples_.size() && k < at + kAhead; ++k) {
       if (!here(samples_[k])) continue;
       at = k;
-      answers.resize(samples_.size());
-      if (!answers[k].known) answers[k] = {true, compute()};
-      return answers[k].value;
+      answers.known.resize(samples_.size()), answers.at.resize(samples_.size());
+      if (!answers.known[k]) answers.known[k] = true, answers.at[k] = compute();
+      return answers.at[k];
     }
-    return compute();
+    return answers.elsewhere = compute();
   }
 
   static constexpr At kAhead = 64;  // an estimator may have left out so many
 
   std::span<const Measurement<N, Scalar>> samples_;
-  std::vector<Answer<Dynamics<N, Scalar>>> dynamics_, momentum_dynamics_;
-  std::vector<Answer<VecN>> friction_;
+  Answers<Dynamics<N, Scalar>> dynamics_, momentum_dynamics_;
+  Answers<VecN> friction_;
 };
 
 }  // namespace tauext

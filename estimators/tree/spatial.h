@@ -38,7 +38,7 @@ struct Each3 {
   }
   /// Sets all of them from `own`, of which each has (x, y, z) of one body.
   [[gnu::always_inline]] void set_all(const Each<4, Scalar>* own) noexcept {
-    if constexpr (P % 4 == 0 && std::is_same_v<Scalar, double>) {
+    if constexpr (P % 4 == 0) {
 #pragma GCC unroll 4
       for (int k = 0; k < P / 4; ++k) {
         Lanes none = own[4 * k + 3].x[0];

@@ -140,15 +140,29 @@ class TreePasses {
 
   /// B of (ii), with the rotors, from the momenta.
   [[gnu::always_inline]] Square inertia(const Pose& s, const Force& IS) const noexcept {
-    Square B, lower;
+    if constexpr (TreeSums<N, Scalar>::kInLanes) {
+      Square B, lower;
 #pragma GCC unroll 8
-    for (int i = 0; i < N; ++i) {
-      const One column = dot(s.S.of(i), IS);
-      B.column[i] = (armature_[i] + sums_.behind(i) * column).since(i);
-      lower.column[i] = (sums_.strictly_behind(i) * column).since(i);
+      for (int i = 0; i < N; ++i) {
+        const One column = dot(s.S.of(i), IS);
+        B.column[i] = (armature_[i] + sums_.behind(i) * column).since(i);
+        lower.column[i] = (sums_.strictly_behind(i) * column).since(i);
+      }
+      B.add(transposed(lower));
+      return B;
+    } else {
+      Square B = Square::zero();
+      for (int j = 0; j < N; ++j) {
+        const auto momentum = IS.piece(j);
+        for (int i = j; i >= 0; i = sums_.parent(i)) {
+          const Scalar both = dot(s.S.piece(i), momentum)[0];
+          B.column[i].set(j, both);
+          B.column[j].set(i, both);
+        }
+        B.column[j].set(j, B(j, j) + armature_[j][j]);
+      }
+      return B;
     }
-    B.add(transposed(lower));
-    return B;
   }
 
   /// -g, the moment of the weights.

@@ -222,19 +222,19 @@ class TreeOfRuns {
     const auto now = [&] { return of_all<VecN>([&](int i) { return arm_.friction(of(qd, i)); }); };
     return terms_ ? terms_->friction(at_, qd, now) : now();
   }
-  /// inertia and bias, sharing the pose.
-  Both dynamics(const VecN& q, const VecN& qd) const noexcept {
+  /// inertia and bias, sharing the pose. They stay until the next question.
+  const Both& dynamics(const VecN& q, const VecN& qd) const noexcept {
     const auto now = [&] {
       return of_all<Both>([&](int i) { return arm_.dynamics(of(q, i), of(qd, i)); });
     };
-    return terms_ ? terms_->dynamics(at_, q, qd, now) : now();
+    return terms_ ? terms_->dynamics(at_, q, qd, now) : here_ = now();
   }
-  /// inertia and momentum_bias, sharing the pose.
-  Both momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
+  /// inertia and momentum_bias, sharing the pose. They stay until the next question.
+  const Both& momentum_dynamics(const VecN& q, const VecN& qd) const noexcept {
     const auto now = [&] {
       return of_all<Both>([&](int i) { return arm_.momentum_dynamics(of(q, i), of(qd, i)); });
     };
-    return terms_ ? terms_->momentum_dynamics(at_, q, qd, now) : now();
+    return terms_ ? terms_->momentum_dynamics(at_, q, qd, now) : here_ = now();
   }
 
  private:
@@ -260,6 +260,7 @@ class TreeOfRuns {
   AnyTree<N> arm_;
   Terms* terms_ = nullptr;
   mutable typename Terms::At at_ = 0;
+  mutable Both here_;  // without terms_
 };
 
 /// The model of an arm with N coordinates, of which joints may follow others.
