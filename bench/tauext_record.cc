@@ -167,6 +167,10 @@ int run(const CLI::App& app, const Flags& f) {
       measure(simulate(r.load_for(s, f.model_error), s, f.recording, sensors, supervisor), sensors);
   const Trace thin = study::thinned(trace, f.every);
   write(thin, f, r);
+  if (is_lcm_log(f.out) && thin.torque_at_instants)
+    say(f.out +
+        ": messages cannot say that tau was read at instants: add --torque instant to "
+        "tauext-replay");
   if (bag && std::count(thin.contact.begin(), thin.contact.end(), 0) < thin.size())
     say(f.out + ": joint_state has no place for labels of contacts, so they are left out");
   const std::string stopped = trace.stopped_at >= 0

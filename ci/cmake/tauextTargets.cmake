@@ -16,7 +16,7 @@ function(tauext_precompile target position_independent)
   target_precompile_headers(${target} PRIVATE ${precompiled} ${ARGN})
 endfunction()
 
-# tauext_headers(h...): installed below the folder's own path, as they lie there; ci/check_docs and ci/check_headers look at
+# tauext_headers(h...): installed below the folder's own path, as they lie there; ci/docs and ci/check_headers look at
 # those of the tree
 function(tauext_headers)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -64,7 +64,7 @@ function(tauext_program name source)
   target_precompile_headers(${name} REUSE_FROM tauext_precompiled_program)
   target_link_options(${name} PRIVATE -Wl,--as-needed)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  install(TARGETS ${name} OPTIONAL)  # ci/bench does not build them all
+  install(TARGETS ${name} OPTIONAL COMPONENT programs)  # ci/bench does not build them all
 endfunction()
 
 # tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [DEFINITIONS d...] [FAST] [PROPERTIES p v...] [LONG f]):
@@ -96,7 +96,11 @@ function(tauext_test name)
   # asked when ctest runs, not within 5 s of a busy build; tests with a parameter name it themselves, in a word
   set(how DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES)
   if(ARG_LONG)
-    gtest_discover_tests(${name} TEST_FILTER "${ARG_LONG}" ${how} PROPERTIES LABELS long)
+    list(TRANSFORM ARG_PROPERTIES REPLACE "^selftest$" selftest-long OUTPUT_VARIABLE properties)
+    if(NOT LABELS IN_LIST properties)
+      list(APPEND properties LABELS long)
+    endif()
+    gtest_discover_tests(${name} TEST_FILTER "${ARG_LONG}" ${how} PROPERTIES ${properties})
     set(ARG_LONG "-${ARG_LONG}")
   endif()
   if(ARG_PROPERTIES)

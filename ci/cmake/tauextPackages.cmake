@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian packages of what is installed, by CPack; ci/package makes them.
+set(maintainers "The tauext maintainers <maintainers@users.noreply.h-seed-bd7ea0e9.example>")
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME tauext)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/package)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL programs dev python spy)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainers}")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+
+# tauext_package(COMPONENT NAME [DEPENDS p...] [RECOMMENDS p...] SAYS line [line...]): besides what its programs link
+function(tauext_package component name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;RECOMMENDS;SAYS" ${ARGN})
+  string(TOUPPER ${component} C)
+  list(JOIN ARG_DEPENDS ", " depends)
+  list(JOIN ARG_RECOMMENDS ", " recommends)
+  list(JOIN ARG_SAYS "\n" says)
+  set(CPACK_DEBIAN_${C}_PACKAGE_NAME ${name} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${C}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${C}_PACKAGE_RECOMMENDS "${recommends}" PARENT_SCOPE)
+  set(CPACK_COMPONENT_${C}_DESCRIPTION "${says}" PARENT_SCOPE)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
+endfunction()
+tauext_package(programs tauext DEPENDS libmujoco2.2.2 RECOMMENDS bash-completion SAYS
+  "Estimators of external joint torque of robot arms, compared"
+  "Scores and times estimators and collision detectors against the exact truth of"
+  "a simulation, replays recordings, tunes, shows estimates live, and gates CI.")
+tauext_package(dev libtauext-dev DEPENDS libeigen3-dev
+  RECOMMENDS libbenchmark-dev libcli11-dev libfmt-dev libgtest-dev liblcm-dev libmujoco-dev libosmesa6-dev libpng-dev
+             libreaderwriterqueue-dev libsqlite3-dev libtinyxml2-dev nlohmann-json3-dev zlib1g-dev SAYS
+  "Estimators of external joint torque as C++ headers, and the suite as libraries"
+  "find_package(tauext) gives the estimators, which need Eigen alone, and by"
+  "components the suite for estimators of your own, which needs what is recommended.")
+tauext_package(python python3-tauext DEPENDS "python3 (>= 3.11)" "python3 (<< 3.12)" python3-numpy libmujoco2.2.2 RECOMMENDS python3-matplotlib SAYS
+  "Estimators of external joint torque of robot arms from Python"
+  "import tauext: scenarios as NumPy arrays, estimators and detectors by name,"
+  "scores, and estimators of your own in Python.")
+tauext_package(spy tauext-spy DEPENDS default-jre liblcm-java libjchart2d-java SAYS
+  "lcm-spy with a window for estimates of external joint torque"
+  "Shows truth, estimates and marks of a stream or a log of tauext as curves.")
+foreach(component PROGRAMS PYTHON)
+  set(CPACK_DEBIAN_${component}_PACKAGE_SHLIBDEPS ON)
+  if(TAUEXT_ARCH STREQUAL "x86-64-v3")
+    set(CPACK_DEBIAN_${component}_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/deb/preinst)
+  endif()
+endforeach()
+list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/deb/prerm)
+set(CPACK_DEBIAN_SPY_PACKAGE_ARCHITECTURE all)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/tauext/examples COMPONENT programs)
+# written by ci/package
+install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs OPTIONAL)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/completion/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT programs OPTIONAL)
+include(CPack)
