@@ -14,6 +14,9 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainers}")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 
+file(WRITE ${PROJECT_BINARY_DIR}/copyright
+  "Copyright: The tauext developers\nLicense: Apache-2.0, which Debian has in /usr/share/common-licenses/Apache-2.0\n")
+
 # tauext_package(COMPONENT NAME [DEPENDS p...] [RECOMMENDS p...] SAYS line [line...]): besides what its programs link
 function(tauext_package component name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;RECOMMENDS;SAYS" ${ARGN})
@@ -25,7 +28,8 @@ function(tauext_package component name)
   set(CPACK_DEBIAN_${C}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${C}_PACKAGE_RECOMMENDS "${recommends}" PARENT_SCOPE)
   set(CPACK_COMPONENT_${C}_DESCRIPTION "${says}" PARENT_SCOPE)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
 endfunction()
 tauext_package(programs tauext DEPENDS libmujoco2.2.2 RECOMMENDS bash-completion SAYS
   "Estimators of external joint torque of robot arms, compared"
@@ -54,7 +58,7 @@ list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/
 set(CPACK_DEBIAN_SPY_PACKAGE_ARCHITECTURE all)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/tauext/examples COMPONENT programs)
-# written by ci/package
+# written by ci/package, as changelog.gz is
 install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs OPTIONAL)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/completion/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT programs OPTIONAL)
 include(CPack)
