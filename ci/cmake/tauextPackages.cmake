@@ -14,9 +14,6 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainers}")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 
-file(WRITE ${PROJECT_BINARY_DIR}/copyright
-  "Copyright: The tauext developers\nLicense: Apache-2.0, which Debian has in /usr/share/common-licenses/Apache-2.0\n")
-
 # tauext_package(COMPONENT NAME [DEPENDS p...] [RECOMMENDS p...] SAYS line [line...]): besides what its programs link
 function(tauext_package component name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;RECOMMENDS;SAYS" ${ARGN})
@@ -28,7 +25,7 @@ function(tauext_package component name)
   set(CPACK_DEBIAN_${C}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${C}_PACKAGE_RECOMMENDS "${recommends}" PARENT_SCOPE)
   set(CPACK_COMPONENT_${C}_DESCRIPTION "${says}" PARENT_SCOPE)
-  install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  install(FILES ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/deb/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
   install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
 endfunction()
 tauext_package(programs tauext DEPENDS libmujoco2.2.2 RECOMMENDS bash-completion SAYS
