@@ -102,6 +102,8 @@ D make_detector(const DetectorSettings& settings, const Specification& s,
     } else {
       if constexpr (requires { p.threshold; }) set_trained(p, D::kName, settings.thresholds);
       if constexpr (requires { p.start_up; }) p.start_up = settings.start_up;
+      if constexpr (requires { p.most_score; })
+        p.most_score = settings.most_score.value_or(p.most_score);
     }
     set_parameters(s.keys, p);
     return D(p);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ using DetectorThresholds = std::map<std::string, Trained>;
 struct DetectorSettings {
   DetectorThresholds thresholds;  ///< of those that are in it; the others keep their defaults
   double start_up = 0;  ///< [s] without marks, while an estimator finds an unknown payload
+  /// [1] up to which scores are told, of a detector that has to stop somewhere; else its own
+  std::optional<double> most_score = {};
 };
 
 /// Thresholds of one robot behind sensors of one quality, by estimator.

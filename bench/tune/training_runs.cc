@@ -66,7 +66,7 @@ double TrainingRuns::recall(const std::vector<study::EstimatedRuns>& seen, const
   t.sets = {calibrate_on(*believer_, std::span(seen).first(free_), o)};
   t.sets.front().robot = robot_.name(), t.sets.front().fingerprint = robot_.fingerprint();
   const Asked asked{p.detector,
-                    {trained_for(t, robot_.name(), 0, p.estimator, p.detector), study::kStartUp}};
+                    study::judged_with(trained_for(t, robot_.name(), 0, p.estimator, p.detector))};
   std::vector<study::RegionCount> counts(region_classes().size());
   for (std::size_t i = free_; i < seen.size(); ++i) {
     const auto answers =

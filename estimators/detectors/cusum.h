@@ -6,8 +6,8 @@
 ///     S+ = max(0, S+ + h (z - drift)),   S- = max(0, S- + h (-z - drift))                   (i)
 ///     mark where max_i(max(S+_i, S-_i) / threshold_i) rises through 1
 /// Sums are in N m s and weighted by h, so they do not depend on the sampling time. Noise cancels
-/// in them, which is why this detector lasts where a derivative drowns. A sum stops at 16 times the
-/// threshold: it does not have to come down from the sky when a contact ends.
+/// in them, which is why this detector lasts where a derivative drowns. A sum stops at `most_score`
+/// times the threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
 #include <tuple>
@@ -29,6 +29,7 @@ struct CusumParameters {
   /// over w)
   Vec<N> drift = Vec<N>::Constant(12);
   double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
+  double most_score = 2;    ///< [1] where a sum stops: larger comes down later when a contact ends
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
 
@@ -38,7 +39,9 @@ struct CusumParameters {
         std::tuple(threshold_field<P>("N m s"),
                    Field{"drift", &P::drift, "N m", 0, 1e12, "larger forgets sooner"},
                    Field{"w", &P::w, "rad/s", kLeastBandwidth, kMostBandwidth,
-                         "larger lets less of a push pass"}),
+                         "larger lets less of a push pass"},
+                   Field{"most_score", &P::most_score, "1", 1, 1e12,
+                         "larger comes down later when a contact ends"}),
         marking_fields<P>());
   }
 };
@@ -73,7 +76,7 @@ class Cusum {
     } else {
       const Scalar h = t - t_;
       const Vec<N, Scalar> drift = p_.drift.template cast<Scalar>();
-      const Vec<N, Scalar> most = (kMost * p_.threshold).template cast<Scalar>();
+      const Vec<N, Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
       const Vec<N, Scalar> z = tau_ext - mean_(t, tau_ext);
       up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
       down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
@@ -95,7 +98,6 @@ class Cusum {
   }
 
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
-  static constexpr double kMost = 16;  // [1] of the threshold: beyond what a study multiplies it by
 
   Parameters p_;
   LowPass<N, Scalar> mean_;

@@ -119,9 +119,9 @@ TEST(Cusum, ForgetsASlowLoadAndDoesNotDependOnTheSamplingTime) {
   }
 }
 
-TEST(Cusum, TellsUpTo16TimesItsThresholdWhatAnotherOneWouldMark) {
-  const auto p = [](double threshold) {
-    return CusumParameters<3>{.threshold = Vec<3>::Constant(threshold), .w = 1e-3};
+TEST(Cusum, TellsUpToItsMostScoreWhatAnotherOneWouldMark) {
+  const auto p = [](double limit) {
+    return CusumParameters<3>{.threshold = Vec<3>::Constant(limit), .w = 1e-3, .most_score = 16};
   };
   const auto score_reaches = [&](double level) {
     Cusum<3> d(p(0.1));

@@ -104,7 +104,7 @@ TEST(Parameters, OfEveryDetectorAreRefusedBeyondTheirLimitsByName) {
   EXPECT_EQ(of_detector<DynamicThreshold<3>>(), 5);
   EXPECT_EQ(of_detector<HighPass<3>>(), 4);
   EXPECT_EQ(of_detector<BandPass<3>>(), 5);
-  EXPECT_EQ(of_detector<Cusum<3>>(), 5);
+  EXPECT_EQ(of_detector<Cusum<3>>(), 6);
   EXPECT_EQ(of_detector<Glr<3>>(), 5);
   EXPECT_EQ(of_detector<Energy<3>>(), 4);
   EXPECT_EQ(of_detector<Clamping<3>>(), 6);

@@ -126,9 +126,9 @@ std::vector<std::string> perturbed(const FieldHelp& f, double share) {
   return all;
 }
 
-// what is no number, and what acts on odd samples or at the start alone
+// what is no number, and what acts on odd samples, at the start or after contacts alone
 bool is_gain(const FieldHelp& f) {
-  for (const char* key : {"max_gap", "gate", "P0", "Ts", "start_up", "refractory"}) {
+  for (const char* key : {"max_gap", "gate", "P0", "Ts", "start_up", "refractory", "most_score"}) {
     if (f.key == key || f.key.ends_with(std::string(".") + key)) return false;
   }
   return !f.value.empty() && f.value.find_first_not_of("0123456789.e+-/") == std::string::npos;

@@ -149,7 +149,7 @@ class DetectionStudy::Study {
 
   DetectorSettings settings(const Condition& c, const std::string& e, const std::string& d) const {
     const double noise = c.degradation.sensors.velocity_noise;
-    return {trained_for(thresholds_, runs_.robot, noise, e, d, c.name), kStartUp};
+    return judged_with(trained_for(thresholds_, runs_.robot, noise, e, d, c.name));
   }
 
   // pieces of jobs of one plant and kind

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/roster/session/session.h"
+#include "bench/study/study_runs.h"
 #include "mjcf/scenarios/region_runs.h"
 #include "mjcf/scenarios/touch.h"
 
@@ -27,6 +28,10 @@ inline constexpr auto kLevels = [] {
   }
   return all;
 }();
+/// How a detector with these thresholds is set whose score is judged at kLevels.
+inline DetectorSettings judged_with(DetectorThresholds thresholds) {
+  return {std::move(thresholds), kStartUp, 2 * kLevels.back()};
+}
 /// Of kLevels the one that is 1: the threshold itself.
 inline constexpr std::size_t kOwnLevel = 12;
 static_assert(kLevels[kOwnLevel] == 1);

@@ -39,7 +39,7 @@ std::vector<Trace> blows(int runs) {
 std::vector<Asked> all_detectors(const Robot& r) {
   static std::map<std::string, std::vector<std::string>> names;
   std::vector<Asked> all;
-  for (const std::string& d : names[r.name()] = r.detectors()) all.push_back({d, {{}, kStartUp}});
+  for (const std::string& d : names[r.name()] = r.detectors()) all.push_back({d, judged_with({})});
   return all;
 }
 
