@@ -90,7 +90,8 @@ def read_results(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
         all = json.load(file)
     if not isinstance(all, dict) or not isinstance(all.get("benchmarks"), list):
         raise ValueError(f"{os.fspath(path)}: has no list of results, \"benchmarks\"")
-    return all["benchmarks"]
+    rows: list[dict[str, Any]] = all["benchmarks"]
+    return rows
 
 
 def _list(specifications: str | Iterable[str] | None, otherwise: Callable[[], list[str]]) -> list[str]:
@@ -210,7 +211,8 @@ class Robot:
         """
         text = _core.study(self.name, list(conditions), _list(estimators, list), _list(detectors, list),
                            collisions, pushes, clampings, regions, hours, training_runs, jobs, progress)
-        return json.loads(text)
+        written: dict[str, Any] = json.loads(text)
+        return written
 
 
 def _estimates(estimates: Estimates | ArrayLike) -> Estimates:

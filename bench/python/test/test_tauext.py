@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The module against what does not use it: the programs, NumPy, and a second implementation."""
+import ast
 import json
 import os
+import pathlib
 import subprocess
+import sys
 import time
 
 import numpy as np
@@ -211,3 +214,32 @@ def test_lists_are_the_programs():
     keys = {m["key"] for m in tauext.metrics()}
     assert {"rmse_Nm", "settling_s", "recall"} <= keys
     assert [p["key"] for p in arm.parameters("mo2")][0] == "bandwidth"
+
+
+def test_the_extension_has_what_its_types_say():
+    folder = pathlib.Path(tauext.__file__).parent
+    stub = ast.parse((folder / "_core.pyi").read_text())
+
+    def public(names):
+        return {n for n in names if not n.startswith("_")}
+
+    typed = [d for d in stub.body if isinstance(d, (ast.ClassDef, ast.FunctionDef))]
+    assert public(dir(tauext._core)) == {d.name for d in typed}
+    for of in (d for d in typed if isinstance(d, ast.ClassDef)):
+        members = {d.name for d in of.body if isinstance(d, ast.FunctionDef)}
+        theirs = vars(getattr(tauext._core, of.name))
+        assert public(theirs) == public(members), of.name
+        assert ("__len__" in theirs) == ("__len__" in members), of.name
+
+
+def test_mypy_understands_the_types(tmp_path):
+    user = tmp_path / "user.py"
+    user.write_text("""import tauext
+arm = tauext.Robot("wallmobot3")
+run = arm.record("step")
+print(arm.estimate("mo2", run).tau_ext.shape, run.joints + "1")
+""")
+    env = dict(os.environ, MYPYPATH=str(pathlib.Path(tauext.__file__).parents[1]))
+    said = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, user], env=env,
+                          capture_output=True, text=True).stdout
+    assert 'Unsupported operand types for + ("int" and "str")' in said and "Found 1 error in 1 file" in said, said
