@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/record.h"
 
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/plant.h"
-#include "mjcf/plant/tree.h"
 #include "mjcf/simulation/run.h"
 
 namespace tauext {
@@ -10,7 +10,7 @@ namespace tauext {
 Trace simulate(const Model& model, const Scenario& scenario, const Recording& recording,
                const Sensors& sensors, const Supervisor& supervisor) {
   const bool scaled = recording.drives.any() || !sensors.torque.ideal();
-  const Eigen::VectorXd usual = scaled ? tree_of(model).usual_torque : Eigen::VectorXd();
+  const Eigen::VectorXd usual = scaled ? usual_torque_of(model) : Eigen::VectorXd();
   return detail::Run<Plant>(Plant(model), scenario, recording, sensors, usual)(supervisor).value();
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <stdexcept>
 #include <utility>
 
 #include "bench/kit/allocations.h"
@@ -22,6 +23,11 @@ double allocations_per_step(Runner& runner) {
   runner.batch();
   return static_cast<double>(allocations() - before) / Runner::kBatch;
 }
+
+// why there is no truth to score by
+struct NotRecorded : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 constexpr const char* kClosedLoop = "closed loop of ";
 
@@ -97,8 +103,14 @@ const Trace& Suite::ideal(const Entry& e) {
     const std::string estimator = for_drives(e.robot(), e.estimator(), options_.recording.drives);
     supervisor = e.robot().supervisor(estimator, e.detector(), settings(e));
   }
-  Trace truth = simulate(e.robot().load_for(s, options_.model_error), s, options_.recording,
-                         sensors_for(s, options_.sensors), supervisor);
+  Trace truth = [&] {
+    try {
+      return simulate(e.robot().load_for(s, options_.model_error), s, options_.recording,
+                      sensors_for(s, options_.sensors), supervisor);
+    } catch (const std::exception& why) {
+      throw NotRecorded(fmt::format("cannot be recorded: {}", why.what()));
+    }
+  }();
   const bool elastic = truth.motor_q.cols() > 0;  // encoders are on the motors' side
   return ideal_.emplace(key, elastic ? measure(truth, {}) : std::move(truth)).first->second;
 }
@@ -168,6 +180,13 @@ std::string Suite::error(const Entry& e, const Output& of_ideal, const Output& o
 
 Score Suite::score(const Entry& e) {
   const Scenario& s = e.scenario();
+  try {
+    ideal(e);
+  } catch (const NotRecorded& why) {  // it costs its own rows
+    Score none;
+    none.error = why.what();
+    return none;
+  }
   const Estimate& of_ideal = estimate(e, ideal(e), of_ideal_);
   const Estimate& of_noisy = estimate(e, noisy(e), of_noisy_);
   const Estimate& of_scored = is_ideal(e) ? of_ideal : of_noisy;

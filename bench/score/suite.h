@@ -46,7 +46,7 @@ class Suite {
   /// For scores of these sensors, errors and thresholds.
   explicit Suite(const SuiteOptions& options) : options_(options) {}
 
-  /// Runs the entry and judges it.
+  /// Runs the entry and judges it. A scenario that cannot be recorded is an error of the score.
   Score score(const Entry& entry);
 
   /// What score() judges: the trace, and what the entry makes of it.

@@ -10,7 +10,7 @@
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
-#include "mjcf/plant/tree.h"
+#include "mjcf/plant/coordinates.h"
 
 namespace tauext {
 namespace {
@@ -58,7 +58,7 @@ Model with_errors(const Model& robot, const ModelError& e) {
   const std::vector<int> arm = arm_of(robot);
   const int last = robot->dof_bodyid[arm.back()];
   const Eigen::VectorXd usual = e.friction_share > 0
-                                    ? tree_of(robot).usual_torque
+                                    ? usual_torque_of(robot)
                                     : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.size()));
   return changed(robot, [&](mjModel& m) {
     m.body_mass[last] *= e.mass;

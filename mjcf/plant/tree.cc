@@ -14,6 +14,7 @@
 #include "mjcf/mujoco/measured.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -54,103 +55,6 @@ void check(const mjModel& m) {
     refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
   }
   refuse(m.opt.density != 0 || m.opt.viscosity != 0, "air or water around it");
-}
-
-// whether some actuator's coordinate is a fixed tendon: then the actuators say what a joint is
-bool has_tendon_coordinates(const mjModel& m) {
-  for (int i = 0; i < m.nu; ++i) {
-    if (m.actuator_trntype[i] == mjTRN_TENDON &&
-        m.wrap_type[m.tendon_adr[m.actuator_trnid[2 * i]]] == mjWRAP_JOINT) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// the actuators' coordinates, or MuJoCo's
-void set_coordinates(const mjModel& m, ArmTree& tree) {
-  const Ties ties = ties_of(m);
-  tree.drho = ties.T;
-  tree.rho0 = ties.rho0;
-  tree.leaders = ties.free;
-  if (!has_tendon_coordinates(m)) return;
-  if (has_ties(m))
-    throw std::invalid_argument(
-        "motors on tendons, and joints that follow others: not supported together");
-  const State d = initial_state(m);
-  const Layout l = layout_of(m, *d);
-  for (int i = 0; i < l.dof; ++i) {
-    if (m.actuator_gear[6 * i] == 1) continue;
-    throw std::invalid_argument(
-        fmt::format("motor {} has a gear of {}: where motors on tendons say what the joint "
-                    "coordinates are, their gears must be 1",
-                    i, m.actuator_gear[6 * i]));
-  }
-  if (static_cast<int>(l.arm.size()) != m.nv)
-    throw std::invalid_argument("the motors do not move every joint of the model");
-  tree.drho = l.T;
-  tree.rho0 = l.rho0;
-}
-
-// of joints, and of those that follow them
-void set_ranges(const mjModel& m, ArmTree& tree) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  tree.lower = VectorXd::Constant(tree.dof(), -kNone);
-  tree.upper = VectorXd::Constant(tree.dof(), kNone);
-  if (has_tendon_coordinates(m)) return;
-  for (int i = 0; i < m.njnt; ++i) {
-    if (!m.jnt_limited[i]) continue;
-    const double* const range = m.jnt_range + 2 * i;
-    Eigen::Index k = 0;
-    tree.drho.row(i).cwiseAbs().maxCoeff(&k);
-    const double factor = tree.drho(i, k), at = tree.rho0[i];
-    if (factor == 0) {
-      if (at >= range[0] && at <= range[1]) continue;
-      throw std::invalid_argument(fmt::format(
-          "{} is held at {:.4g}, outside its range; --lock REGEX fixes it", joint_name(m, i), at));
-    }
-    const double ends[] = {(range[0] - at) / factor, (range[1] - at) / factor};
-    tree.lower[k] = std::max(tree.lower[k], std::min(ends[0], ends[1]));
-    tree.upper[k] = std::min(tree.upper[k], std::max(ends[0], ends[1]));
-    if (tree.lower[k] < tree.upper[k]) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: its range and those of the joints that follow it have nothing in common; --lock "
-        "REGEX fixes them",
-        joint_name(m, tree.leaders[static_cast<std::size_t>(k)])));
-  }
-}
-
-// over poses that fill the range evenly: multiples of square roots of primes, modulo 1
-void set_usual(const mjModel& m, ArmTree& tree) {
-  constexpr int kPoses = 200;
-  constexpr double kAcceleration = 10;  // [rad/s^2] or [m/s^2]
-  constexpr double kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19};
-  const State d = initial_state(m);
-  const Ties ties = ties_of(m);
-  tree.usual_torque = VectorXd::Zero(tree.dof());
-  tree.mobility = VectorXd::Zero(m.nv);
-  for (int k = 0; k < kPoses; ++k) {
-    VectorXd free(tree.dof());
-    for (int n = 0; n < tree.dof(); ++n) {
-      const int i = ties.free[static_cast<std::size_t>(n)];
-      const double most = m.jnt_type[i] == mjJNT_SLIDE ? 0.5 : 3.14159;
-      double from = -most, to = most;
-      if (m.jnt_limited[i]) from = m.jnt_range[2 * i], to = m.jnt_range[2 * i + 1];
-      if (std::isfinite(tree.lower[n])) from = tree.lower[n], to = tree.upper[n];
-      const double turns = k * std::sqrt(kPrimes[n % 8]);
-      free[n] = from + (to - from) * (turns - std::floor(turns));
-    }
-    VectorXd::Map(d->qpos, m.nv) = ties.T * free + ties.rho0;
-    mj_fwdPosition(&m, d.get());
-    mj_fwdVelocity(&m, d.get());
-    const MatrixXd M = mass_matrix(m, *d);
-    const VectorXd gravity = tree.drho.transpose() * VectorXd::Map(d->qfrc_bias, m.nv);
-    const VectorXd inertia = (tree.drho.transpose() * M * tree.drho).diagonal();
-    tree.usual_torque = tree.usual_torque.cwiseMax(gravity.cwiseAbs());
-    tree.usual_torque = tree.usual_torque.cwiseMax(kAcceleration * inertia);
-    const MatrixXd moved = ties.T * (ties.T.transpose() * M * ties.T).inverse();
-    tree.mobility = tree.mobility.cwiseMax(moved.cwiseProduct(ties.T).rowwise().sum());
-  }
 }
 
 Vec<3> vector(const mjtNum* v) {
@@ -253,9 +157,10 @@ ArmTree tree_of(const Model& model) {
   check(m);
   ArmTree tree;
   tree.gravity = vector(m.opt.gravity);
-  set_coordinates(m, tree);
-  set_ranges(m, tree);
-  set_usual(m, tree);
+  const ArmCoordinates c = coordinates_of(m);
+  tree.drho = c.drho, tree.rho0 = c.rho0, tree.leaders = c.leaders;
+  tree.lower = c.lower, tree.upper = c.upper;
+  tree.usual_torque = c.usual_torque, tree.mobility = c.mobility;
   tree.friction_rate =
       together(ties_of(m), VectorXd::Map(m.dof_damping, m.nv).cwiseProduct(tree.mobility));
   tree.gain.resize(tree.dof());

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "mjcf/record.h"
+#include "mjcf/scenarios/scenario.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -89,6 +91,22 @@ TEST_F(DegradationFile, HasNamedSetsEachWorseThanTheOneBefore) {
   }
   EXPECT_GT(all[1].drives.stiffness, all[2].drives.stiffness);
   EXPECT_FALSE(all[0].drives.elastic());
+}
+
+TEST_F(DegradationFile, HasNamedSetsUnderWhichEveryScenarioCanBeRecorded) {
+  for (const char* robot : {"testbed1", "wallmobot3"}) {
+    for (Scenario s : scenarios(robot)) {
+      for (const char* name : {"light", "typical", "hard"}) {
+        Degradation d;
+        read_degradation(name, d);
+        s.duration = 0.05;
+        const Recording with{.drives = d.drives};
+        EXPECT_EQ(error_of([&] { record(load_for(robot, s, d.model_error), s, d.sensors, with); }),
+                  "no error")
+            << robot << '/' << s.name << ' ' << name;
+      }
+    }
+  }
 }
 
 TEST_F(DegradationFile, SaysWhatIsWrongAndKnowsBetter) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The coordinates of an arm in MuJoCo, their ranges, and what they are used to.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjcf/mujoco/handles.h"
+
+namespace tauext {
+
+/// As ArmTree (tree.h), which has them, says.
+struct ArmCoordinates {
+  Eigen::MatrixXd drho;          ///< drho/dq, rho being MuJoCo's
+  Eigen::VectorXd rho0;          ///< [rad] or [m] rho at q = 0
+  std::vector<int> leaders;      ///< the joint whose position each is
+  Eigen::VectorXd lower;         ///< [rad] or [m]
+  Eigen::VectorXd upper;         ///< likewise
+  Eigen::VectorXd usual_torque;  ///< [N m] or [N]
+  Eigen::VectorXd mobility;      ///< [1/(kg m^2)] or [1/kg] of each of MuJoCo's joints
+
+  int dof() const { return static_cast<int>(drho.cols()); }  ///< coordinates
+};
+
+/// @throws std::invalid_argument as tree_of of an arm alone, for motors on tendons and for ranges
+ArmCoordinates coordinates_of(const mjModel& m);
+
+/// ArmCoordinates::usual_torque of the arm of this model; what stands around it (scenes/) does not
+/// count.
+/// @throws std::invalid_argument as layout_of and coordinates_of
+Eigen::VectorXd usual_torque_of(const Model& model);
+
+}  // namespace tauext
