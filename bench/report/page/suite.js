@@ -4,12 +4,17 @@ const METRICS = new Map(JSON.parse(document.getElementById('metrics').textConten
 const BASELINES = ['zero', 'truth', 'delayed_truth'];
 const of_kind = (kind) => FILES.map((f, i) => ({...f, at: `/${i}/data`})).filter((f) => f.kind === kind);
 // ---- the suite's rows
+// ROBOT/SCENARIO/WHO or RECORDING/WHO, where keys of WHO may have slashes, too
+function parts_of(name) {
+  const head = name.split(/[:+]/)[0].split('/'), group = head.slice(0, head.length > 2 ? 2 : 1).join('/');
+  return [group, name.slice(group.length + 1)];
+}
 const ENTRIES = [];
 for (const f of of_kind('suite')) {
   const seen = new Map();
   f.data.benchmarks.forEach((b, i) => {
     if (b.run_type === 'aggregate') return;
-    const [, group, who] = /^([^/]+\/[^/]+)\/(.*)$/.exec(b.run_name || b.name);
+    const [group, who] = parts_of(b.run_name || b.name);
     const key = group + '/' + who;
     if (!seen.has(key)) {
       const [, estimator, detector] = /^(.*?)(?:\+([a-z_].*))?$/i.exec(who);
@@ -32,11 +37,12 @@ const GROUPS = [...new Set(ENTRIES.map((e) => e.group))];
 const competes = (e) => !BASELINES.includes(e.estimator) && !e.row.error_occurred;
 const value_of = (e, key) => e.row.error_occurred ? undefined : e.row[key];
 
-// the entries that a metric is about: those without detector, unless it is about marks
+// the entries that a metric is about: those without detector, where an estimator has such, unless it is about marks
 function entries_for(key) {
   const with_value = ENTRIES.filter((e) => e.file === SUITES[0] || !BASELINES.includes(e.estimator)).filter((e) => key in e.row || e.never.includes(key) || e.row.error_occurred);
   const plain = with_value.filter((e) => !e.detector);
-  return plain.some((e) => key in e.row) ? plain : with_value.filter((e) => e.detector);
+  const alone = (e) => !plain.some((p) => p.file === e.file && p.group === e.group && p.estimator === e.estimator);
+  return plain.some((e) => key in e.row) ? with_value.filter((e) => !e.detector || alone(e)) : with_value.filter((e) => e.detector);
 }
 
 function best_of(entries, key) {
