@@ -133,8 +133,10 @@ void add_score_metrics(const std::vector<Detection>& detections, Score& score) {
 }
 
 void add_reaction_metrics(const Trace& stopped, const Trace& free, Score& score) {
-  score.set(Metric::kOvertravel, metrics::overtravel(stopped));
-  score.set(Metric::kPeak, metrics::peak(stopped.contact_force));
+  const double peak = metrics::peak(stopped.contact_force);
+  const bool touched = peak > 0;  // else a false alarm has stopped it before
+  score.set(Metric::kOvertravel, touched ? metrics::overtravel(stopped) : kNoValue);
+  score.set(Metric::kPeak, touched ? peak : kNoValue);
   score.set(Metric::kPeakUnstopped, metrics::peak(free.contact_force));
 }
 

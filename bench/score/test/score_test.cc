@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/score/detection_metrics.h"
+
 namespace tauext::test {
 namespace {
 
@@ -17,6 +19,23 @@ TEST(Score, StandsForItsWorstJoint) {
   EXPECT_EQ(s.get(Metric::kRmse), 3) << "the largest error";
   EXPECT_EQ(s.get(Metric::kBandwidth), 10) << "the slowest joint";
   EXPECT_EQ(s.joint(Metric::kRmse, 2), 2);
+}
+
+TEST(Score, OfAnArmThatAFalseAlarmHasStoppedHasNoReactionToATouch) {
+  Trace free, stopped;
+  free.contact_force = {0, 50, 20};
+  stopped.contact_force = {0, 0, 0};
+  stopped.t = {0, 1, 2};
+  stopped.q = stopped.qd = Eigen::MatrixXd::Constant(1, 3, 0.1);
+  stopped.stopped_at = 1;
+  Score s;
+  add_reaction_metrics(stopped, free, s);
+  EXPECT_TRUE(std::isnan(*s.get(Metric::kPeak)) && std::isnan(*s.get(Metric::kOvertravel)));
+  EXPECT_EQ(s.get(Metric::kPeakUnstopped), 50);
+  stopped.contact_force = {0, 0, 30};
+  add_reaction_metrics(stopped, free, s);
+  EXPECT_EQ(s.get(Metric::kPeak), 30);
+  EXPECT_EQ(s.get(Metric::kOvertravel), 0);
 }
 
 TEST(Score, AJointWithoutAValueIsTheWorst) {

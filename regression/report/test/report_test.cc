@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <vector>
+
+#include "regression/report/accepting.h"
 
 namespace tauext::gate {
 namespace {
@@ -60,6 +64,18 @@ TEST(ExitCode, IsThatOfTheWorstFinding) {
   GateResult blind = times({kernel("a", 1, Verdict::kInconclusive)});
   blind.time->kernels[0].verdict.harness_error = true;
   EXPECT_EQ(exit_code(blind), kCouldNotRun);
+}
+
+TEST(Acceptable, IsWhatComesAtSomeSeedsAloneAndChanged) {
+  GateResult r = metric(Change::kWorse);
+  MetricChange never = r.accuracy->changes.front();
+  never.metric = "settling_s", never.change = Change::kChanged;
+  never.before = never.after = std::numeric_limits<double>::quiet_NaN();
+  r.accuracy->changes.push_back(never);
+  const std::vector<Acceptance> all = acceptable(r, "abc", "calmer");
+  ASSERT_EQ(all.size(), 2u);
+  accept(all, "abc", r);
+  EXPECT_EQ(exit_code(r), kGood) << "one that is left would want an update";
 }
 
 TEST(ExitCode, OfInstructions) {
