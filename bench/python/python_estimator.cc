@@ -35,6 +35,7 @@ void keep_error() {
 
 struct Object::Locked {
   py::object make, object;
+  std::shared_ptr<Arm> arm;
   ~Locked() {
     const py::gil_scoped_acquire lock;
     make = object = py::object();
@@ -51,20 +52,21 @@ void rethrow() {
   if (first_error) std::rethrow_exception(std::exchange(first_error, nullptr));
 }
 
-Object::Object(double maker) {
+Object::Object(double maker, std::shared_ptr<Arm> arm) {
   const py::gil_scoped_acquire lock;
   if (!(maker >= 1 && maker <= static_cast<double>(makers().size())))
     throw std::invalid_argument(
         "python: an estimator in Python is named by what tauext.estimator() returns");
   it_ = std::make_shared<Locked>();
   it_->make = makers()[static_cast<std::size_t>(maker) - 1];
-  it_->object = it_->make();
+  it_->arm = std::move(arm);
+  it_->object = it_->make(it_->arm);
 }
 
 void Object::reset() noexcept {
   const py::gil_scoped_acquire lock;
   try {
-    it_->object = it_->make();
+    it_->object = it_->make(it_->arm);
   } catch (...) {
     keep_error();
     it_->object = py::none();

@@ -12,13 +12,13 @@
 #include <string>
 #include <tuple>
 
+#include "bench/python/arm.h"
 #include "estimators/concepts.h"
 #include "estimators/parameters.h"
 
 namespace tauext::python {
 
-/// Keeps what makes estimators, a callable without arguments, and gives the specification of its
-/// estimators.
+/// Keeps what makes estimators, a callable of an Arm, and gives the specification of these.
 std::string add_maker(pybind11::object make);
 
 /// Throws what an estimator in Python threw since the last call, the first of several.
@@ -30,8 +30,9 @@ void register_estimators();
 /// One object in Python, made by such a callable.
 class Object {
  public:
+  /// @param arm as estimators know it, for the callable
   /// @throws std::invalid_argument for a number that add_maker() never gave
-  explicit Object(double maker);
+  Object(double maker, std::shared_ptr<Arm> arm);
   /// Makes another one.
   void reset() noexcept;
   /// Calls update(t, q, qd, tau) with n joints.
@@ -44,7 +45,7 @@ class Object {
   std::shared_ptr<Locked> it_;
 };
 
-/// The estimator of such an object, over an arm that it is free to ignore.
+/// The estimator of such an object.
 template <RobotModel M>
 class PythonEstimator {
  public:
@@ -60,7 +61,8 @@ class PythonEstimator {
   };
 
   /// @throws std::invalid_argument as Object does
-  PythonEstimator(const M&, const Parameters& p) : object_(p.maker) {}
+  PythonEstimator(const M& arm, const Parameters& p)
+      : object_(p.maker, std::make_shared<ArmOf<M>>(arm)) {}
 
   void reset() noexcept { object_.reset(); }
 

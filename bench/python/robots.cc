@@ -164,11 +164,12 @@ void bind_robots(py::module_& m) {
       .def("estimate", &estimated)
       .def("detect", &detected)
       .def("arm", &arm_of);
-  py::class_<Arm>(m, "Arm").def("terms", [](const Arm& a, const Array& q, const Array& qd) {
-    const auto [B, bias, momentum_bias, friction] =
-        a.terms(q.cast<Eigen::VectorXd>(), qd.cast<Eigen::VectorXd>());
-    return py::make_tuple(rows(B.transpose()), bias, momentum_bias, friction);
-  });
+  py::class_<Arm, std::shared_ptr<Arm>>(m, "Arm").def(
+      "terms", [](const Arm& a, const Array& q, const Array& qd) {
+        const auto [B, bias, momentum_bias, friction] =
+            a.terms(q.cast<Eigen::VectorXd>(), qd.cast<Eigen::VectorXd>());
+        return py::make_tuple(rows(B.transpose()), bias, momentum_bias, friction);
+      });
   m.def(
       "robot",
       [](const std::string& name, const std::string& lock) {

@@ -79,7 +79,7 @@ std::vector<py::dict> suite(const Robot& robot, const std::vector<std::string>& 
     py::dict row;
     row["name"] = name;
     row["error"] = score.error;
-    row["metrics"] = dict_of(score);
+    row["metrics"] = score.error.empty() ? dict_of(score) : py::dict();
     rows.push_back(row);
   }
   return rows;

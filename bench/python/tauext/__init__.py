@@ -15,6 +15,7 @@ parameters is understood: "mo2:bandwidth=50".
 """
 from __future__ import annotations
 
+import inspect
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,10 +24,14 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+try:
+    from . import _core
+except ImportError as error:
+    raise ImportError("tauext._core is not built, or not for this Python: in a clone, ci/install_deps and then "
+                      f"ci/build release tauext_python build it for /usr/bin/python3 ({error})") from error
 from ._core import Detections, Estimates, Run
 
-__all__ = ["CONTACTS", "Detections", "Estimates", "Estimator", "Robot", "Run", "Terms", "estimator",
+__all__ = ["Arm", "CONTACTS", "Detections", "Estimates", "Estimator", "Robot", "Run", "Terms", "estimator",
            "metrics", "read_log", "read_results", "robots"]
 
 #: What the numbers of Detections.contact mean.
@@ -52,15 +57,32 @@ class Terms(NamedTuple):
     friction: NDArray[np.float64]  #: [N m] F
 
 
-def estimator(make: Callable[[], Estimator]) -> str:
+class Arm:
+    """An arm as estimators know it."""
+
+    def __init__(self, arm: _core.Arm):
+        self._arm = arm
+
+    def terms(self, q: ArrayLike, qd: ArrayLike) -> Terms:
+        """At q [rad] and qd [rad/s]."""
+        return Terms(*self._arm.terms(q, qd))
+
+
+def estimator(make: Callable[[Arm], Estimator] | Callable[[], Estimator]) -> str:
     """The specification of an estimator in Python, which every call here understands.
 
-    make() is called anew for each run, and gives an object with update(). What update() throws ends
-    the call that runs it. There is no time in its scores: Python's would say nothing.
+    make(arm) is called anew for each run, and gives an object with update(); a make() without
+    arguments is called so. What update() throws ends the call that runs it. There is no time in its
+    scores: Python's would say nothing.
     """
     if not callable(make):
         raise TypeError("estimator(make): make is a class or a function that gives an estimator")
-    return _core.estimator(make)
+    wanted = [p for p in inspect.signature(make).parameters.values()
+              if p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    if len(wanted) > 1:
+        raise TypeError(f"estimator(make): make takes an arm or nothing, not {', '.join(p.name for p in wanted)}")
+    made: Callable[..., Estimator] = make
+    return _core.estimator((lambda arm: made(Arm(arm))) if wanted else (lambda arm: made()))
 
 
 def robots() -> list[str]:
@@ -145,10 +167,11 @@ class Robot:
         return of(name)
 
     def terms(self, q: ArrayLike, qd: ArrayLike) -> Terms:
-        """The arm as its estimators know it, at q [rad] and qd [rad/s]; wallmobot3 with 150 kg."""
+        """The arm as its estimators know it, at q [rad] and qd [rad/s]; wallmobot3 with 150 kg. In a
+        study its estimators may know another panel, as the arm does that make(arm) of estimator() gets."""
         if not hasattr(self, "_arm"):
-            self._arm = self._robot.arm()
-        return Terms(*self._arm.terms(q, qd))
+            self._arm = Arm(self._robot.arm())
+        return self._arm.terms(q, qd)
 
     def record(self, scenario: str, *, degrade: Degrade = None, seed: int = 1) -> Run:
         """A scenario at 1 kHz, with its truth.
@@ -161,6 +184,8 @@ class Robot:
 
     def estimate(self, estimator: str, run: Run) -> Estimates:
         """What an estimator makes of a run."""
+        if not isinstance(estimator, str):
+            raise TypeError("estimate(estimator, run): estimator is a specification, or what tauext.estimator(make) returns")
         return self._robot.estimate(estimator, run)
 
     def detect(self, detector: str, run: Run, estimates: Estimates | ArrayLike, *,
@@ -189,8 +214,8 @@ class Robot:
               seed: int = 1) -> list[dict[str, Any]]:
         """Estimators through the scenarios, as tauext-bench scores them, but for times.
 
-        Each row has the name ROBOT/SCENARIO/ESTIMATOR[+DETECTOR], "metrics" by their keys and, where
-        it failed, an "error". filter is a regular expression of names. Without detectors those of
+        Each row has the name ROBOT/SCENARIO/ESTIMATOR[+DETECTOR], "metrics" by their keys or, where
+        it failed, none and an "error". filter is a regular expression of names. Without detectors those of
         tauext-bench run where there is something to detect.
         """
         return _core.suite(self._robot, _list(estimators, self.estimators), _list(detectors, list),

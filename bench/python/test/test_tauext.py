@@ -105,16 +105,23 @@ def test_the_suite_scores_as_tauext_bench(arm, tmp_path):
 
 
 def test_a_study_of_an_observer_in_python_counts_as_that_of_the_one_in_cpp():
-    arm = tauext.Robot(os.environ["TAUEXT_EXAMPLES"] + "/arm6.xml")  # whose estimators all know one arm
-    mine = tauext.estimator(lambda: Mo2(arm, 30))
+    mine = tauext.estimator(lambda arm: Mo2(arm, 30))  # the arm of `light`, which carries no panel
     shares = []
-    study = arm.study([mine, "mo2"], ["pan_tompkins"], conditions=["known"], collisions=6, pushes=0,
-                      clampings=0, hours=0, training_runs=1, jobs=1, progress=shares.append)
+    study = tauext.Robot("wallmobot3").study([mine, "mo2"], ["pan_tompkins"], conditions=["light"], collisions=3, pushes=0,
+                                             clampings=0, hours=0, training_runs=1, jobs=1, progress=shares.append)
     a, b = study["cells"]
     assert (a["estimator"], b["estimator"]) == (mine, "mo2")
     for key in a.keys() - {"estimator"}:
         assert a[key] == pytest.approx(b[key]), key
-    assert a["collisions"] >= 6 and shares[-1] == 1
+    assert a["collisions"] >= 3 and shares[-1] == 1
+
+
+def test_makers_that_cannot_be_are_refused():
+    with pytest.raises(TypeError, match="takes an arm or nothing, not robot, bandwidth"):
+        tauext.estimator(Mo2)
+    arm = tauext.Robot("wallmobot3")
+    with pytest.raises(TypeError, match="what tauext.estimator"):
+        arm.estimate(lambda: Mo2(arm, 30), arm.record("step"))
 
 
 def test_an_arm_from_a_file_has_the_terms_of_its_estimators():
