@@ -56,7 +56,8 @@ function(tauext_library name)
   tauext_headers(${ARG_HEADERS})
 endfunction()
 
-# tauext_program(NAME SOURCE LIBRARIES lib...): a program of ours in bin/, which links what it uses
+# tauext_program(NAME SOURCE LIBRARIES lib...): a program of ours in bin/, which links what it uses, and is one of tauext_programs
+add_custom_target(tauext_programs)
 function(tauext_program name source)
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARGN} tauext_program tauext_flags tauext_estimators fmt::fmt)
@@ -64,6 +65,7 @@ function(tauext_program name source)
   target_precompile_headers(${name} REUSE_FROM tauext_precompiled_program)
   target_link_options(${name} PRIVATE -Wl,--as-needed)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  add_dependencies(tauext_programs ${name})
   install(TARGETS ${name} OPTIONAL COMPONENT programs)  # ci/bench does not build them all
 endfunction()
 
