@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/detect_main.h"
 #include "bench/program/program.h"
 #include "bench/report/page.h"
 #include "bench/report/provenance.h"
@@ -106,9 +107,9 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   }
   if (!all && !suite && !golden && !seeds) {
     throw std::invalid_argument(
-        "--benchmark_filter goes with the suite, --seeds and --golden; --benchmark_list_tests "
-        "lists "
-        "what it selects");
+        "--benchmark_filter goes with the suite, --seeds and --golden (there "
+        "--benchmark_list_tests "
+        "lists what it selects); leave it out here");
   }
 }
 
@@ -267,6 +268,7 @@ void add_flags(CLI::App& app, Flags& flags) {
 }  // namespace
 
 int bench_main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "detect") return detect_main(argc - 1, argv + 1);
   CLI::App app(
       "Scores every estimator on every scenario, then times its step, and prints a table.\n"
       "Exit code 1 if an entry failed. Google Benchmark's flags work, csv output excepted.\n\n"

@@ -50,7 +50,8 @@ void add_flags(CLI::App& app, Flags& f) {
       ->capture_default_str();
   app.add_option("--layout", f.layout, "of other people's logs: libfranka, ur_rtde or joint_state")
       ->type_name("NAME");
-  app.add_option("--every", f.every, "write each N-th sample alone: 8 for 125 Hz")
+  app.add_option("--every", f.every,
+                 "write each N-th sample, 8 for 125 Hz; tau is tau_instant1.. then")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N");
   app.add_option("--stop", f.stop, "ESTIMATOR+DETECTOR whose first mark stops the motor");

@@ -8,19 +8,18 @@ _tauext() {
     first=${word%,*},
     word=${word##*,}
   fi
-  # what tauext-record lists of the robot of this line, or of all
+  # what tauext-record lists of the robot of this line
   _tauext_listed() {
     local robot=wallmobot3 i
     for ((i = 1; i + 1 < COMP_CWORD; ++i)); do
       [[ ${COMP_WORDS[i]} != --robot ]] || robot=${COMP_WORDS[i + 1]}
     done
-    "$(dirname "$(command -v "$program")")/tauext-record" --list --robot "$robot" 2>/dev/null |
-      awk -v robot="$robot" -v all="${1-}" '/^robot / { on = $2 == robot || $2 == robot "," } on || all != ""'
+    "$(dirname "$(command -v "$program")")/tauext-record" --list --robot "$robot" 2>/dev/null
   }
   case $before in
-    --robot) names=$(_tauext_listed all | sed -n 's/^robot \([a-z0-9]*\), .*/\1/p; s/^robot \([a-z0-9]*\): .*/\1/p') ;;
+    --robot) names=$("$(dirname "$(command -v "$program")")/tauext-record" --list 2>/dev/null | sed -n 's/^robot \([a-z0-9]*\)[,:] .*/\1/p') ;;
     --estimator | --detector) names=$(_tauext_listed | sed -n "/^  ${before#--}s /{s/^  ${before#--}s *//;s/,//g;p}") ;;
-    --scenario) names=$(_tauext_listed | sed -n '/^  scenario /,/^\( *joint\|robot\) /{//d;s/^  \([a-z_0-9]*\) .*/\1/p}') ;;
+    --scenario) names=$(_tauext_listed | sed -n '/^  scenario /,/^\( *joint .*\)\?$/{//d;s/^  \([a-z_0-9]*\) .*/\1/p}') ;;
     --format) names='text csv json md latex' ;;
     --degrade) names='light typical hard' ;;
   esac

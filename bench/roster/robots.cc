@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <set>
@@ -83,13 +84,16 @@ std::string list_scale(const Robot& r) {
   const ArmTree arm = tree_of(model);
   TableWriter table({{"  joint", ""},
                      {"name", "", true},
+                     {"range", "rad, m"},
                      {"home", "rad, m"},
                      {"amplitude", "rad, m"},
                      {"load", "N m, N"},
                      {"used to", "N m, N"}});
   for (int i = 0; i < r.dof(); ++i) {
     const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
+    const bool free = std::isinf(arm.upper[i] - arm.lower[i]);
     table.add({fmt::format("{}", i + 1), printable_name(arm.names[leader]),
+               free ? "none" : fmt::format("{:.3f} to {:.3f}", arm.lower[i], arm.upper[i]),
                fmt::format("{:.3f}", scale.home[i]), fmt::format("{:.3f}", scale.amplitude[i]),
                fmt::format("{:.3g}", scale.torque[i]),
                fmt::format("{:.3g}", scale.usual_torque[i])});
@@ -165,8 +169,11 @@ bool study_only(std::string_view detector) {
 }
 
 std::string list_known(const std::string& name) {
-  if (is_robot_file(name) || is_by_mjcf(name))
-    return list_of(robot(name)) + list_scale(robot(name)) + "\n" + list_fields(&robot(name));
+  if (!name.empty()) {
+    const Robot& r = robot(name);
+    const bool by_mjcf = is_robot_file(name) || is_by_mjcf(name);
+    return list_of(r) + (by_mjcf ? list_scale(r) : "") + "\n" + list_fields(&r);
+  }
   std::string out;
   for (const auto& r : robots()) out += list_of(*r);
   for (const std::string_view r : kRobotsByMjcf)

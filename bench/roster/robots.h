@@ -53,9 +53,10 @@ bool study_only(std::string_view detector);
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Scenario& scenario_of(const Robot& robot, std::string_view name);
 
-/// What --list prints: everything the roster and the scenarios hold, or what a file's robot has and
-/// is scaled by; and the keys of specifications.
-/// @param robot by which robot() finds it; "" and a known one stand for all of them
+/// What --list prints: what all robots have that are known by name, or one, and by what one from a
+/// file is scaled; and the keys of specifications.
+/// @param robot by which robot() finds it; "" for all
+/// @throws std::invalid_argument as robot()
 std::string list_known(const std::string& robot = "");
 
 /// A line for each key that an estimator or a detector of any robot has, or of that one: unit,

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
@@ -91,13 +92,21 @@ const ThresholdSet* set_for(const Thresholds& t, const Robot& r, double velocity
 }
 
 // what a file has instead, as close to what was asked for as it has anything
-std::string what_there_is(const Thresholds& t, const ThresholdSet* set,
+std::string what_there_is(const Thresholds& t, const ThresholdSet* set, const Robot& robot,
                           const std::string& estimator) {
   std::set<std::string> names;
   if (set == nullptr) {
     for (const ThresholdSet& s : t.sets)
       names.insert(s.robot + (s.condition.empty() ? "" : " in " + s.condition));
-    return fmt::format("it is for {}", fmt::join(names, ", "));
+    const auto has_its_name = [&](const std::string& name) {
+      const auto file = [](const std::string& path) {
+        return std::filesystem::path(path).filename();
+      };
+      return !robot.fingerprint().empty() && file(name) == file(robot.name());
+    };
+    const bool of_file = std::any_of(names.begin(), names.end(), has_its_name);
+    return fmt::format("it is for {}{}", fmt::join(names, ", "),
+                       of_file ? ", another arm whose file has that name" : "");
   }
   const auto behind = set->by_estimator.find(estimator);
   if (behind == set->by_estimator.end()) {
@@ -199,7 +208,7 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
       "{}: has no thresholds for {}/{}+{}{}: {}; tauext-detect --calibrate makes more", t.path,
       robot_name + (condition.empty() ? "" : " in " + condition), estimator, detector,
       parts.front() == detector ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
-      what_there_is(t, set, estimator)));
+      what_there_is(t, set, r, estimator)));
 }
 
 }  // namespace tauext

@@ -184,6 +184,22 @@ TEST_F(Programs, ListNamesEntriesAndTheKeysOfSpecifications) {
   }
 }
 
+TEST_F(Programs, AreCompletedInBash) {
+  // the words of a line, of which the last one is not ready
+  const auto completed = [&](const std::string& line) {
+    write("complete.sh", "PATH=" TAUEXT_BIN ":$PATH\nsource " TAUEXT_EXAMPLES
+                         "/../program/completion.bash\nCOMP_WORDS=(" +
+                             line + ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_tauext\n" +
+                             "echo \"${COMPREPLY[*]}\"\n");
+    return run_system("bash complete.sh").text;
+  };
+  EXPECT_EQ(completed("tauext-record --scenario st"), "step\n");
+  EXPECT_EQ(completed("tauext-record --robot wall"), "wallmobot3 wallmobot6\n");
+  EXPECT_EQ(completed("tauext-record --robot testbed1 --scenario s"), "swing\n");
+  EXPECT_EQ(completed("tauext-live --estimator mo1,dkf_"), "mo1,dkf_adaptive\n");
+  EXPECT_EQ(completed("tauext-bench --equal"), "--equal-bandwidth\n");
+}
+
 TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
   write("log.csv", "t,q1,qd1,tau1\n0,0,0,0\n0.001,0,0,0\n");
   for (const char* file : {"s.json", "copy.json"})
@@ -194,6 +210,7 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
       {"tauext-bench --golden g.tsv --seed 3", "--seed goes with one seed"},
       {"tauext-bench --list --benchmark_filter=step/", "--benchmark_filter goes with"},
       {"tauext-bench --list --list-metrics", "one at a time"},
+      {"tauext-record --list --robot kuka", "unknown robot 'kuka'; known: wallmobot3"},
       {"tauext-bench --seeds 1,2 --seed 3", "--seed goes with one seed"},
       {"tauext-bench --seeds 1-2-3", "'1-2-3' is no seed, nor a range"},
       {"tauext-bench --seeds 1-3,2", "one is there twice"},

@@ -36,6 +36,15 @@ TEST_F(Programs, OwnEstimatorStandsInTheTableAndAtEqualBandwidth) {
   EXPECT_NEAR(std::stod(row(equal, "twice")[2]), 30, 0.6) << "rad/s";
 }
 
+TEST_F(Programs, OwnEstimatorIsStudiedBesideOurs) {
+  const Outcome o = run(
+      "examples/own_estimator detect --conditions light --estimator twice,mo1 --detector threshold "
+      "--runs 2 --collisions 10 --pushes 0 --clampings 0 --hours 0.02 --out study.json");
+  ASSERT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("twice") && o.says("mo1")) << o.text;
+  EXPECT_EQ(run("tauext-detect --estimator twice").code, 2) << "nobody else knows it";
+}
+
 TEST_F(Programs, OwnDetectorMarksTheCollisionBehindEveryEstimator) {
   const Outcome o =
       run(std::string(

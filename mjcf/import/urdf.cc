@@ -247,7 +247,7 @@ class Urdf {
       check_range(joint, lower, upper);
       set(out, "range", {lower, upper});
     } else if (type != "continuous") {
-      ++dropped_["limit without a range"];
+      ++dropped_["joint without a range"];
     }
     const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
     for (const char* term : {"damping", "friction", "armature"}) {

@@ -185,7 +185,8 @@ BodyPoint end_effector_of(const mjModel& m, int last) {
   if (auto found = site("attachment_site")) return *found;
   const int body = m.dof_bodyid[last_alone(m, last)];
   return {body, Eigen::Vector3d::Map(m.body_ipos + 3 * body),
-          fmt::format("the centre of mass of the body '{}', as there is no site 'end_effector'",
+          fmt::format("the centre of mass of the body '{}', as no site or body (of a URDF: no "
+                      "link) is called 'end_effector'",
                       element_name(m, mjOBJ_BODY, body))};
 }
 

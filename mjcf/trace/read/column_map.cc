@@ -43,8 +43,10 @@ template <class List>
 void require_one_or_each(const List& list, std::size_t count, const char* what,
                          std::string_view quantity, const std::string& path) {
   if (list.size() <= 1 || list.size() == count) return;
-  throw std::runtime_error(fmt::format("{}: [{}] has {} columns, and the map {} {}s for it", path,
-                                       quantity, count, list.size(), what));
+  throw std::runtime_error(
+      fmt::format("{}: [{}] has {} columns, and the map {} {}s for it: does a column have another "
+                  "name than it says?",
+                  path, quantity, count, list.size(), what));
 }
 
 constexpr std::size_t kLongestName = 200;  // std::regex goes as deep as a name is long
@@ -59,11 +61,22 @@ bool matches(const std::string& name, const std::regex& expression, std::smatch&
 }
 
 // the number in the first group that has matched, by which joints are in order
-int number_in(const std::smatch& match, int otherwise) {
+int number_in(const std::smatch& match) {
   for (std::size_t i = 1; i < match.size(); ++i) {
     if (match[i].matched) return std::atoi(match[i].str().c_str());
   }
-  return otherwise;
+  return 0;
+}
+
+// those of one number are in the order of the file, which somebody has to have said
+void require_order(const std::vector<std::pair<int, int>>& numbered, std::string_view quantity,
+                   const std::string& expression, const std::string& path) {
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  if (std::adjacent_find(numbered.begin(), numbered.end(), same) == numbered.end()) return;
+  throw std::runtime_error(fmt::format(
+      "{}: [{}] matches {} columns by '{}', and no group in it gives each its own number, like "
+      "'q_(\\d)'; a list of names puts them in order, too, and so does `order`",
+      path, quantity, numbered.size(), expression));
 }
 
 }  // namespace
@@ -79,9 +92,10 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
       const std::string& name = columns[static_cast<std::size_t>(i)];
       std::smatch match;
       if (name.size() > kLongestName || !matches(name, expression, match, quantity, path)) continue;
-      numbered.emplace_back(number_in(match, i), i);
+      numbered.emplace_back(number_in(match), i);
     }
     std::sort(numbered.begin(), numbered.end());
+    if (!w.of_preset && order_.empty()) require_order(numbered, quantity, w.expression, path);
     for (const auto& [joint, column] : numbered) found.push_back(column);
   }
   for (const std::string& name : w.names) {

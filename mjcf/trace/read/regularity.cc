@@ -12,7 +12,8 @@ std::string Regularity::in_words() const {
   std::string all = fmt::format("{} samples in {:.6g} s, one every {:.4g} ms (+- {:.2g} ms)",
                                 samples, to - from, 1000 * step,
                                 jitter < 1e-6 * step ? 0 : 1000 * jitter);  // not rounding's
-  if (gaps > 0) all += fmt::format(", {} gaps, the longest {:.3g} s", gaps, longest_gap);
+  if (gaps > 0)
+    all += fmt::format(", {} gap{}, the longest {:.3g} s", gaps, gaps == 1 ? "" : "s", longest_gap);
   if (repeats > 0) all += fmt::format(", {} of them repeat the one before", repeats);
   return all;
 }

@@ -209,6 +209,8 @@ TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("[q]\ncolumns='q'\nsign=2"), "sign must be 1 or -1");
   expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=['c']"), "no column 'c' for [q]");
   expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[3]"), "no column 3 for [q]");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns='[ab]'"),
+              "[q] matches 2 columns by '[ab]', and no group in it gives each its own number");
   expect_says(error_of_map("order=[1,2]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),
               "[q] has 1 columns, and `order` names joint 2");
   expect_says(error_of_map("order=[1,1]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),

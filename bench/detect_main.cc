@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/detect_main.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/logs/read_log.h"
+#include "bench/program/interrupt.h"
+#include "bench/program/program.h"
+#include "bench/report/provenance.h"
+#include "bench/roster/robots.h"
+#include "bench/roster/threshold_file.h"
+#include "bench/study/detection/calibration.h"
+#include "bench/study/detection/detection_report.h"
+#include "bench/study/detection/detection_study.h"
+#include "bench/study/detection/study_parts.h"
+#include "bench/study/detection/tuned.h"
+#include "bench/study/study_runs.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
+#include "mjcf/trace/table_writer.h"
+
+namespace tauext {
+namespace {
+
+struct Flags {
+  study::StudyOptions study;
+  study::CalibrationOptions calibration;
+  std::vector<std::string> logs;   // to calibrate from
+  std::vector<std::string> parts;  // of a study
+  std::string channel, columns, lock, calibrate_to, thresholds, out, shard, format = "text";
+  bool list = false, quick = false;
+};
+
+int list_conditions(const std::string& robot_name) {
+  const study::StudyRuns& runs = study::touched_runs(robot_name);
+  TableWriter table({{"condition", "", true}, {"what is so", "", true}});
+  for (const study::Condition& c : runs.conditions) {
+    const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
+    table.add({c.name, c.description + (trained           ? " (trained on)"
+                                        : c.trains_itself ? " (trained on itself)"
+                                                          : "")});
+  }
+  fmt::print("{}\n{}", table.format(), list_fields(&robot(runs.robot)));
+  return kGood;
+}
+
+study::CalibrationOptions calibration_of(const Flags& f, Progress& progress) {
+  study::CalibrationOptions o = f.calibration;
+  o.robot = f.study.robot, o.threads = f.study.threads;
+  o.estimators = f.study.estimators, o.detectors = f.study.detectors;
+  o.progress = progress.callback();
+  return o;
+}
+
+constexpr const char* kOneRecording =
+    "With one recording nobody can say whether these thresholds hold on another.\n";
+constexpr const char* kHeldOutLegend =
+    "\n{}alarms: recordings in which the thresholds of all others would mark (the metric by which "
+    "`clamping` weighs the joints has seen all of them).\n";
+
+// from recordings without contact; says whether these thresholds would have held
+Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
+  if (f.study.robot.empty())
+    throw std::invalid_argument("calibrating from recordings needs --robot NAME or FILE");
+  const Robot& r = robot(f.study.robot);
+  std::vector<std::string> files;
+  for (const std::string& path : f.logs)
+    files.push_back(std::filesystem::weakly_canonical(path).string());
+  refuse_twice("recording", files);
+  std::vector<study::FreeRecording> recordings;
+  for (const std::string& path : f.logs) {
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    log.require_consistent(path);
+    usable = usable && log.usable();
+    r.make_torques(log.trace);
+    recordings.push_back({path, std::move(log.trace)});
+  }
+  Progress progress("calibrating");
+  std::vector<study::HeldOut> held_out;
+  const Thresholds thresholds =
+      study::calibrate_on(r, recordings, calibration_of(f, progress), held_out);
+  TableWriter table({{"estimator", "", true}, {"detector", "", true}, {"alarms", "recordings"}});
+  for (const study::HeldOut& h : held_out)
+    table.add({h.estimator, h.detector, fmt::format("{} of {}", h.alarms, h.recordings)});
+  std::FILE* const to = f.calibrate_to == "-" ? stderr : stdout;
+  fmt::print(to, "trained on {}, margin {:g}\n", printable(thresholds.trained_on),
+             thresholds.margin);
+  fmt::print(to, "{}",
+             held_out.empty() ? kOneRecording : fmt::format(kHeldOutLegend, table.format()));
+  return thresholds;
+}
+
+// of the file; or trained, if nothing else is said as these conditions want it
+Thresholds thresholds_of(const Flags& f, const std::vector<std::string>& conditions) {
+  if (!f.thresholds.empty()) return read_thresholds(f.thresholds);
+  Progress progress("calibrating");
+  return study::calibrate_for(conditions, calibration_of(f, progress));
+}
+
+int run_calibration(const Flags& f) {
+  if (f.calibrate_to != "-" && !f.calibrate_to.ends_with(".json"))
+    throw std::invalid_argument(fmt::format(
+        "--calibrate {}: the name of a file of thresholds ends in .json", f.calibrate_to));
+  AtomicFile{f.calibrate_to};  // an unwritable path should not cost a run
+  bool usable = true;
+  write_thresholds(f.logs.empty() ? thresholds_of(f, {}) : calibrated_on_logs(f, usable),
+                   f.calibrate_to);
+  if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
+  return usable ? kGood : kAnswerIsNo;
+}
+
+// the study's table and its file
+void write_study(const Flags& f, const study::StudyAbout& about,
+                 const std::vector<study::Cell>& cells) {
+  const TableFormat format = table_format(f.format);
+  // a table for a program stands alone; so does a study on standard output
+  std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
+  fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n",
+             printable(about.trained_on), about.margin, about.plan.at("seed").dump());
+  fmt::print(f.out == "-" ? stderr : stdout, "{}", study::format_study(about.robot, cells, format));
+  if (f.out.empty()) return;
+  const Thresholds t{.trained_on = about.trained_on, .margin = about.margin};
+  AtomicFile file(f.out);
+  file.write(study::study_json(about.robot, cells, t, about.context));
+  file.commit();
+  if (f.out != "-") fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
+}
+
+// unless conditions are named: those of --quick; or those that the file of thresholds is for
+std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs) {
+  std::vector<std::string> all = f.quick ? runs.quick : runs.honest;
+  if (!f.quick && !f.thresholds.empty()) {
+    const Thresholds t = read_thresholds(f.thresholds);
+    all.clear();
+    for (const study::Condition& c : runs.conditions)
+      if (study::are_for(t, robot(runs.robot), c.name)) all.push_back(c.name);
+    if (all.empty()) all = runs.quick;
+  }
+  return study::chosen_conditions(runs, f.study.conditions, all);
+}
+
+int run_study(Flags& f) {
+  table_format(f.format);
+  if (f.quick && !f.study.conditions.empty())
+    throw std::invalid_argument("--quick stands for --conditions: not both");
+  if (!f.thresholds.empty()) f.study.tuned = study::read_tuned(f.thresholds).rows;
+  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot));
+  study::check_study(f.study);  // before calibration takes its time
+  const bool part = !f.shard.empty();
+  const study::Shard shard = part ? study::shard_of(f.shard) : study::Shard();
+  if (part && (f.out.empty() || f.out == "-"))
+    throw std::invalid_argument("--shard needs --out FILE, to which the part goes");
+  if (!f.out.empty() && !part) AtomicFile{f.out};
+  const Thresholds thresholds = thresholds_of(f, f.study.conditions);
+  study::StudyAbout about = study::about(f.study, thresholds);
+  about.context = provenance(fmt::format("seeds from {}", f.study.first_seed));
+  const study::DetectionStudy study(f.study, thresholds);
+  const Interrupt interrupt;
+  Progress progress("studying");
+  f.study.progress = progress.callback();
+  f.study.stop = [&] { return interrupt.seen(); };
+  if (part) {
+    const bool whole = study::run_part(study, about, shard, f.out, f.study);
+    progress.clear();
+    say(whole ? fmt::format("{}: part {}", f.out, f.shard)
+              : fmt::format("{}: stopped; the same command goes on from here", f.out));
+    return whole ? int{kGood} : kInterrupted;
+  }
+  study::StudySum sum(study.cells());
+  study::run_pieces(study, f.study, sum);
+  progress.clear();
+  const bool whole = sum.pieces() == study.pieces();
+  if (!whole) {
+    const std::string how_far =
+        fmt::format("after {} of {} pieces of work", sum.pieces(), study.pieces());
+    say(fmt::format("stopped {}: what is done so far", how_far));
+    about.context.emplace_back("stopped", how_far);
+  }
+  write_study(f, about, sum.sorted());
+  return whole ? int{kGood} : kInterrupted;
+}
+
+int merge(const Flags& f) {
+  table_format(f.format);
+  const study::Merged m = study::merge_parts(f.parts);
+  if (!f.out.empty()) AtomicFile{f.out};  // a path that cannot be written, or one of the parts
+  write_study(f, m.about, m.cells);
+  return kGood;
+}
+
+int run(const CLI::App& app, Flags& f) {
+  f.study.robot = with_lock(f.study.robot, f.lock);
+  if (f.list) return list_conditions(f.study.robot);
+  const bool studies = f.calibrate_to.empty();
+  require_mode(app, studies, "a study, not with --calibrate",
+               {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
+                "--clampings", "--regions", "--hours", "--seed", "--quick", "--shard"});
+  require_mode(app, f.shard.empty(), "the table of all parts: merge", {"--format"});
+  require_mode(app, f.thresholds.empty(), "training, not with --thresholds", {"--margin"});
+  require_mode(app, f.thresholds.empty() && f.logs.empty(),
+               "training on simulated runs, not with --thresholds or recordings",
+               {"--train", "--runs"});
+  require_mode(app, !f.logs.empty(), "recordings to calibrate from", {"--columns", "--channel"});
+  if (studies && !f.logs.empty())
+    throw std::invalid_argument(f.logs[0] + ": recordings are for --calibrate FILE");
+  return studies ? run_study(f) : run_calibration(f);
+}
+
+template <class T>
+CLI::Option* add_count(CLI::App& app, const char* flag, T& to, T least, T most, const char* help) {
+  return app.add_option(flag, to, help)
+      ->check(CLI::Range(least, most).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_names(CLI::App& app, const char* flag, std::vector<std::string>& to, const char* help) {
+  app.add_option(flag, to, help)->delimiter(',')->allow_extra_args(false)->type_name("NAME,..");
+}
+
+void add_flags(CLI::App& app, Flags& f) {
+  app.add_option("logs", f.logs,
+                 "to --calibrate from: without contact (--columns as tauext-replay)");
+  app.add_option("--channel", f.channel)->group("");
+  app.add_option("--columns", f.columns)->group("");
+  app.add_option("--calibrate", f.calibrate_to,
+                 "set the thresholds from training runs, write, stop")
+      ->type_name("FILE.json")
+      ->check(not_empty);
+  app.add_option("--margin", f.calibration.margin, "threshold over the largest value in training")
+      ->capture_default_str();
+  app.add_option("--thresholds", f.thresholds,
+                 "file of --calibrate, or of tauext-tune --conditions")
+      ->type_name("FILE.json")
+      ->check(not_empty);
+  app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
+      ->type_name("FILE");
+  app.add_option("--format", f.format)->group("");
+  app.add_option("--robot", f.study.robot,
+                 "wallmobot3, another, or a file of MJCF or URDF (with --lock REGEX)")
+      ->type_name("NAME|FILE");
+  app.add_option("--lock", f.lock)->group("")->check(not_empty);
+  add_names(app, "--train", f.calibration.conditions,
+            "conditions to train on, each in --runs 20 of 30 s");
+  add_count(app, "--runs", f.calibration.runs, 1, 10000, "")->group("");
+  add_names(app, "--conditions", f.study.conditions,
+            "only these (see --list); --quick: good sensors, blows");
+  app.add_flag("--quick", f.quick)->group("");
+  add_names(app, "--estimator", f.study.estimators, "only these, like mo2:bandwidth=50,ekf");
+  add_names(app, "--detector", f.study.detectors, "only these, like high_pass:w=60");
+  add_count(app, "--collisions", f.study.blows, 0, 100000,
+            "blows of a condition, at least; --pushes, --clampings, --regions");
+  add_count(app, "--pushes", f.study.brisk_pushes, 0, 100000, "")->group("");
+  add_count(app, "--clampings", f.study.clampings, 0, 100000, "")->group("");
+  add_count(app, "--regions", f.study.regions, 0, 100000, "")->group("");
+  app.add_option("--hours", f.study.hours, "of free motion and slow pushes, at least")
+      ->capture_default_str();
+  add_count(app, "--seed", f.study.first_seed, std::uint64_t{0}, study::kTrainingSeed - 1,
+            "seed of the first run; the next runs count up from it");
+  app.add_option("--shard", f.shard,
+                 "do the I-th of N parts, to --out; then: merge PART.. --out FILE")
+      ->type_name("I/N")
+      ->check(not_empty);
+  add_count(app, "--jobs", f.study.threads, 0, 1024, "threads; 0: one a core");
+  app.add_flag("--list", f.list, "list the conditions and the keys of specifications, and stop");
+}
+
+}  // namespace
+
+int detect_main(int argc, char** argv) {
+  CLI::App app(
+      "Tries every detector behind every estimator of a robot; without --thresholds it "
+      "calibrates.\n\n"
+      "  tauext-detect --calibrate t.json --robot arm.json --columns ur_rtde free*.csv\n"
+      "  tauext-detect --thresholds thresholds.json --conditions known_150 --regions 20\n",
+      "tauext-detect");
+  app.get_formatter()->column_width(34);
+  Flags f;
+  add_flags(app, f);
+  CLI::App* const merging = app.add_subcommand("merge", "put the parts of --shard together");
+  merging->group("")->add_option("parts", f.parts, "their files")->required();
+  merging->add_option("--out", f.out, "JSON of it all");
+  merging->add_option("--format", f.format, "of the table");
+  for (CLI::Option* of_study : app.get_options()) merging->excludes(of_study);
+  keep_freed_memory();
+  return run_program(app, argc, argv, [&] { return merging->parsed() ? merge(f) : run(app, f); });
+}
+
+}  // namespace tauext
