@@ -108,8 +108,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, bool study, bool
   if (!all && !suite && !golden && !seeds) {
     throw std::invalid_argument(
         "--benchmark_filter goes with the suite, --seeds and --golden (there "
-        "--benchmark_list_tests "
-        "lists what it selects); leave it out here");
+        "--benchmark_list_tests lists what it selects); leave it out here");
   }
 }
 

@@ -96,17 +96,17 @@ std::string what_there_is(const Thresholds& t, const ThresholdSet* set, const Ro
                           const std::string& estimator) {
   std::set<std::string> names;
   if (set == nullptr) {
-    for (const ThresholdSet& s : t.sets)
-      names.insert(s.robot + (s.condition.empty() ? "" : " in " + s.condition));
-    const auto has_its_name = [&](const std::string& name) {
-      const auto file = [](const std::string& path) {
-        return std::filesystem::path(path).filename();
-      };
-      return !robot.fingerprint().empty() && file(name) == file(robot.name());
+    const auto file = [](const std::string& path) {
+      return std::filesystem::path(path).filename();
     };
-    const bool of_file = std::any_of(names.begin(), names.end(), has_its_name);
+    bool alike = false;  // by name, though not the same arm
+    for (const ThresholdSet& s : t.sets) {
+      names.insert(s.robot + (s.condition.empty() ? "" : " in " + s.condition));
+      alike =
+          alike || (s.fingerprint != robot.fingerprint() && file(s.robot) == file(robot.name()));
+    }
     return fmt::format("it is for {}{}", fmt::join(names, ", "),
-                       of_file ? ", another arm whose file has that name" : "");
+                       alike ? ", another arm whose file has that name" : "");
   }
   const auto behind = set->by_estimator.find(estimator);
   if (behind == set->by_estimator.end()) {

@@ -144,6 +144,12 @@ TEST_F(FilePrograms, ThresholdsAreOfTheArmThatTheyWereTrainedOn) {
   const Outcome study = run("tauext-detect --thresholds t.json " + few);
   EXPECT_EQ(study.code, 2);
   EXPECT_TRUE(study.says("they are of another arm than ")) << study.text;
+  fs::create_directory(folder_ / "other");
+  write("other/own.urdf", arm);
+  const Outcome other = run(
+      "tauext-detect --thresholds t.json --robot other/own.urdf --conditions known --estimator mo2 "
+      "--detector high_pass");
+  EXPECT_TRUE(other.says("it is for own.urdf, another arm whose file has that name")) << other.text;
 }
 
 // that of bench/run/README.md

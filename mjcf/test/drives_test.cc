@@ -11,6 +11,7 @@
 #include <fstream>
 #include <string>
 
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
@@ -130,6 +131,18 @@ struct TwoHinges {
     return "<body>" + upper + "</body>";
   }
 };
+
+TEST(Drives, AreSharesOfWhatTheArmAloneIsUsedTo) {
+  const std::pair<const char*, const char*> kScenes[] = {{"testbed1", "load"},
+                                                         {"testbed1", "obstacle"},
+                                                         {"wallmobot3", "load"},
+                                                         {"wallmobot3", "panel_obstacle"}};
+  for (const auto& [robot, scene] : kScenes) {
+    const VectorXd alone = tree_of(load_robot(robot)).usual_torque;
+    const VectorXd u = usual_torque_of(load_robot(robot, scene));
+    EXPECT_TRUE(u.size() == alone.size() && u.isApprox(alone, 1e-12)) << robot << ' ' << scene;
+  }
+}
 
 // the rotors turn about their joints alone: an armature of the motors' hinges, no body's inertia
 TEST(Drives, AnArmWithSpringsIsMuJoCosWithABodyForEachMotor) {

@@ -55,7 +55,7 @@ void add_counts(const char* layer, std::vector<CountChange>& changes, std::vecto
 
 void add_metrics(AccuracyReport& r, std::vector<Excess>& all) {
   for (MetricChange& c : r.changes) {
-    // of one that comes at some seeds alone, another time there has no size
+    // what some seed never has has no mean, and a change of it no size
     const bool never = std::isnan(c.before) && std::isnan(c.after);
     const double by = never ? 0 : std::abs(c.after / c.before - 1);
     if (!std::isfinite(by)) continue;
