@@ -15,6 +15,7 @@ parameters is understood: "mo2:bandwidth=50".
 """
 from __future__ import annotations
 
+import importlib.util
 import inspect
 import json
 import os
@@ -24,11 +25,10 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-try:
-    from . import _core
-except ImportError as error:
-    raise ImportError("tauext._core is not built, or not for this Python: in a clone, ci/install_deps and then "
-                      f"ci/build release tauext_python build it for /usr/bin/python3 ({error})") from error
+if importlib.util.find_spec(f"{__name__}._core") is None:
+    raise ImportError("tauext._core is not built for this Python: in a clone, ci/install_deps and then "
+                      "ci/build release tauext_python build it for /usr/bin/python3")
+from . import _core
 from ._core import Detections, Estimates, Run
 
 __all__ = ["Arm", "CONTACTS", "Detections", "Estimates", "Estimator", "Robot", "Run", "Terms", "estimator",
