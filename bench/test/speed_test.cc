@@ -99,7 +99,7 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
   // of the EKF's 142 ns, or 178, which differs from start to start: 65 or 70 ns for observers, 80
   // for the sliding mode, 200 for the Kalman filter; 16 ns of each judge the sample
   const std::pair<const char*, double> kLeast[] = {
-      {"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 2.0}, {"mo3", 2.0},         {"smo", 1.8},
+      {"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 1.8}, {"mo3", 1.8},         {"smo", 1.7},
       {"aob", 0.9}, {"eso", 0.9},     {"dkf", 0.7}, {"dkf_adaptive", 0.6}};
   for (const auto& [name, least] : kLeast) {
     const double r = ratio(runner("ekf"), runner(name), least);

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -P tauextLink.cmake -- COMMAND...: links a plug-in by COMMAND, and keeps beside it, in PLUGIN.so.code/, the
 # assembly of its objects (0.s, 1.s, ...) and `link`: SHA-256 of the plug-in, the folder to be in, and then COMMAND, an
-# argument a line, with @0, @1, ... for the objects and @out for the plug-in. One instruction is encoded anew where it is
-# found: as valgrind 3.19, which counts, does not know it, vmovq from a register above 7 to one below 8.
+# argument a line, with @0, @1, ... for the objects and @out for the plug-in.
 set(command "")
 set(given OFF)
 math(EXPR last "${CMAKE_ARGC} - 1")
@@ -11,19 +10,6 @@ foreach(i RANGE ${last})
     list(APPEND command "${CMAKE_ARGV${i}}")
   elseif("${CMAKE_ARGV${i}}" STREQUAL "--")
     set(given ON)
-  endif()
-endforeach()
-list(GET command 0 compiler)
-set(unknown "\tvmovq\t%xmm([89]|1[0-5]), %xmm[0-7]$")
-foreach(object IN LISTS command)
-  string(REGEX REPLACE "\\.o$" ".s" assembly "${object}")
-  if(NOT object MATCHES "\\.o$" OR NOT EXISTS "${assembly}")
-    continue()
-  endif()
-  execute_process(COMMAND grep -qE "${unknown}" ${assembly} RESULT_VARIABLE missing)
-  if(NOT missing)
-    execute_process(COMMAND sed -i -E "s/${unknown}/\t{load}&/" ${assembly} COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND ${compiler} -c ${assembly} -o ${object} COMMAND_ERROR_IS_FATAL ANY)
   endif()
 endforeach()
 execute_process(COMMAND ${command} COMMAND_ERROR_IS_FATAL ANY)
@@ -51,6 +37,6 @@ foreach(argument IN LISTS command)
   string(APPEND text "${argument}\n")
 endforeach()
 if(objects EQUAL 0)
-  message(FATAL_ERROR "${plugin}: the compiler left no assembly, which tauext-gate makes layouts of")
+  message(FATAL_ERROR "${plugin}: tauextCompile.sh left no assembly, which tauext-gate makes layouts of")
 endif()
 file(WRITE ${plugin}.code/link "${text}")

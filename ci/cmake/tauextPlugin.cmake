@@ -11,7 +11,7 @@ set(TAUEXT_CODE_FLAGS -falign-functions=64 -falign-loops=64)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND TAUEXT_CODE_FLAGS -falign-jumps=64 -falign-labels=16 -fno-gnu-unique)
 endif()
-set(TAUEXT_LINK_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/tauextLink.cmake)
+set(TAUEXT_PLUGIN_SCRIPTS ${CMAKE_CURRENT_LIST_DIR})
 
 function(tauext_add_plugin target)
   if(NOT DEFINED TAUEXT_ARCH)
@@ -36,10 +36,11 @@ function(tauext_add_plugin target)
   add_library(${target} MODULE ${ARGN})
   target_link_libraries(${target} PRIVATE tauext::estimators)
   # paths of the checkout must not make two equal builds differ; lines are for tauext-gate explain, and change no code
-  target_compile_options(${target} PRIVATE ${flags} -g1 -Wno-array-bounds -ffunction-sections -fdata-sections -save-temps=obj
+  target_compile_options(${target} PRIVATE ${flags} -g1 -Wno-array-bounds -ffunction-sections -fdata-sections
     -ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}/=./)
   target_compile_definitions(${target} PRIVATE TAUEXT_PLUGIN_FLAGS="${text}")
   set_target_properties(${target} PROPERTIES PREFIX "" UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
-    RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -P \"${TAUEXT_LINK_SCRIPT}\" --")
+    RULE_LAUNCH_COMPILE "sh \"${TAUEXT_PLUGIN_SCRIPTS}/tauextCompile.sh\" \"${CMAKE_CXX_COMPILER}\""
+    RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -P \"${TAUEXT_PLUGIN_SCRIPTS}/tauextLink.cmake\" --")
 endfunction()

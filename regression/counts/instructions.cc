@@ -69,11 +69,11 @@ std::string function_name(const std::string& text, std::map<std::string, std::st
   return name;
 }
 
-// "././estimators/ekf.h" and "build/release/./estimators/ekf.h", as a mapped prefix makes them
+// "././estimators/ekf.h" and "build/release/./estimators/ekf.h", as a mapped prefix makes them, and
+// "build/release/../../estimators/ekf.h", as ccache does
 std::string from_the_top(std::string_view file) {
   if (const auto top = file.rfind("/./"); top != file.npos) file.remove_prefix(top + 3);
-  while (file.starts_with("./")) file.remove_prefix(2);
-  return std::string(file);
+  return std::filesystem::path(file).lexically_normal().generic_string();
 }
 
 }  // namespace

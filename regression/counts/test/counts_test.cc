@@ -32,7 +32,8 @@ TEST(Callgrind, SelfCostsAreTheFunctionsOwn) {
 TEST(Callgrind, LinesAreTheirFilesWhateverFunctionTheyAreInlinedInto) {
   const CallgrindDump d = parse_callgrind(
       "# callgrind format\nfl=(1) ././estimators/a.h\nfn=(1) f\n7 10\nfi=(2) estimators/b.h\n3 4\n"
-      "fe=(1)\n7 1\ncfi=(2)\ncfn=(2) g\ncalls=1 9\n8 60\n8 2\n0 5\n\ntotals: 82\n",
+      "fe=(3) ./build/release/../../estimators/a.h\n7 1\ncfi=(2)\ncfn=(2) g\ncalls=1 9\n8 60\n8 "
+      "2\n0 5\n\ntotals: 82\n",
       "f");
   EXPECT_EQ(d.lines, (LineCounts{{{"estimators/a.h", 7}, 11},
                                  {{"estimators/b.h", 3}, 4},
