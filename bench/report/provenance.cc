@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/roster/robots.h"
-#include "commit.h"
 #include "mjcf/record.h"
 
 namespace tauext {
@@ -33,7 +32,7 @@ std::string build() {
 Context provenance(const std::string& run) {
   Context c = {{"tauext", fmt::format("{}, MuJoCo {}, {}", build(), mujoco_version(), run)},
                {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
-  if (*TAUEXT_COMMIT != '\0') c.emplace_back("commit", TAUEXT_COMMIT);
+  if (*commit() != '\0') c.emplace_back("commit", commit());
   c.emplace_back("cpu", processor());
   return c;
 }

@@ -15,6 +15,10 @@ using Context = std::vector<std::pair<std::string, std::string>>;
 /// What built this program: its version, the compiler and its flags.
 std::string build();
 
+/// The commit that this program was built of, with "-dirty" behind it where files were changed;
+/// "" outside of git.
+const char* commit();
+
 /// First tauext (build(), MuJoCo's version and `run`), then date, commit (unless it was built
 /// outside of git) and cpu (the processor's name).
 /// @param run what the results depend on beside these, like "seed 1"

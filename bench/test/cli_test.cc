@@ -187,9 +187,9 @@ TEST_F(Programs, ListNamesEntriesAndTheKeysOfSpecifications) {
 TEST_F(Programs, AreCompletedInBash) {
   // the words of a line, of which the last one is not ready
   const auto completed = [&](const std::string& line) {
-    write("complete.sh", "PATH=" TAUEXT_BIN ":$PATH\nsource " TAUEXT_EXAMPLES
-                         "/../program/completion.bash\nCOMP_WORDS=(" +
-                             line + ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_tauext\n" +
+    write("complete.sh", "PATH=" + kBin + ":$PATH\nsource " + kExamples +
+                             "/../program/completion.bash\nCOMP_WORDS=(" + line +
+                             ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_tauext\n" +
                              "echo \"${COMPREPLY[*]}\"\n");
     return run_system("bash complete.sh").text;
   };

@@ -58,7 +58,7 @@ TEST_F(Programs, OwnDetectorMarksTheCollisionBehindEveryEstimator) {
 }
 
 TEST_F(Programs, OwnEstimatorsAndDetectorsRunOnARobotFromAFile) {
-  const std::string arm = " --robot " TAUEXT_EXAMPLES "/two_arms.urdf";
+  const std::string arm = " --robot " + kExamples + "/two_arms.urdf";
   const Outcome e = run("examples/own_estimator" + arm + " --benchmark_filter=step/twice" + kQuick);
   EXPECT_EQ(e.code, 0) << e.text;
   EXPECT_GT(row(e, "two_arms/step/twice").size(), 7u) << e.text;

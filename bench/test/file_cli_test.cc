@@ -20,14 +20,14 @@
 namespace tauext::test {
 namespace {
 
-const std::string kArm6 = TAUEXT_EXAMPLES "/arm6.xml";
-const std::string kArm7 = TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
-const std::string kTwoArms = TAUEXT_EXAMPLES "/two_arms.urdf";
+const std::string kArm6 = kExamples + "/arm6.xml";
+const std::string kArm7 = kExamples + "/arm7.xml --lock 'finger.*'";
+const std::string kTwoArms = kExamples + "/two_arms.urdf";
 
 // what the header has, beside MuJoCo on the file
 template <class Arm>
 void expect_arm_of_the_file(const Arm& arm, const std::string& lock) {
-  Plant plant(simulated(load_mjcf(TAUEXT_EXAMPLES "/arm7.xml", {lock})));
+  Plant plant(simulated(load_mjcf(kExamples + "/arm7.xml", {lock})));
   ASSERT_EQ(plant.dof(), Arm::kDof);
   for (int k = 0; k < 20; ++k) {
     Vec<Arm::kDof> q, qd;
@@ -51,7 +51,7 @@ using FilePrograms = Programs;
 
 // the gripper is an eighth joint: one finger moves as the other does
 TEST_F(FilePrograms, AFingerFollowsTheOtherOneInEveryProgram) {
-  const std::string arm = " --robot " TAUEXT_EXAMPLES "/arm7.xml";
+  const std::string arm = " --robot " + kExamples + "/arm7.xml";
   const Outcome o =
       run("tauext-bench" + arm + " --benchmark_filter='/(step|in_motion)/(mo2|ekf)$' " +
           "--benchmark_min_time=0.01 --benchmark_out=r.json");
@@ -154,7 +154,7 @@ TEST_F(FilePrograms, ThresholdsAreOfTheArmThatTheyWereTrainedOn) {
 
 // that of bench/run/README.md
 std::string own_scenario() {
-  std::ifstream readme(TAUEXT_EXAMPLES "/../run/README.md");
+  std::ifstream readme(kExamples + "/../run/README.md");
   const std::string text{std::istreambuf_iterator<char>(readme), {}};
   const auto begin = text.find("```json") + 7;
   return text.substr(begin, text.find("```", begin) - begin);
@@ -270,7 +270,7 @@ TEST_F(FilePrograms, SayWhatIsWrongWithIt) {
   EXPECT_TRUE(run("tauext-bench --robot wallmobot3 --lock x").says("wallmobot3 is none"));
   EXPECT_TRUE(run("tauext-bench --robot a.xml --lock ''").says("--lock: its value is empty"));
   std::ostringstream text;
-  text << std::ifstream(TAUEXT_EXAMPLES "/arm7.xml").rdbuf();
+  text << std::ifstream(kExamples + "/arm7.xml").rdbuf();
   std::string curved = text.str();
   curved.insert(curved.find("joint1="), "polycoef='0 1 .1 0 0' ");
   write("curved.xml", curved);

@@ -159,7 +159,7 @@ TEST_F(LivePrograms, ARobotFromAFileEstimatesWhatTheClosedFormDoes) {
   ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario in_motion --out log.lcm").code, 0);
   const std::string rest = " --from log.lcm --estimator mo1,dkf,aob --speed 100";
   const Outcome closed = run("tauext-live --robot wallmobot3" + rest);
-  const Outcome file = run("tauext-live --robot " TAUEXT_MJCF "/wallmobot3.xml" + rest);
+  const Outcome file = run("tauext-live --robot " + kMjcf + "/wallmobot3.xml" + rest);
   ASSERT_EQ(file.code, 0) << file.text;
   for (const char* e : {"mo1", "dkf", "aob"}) {
     const std::regex rmse(std::string("\n") + e + " +([0-9.]+) +([0-9.]+) ");
@@ -252,7 +252,7 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   refuses("--robot wallmobot3 --subscribe TAUEXT_ESTIMATE_ekf --estimator ekf", "would come back");
   refuses("--robot wallmobot3 --from nothing.lcm --estimator ekf", "nothing.lcm: No such file");
   refuses("--robot nothing.xml --subscribe A --estimator mo1", "nothing.xml");
-  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --scenario payload --estimator mo1",
+  refuses("--robot " + kMjcf + "/wallmobot3.xml --scenario payload --estimator mo1",
           "unknown scenario 'payload'");
   refuses("--listen --robot wallmobot3", "--listen shows streams");
   refuses("--listen --duration -1", "--duration -1");
@@ -268,7 +268,7 @@ TEST_F(LivePrograms, WhatMakesNoSenseIsRefused) {
   refuses("--robot wallmobot3 --scenario step --estimator ekf --rate 5", "--rate goes with --lcm");
   refuses("--robot wallmobot3 --scenario step --estimator ekf --lcm 'udpm://239.1.1.1?ttl=x'",
           "'ttl=x' is no option");
-  refuses("--robot " TAUEXT_MJCF "/wallmobot3.xml --from x.csv --estimator ndob",
+  refuses("--robot " + kMjcf + "/wallmobot3.xml --from x.csv --estimator ndob",
           "unknown estimator 'ndob'; known: zero, truth");
   write("one.csv", "t,q1,qd1,tau1\n0,0,0,0\n");
   refuses("--robot wallmobot3 --from one.csv --estimator mo1",

@@ -25,12 +25,13 @@ class LivePrograms : public Programs {
   }
   // `says FILE TEXT` waits until the text is in the file, which no script before has left
   Outcome run_script(const std::string& script, const std::string& inside = "") const {
-    write("script", "export PATH=" TAUEXT_BIN
-                    ":$PATH\n"
-                    "rm -f heard out err sent\n"
-                    "says() { for i in $(seq 300); do grep -q \"$2\" \"$1\" 2>/dev/null && return; "
-                    "sleep 0.1; done; }\n" +
-                        script);
+    write("script",
+          "export PATH=" + kBin +
+              ":$PATH\n"
+              "rm -f heard out err sent\n"
+              "says() { for i in $(seq 300); do grep -q \"$2\" \"$1\" 2>/dev/null && return; "
+              "sleep 0.1; done; }\n" +
+              script);
     return run_system(inside + "timeout 90 bash script");
   }
 

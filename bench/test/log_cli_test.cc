@@ -34,7 +34,7 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
   run("tauext-record --robot testbed1 --scenario model_check --out one.csv");
   run("tauext-record --robot wallmobot3 --scenario free --out log.lcm");
-  run_system("ln log.csv hard.csv; ln -s log.csv soft.csv; cp " TAUEXT_MJCF
+  run_system("ln log.csv hard.csv; ln -s log.csv soft.csv; cp " + kMjcf +
              "/wallmobot3.xml arm.xml");
   run("tauext-detect --calibrate t.json --estimator mo1 --detector threshold --runs 1");
   write("d.json", R"({"velocity_noise": 1e-4})");
@@ -62,7 +62,7 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
     EXPECT_TRUE(o.says("is read by this program; write to another file")) << command << o.text;
     EXPECT_TRUE(content(file) == before) << command;
   }
-  const Outcome o = run_system("LCM_DEFAULT_URL='file://log.lcm?mode=w' " TAUEXT_BIN "/" + live);
+  const Outcome o = run_system("LCM_DEFAULT_URL='file://log.lcm?mode=w' " + kBin + "/" + live);
   EXPECT_TRUE(o.says("log.lcm: is read by this program")) << o.text;
 }
 
@@ -168,7 +168,7 @@ struct Decoded {
 };
 
 TEST_F(Programs, LcmSpyDecodesAnEntrysLogAsWeDo) {
-#ifndef TAUEXT_DECODE_LOG
+#ifndef TAUEXT_JAVA
   GTEST_SKIP() << "no Java at build time: default-jdk-headless, liblcm-java";
 #else
   ASSERT_EQ(run("tauext-bench --benchmark_filter='testbed1/collision/mo1.contact_classifier' "
@@ -184,7 +184,9 @@ TEST_F(Programs, LcmSpyDecodesAnEntrysLogAsWeDo) {
     if (e.channel == kSummaryChannel) d.add<summary_t>(e.message, "tauext.summary_t");
     if (e.channel.starts_with(kEstimateChannel)) d.add<estimate_t>(e.message, "tauext.estimate_t");
   });
-  const Outcome java = run_system(TAUEXT_DECODE_LOG " " + log);
+  const std::string classes = kBin + "/../lcmtypes/plugin";
+  const Outcome java = run_system(TAUEXT_JAVA ":" + classes + "/tauext_spy.jar:" + classes +
+                                  "/test_classes DecodeLog " + log);
   ASSERT_EQ(java.code, 0) << java.text;
   std::istringstream lines(java.text);
   std::size_t channels = 0;

@@ -18,6 +18,11 @@ namespace tauext::test {
 
 namespace fs = std::filesystem;
 
+// for whoever is in another folder; tests run at the top of the tree
+inline const std::string kBin = fs::absolute(TAUEXT_BIN);
+inline const std::string kExamples = fs::absolute("bench/examples");
+inline const std::string kMjcf = fs::absolute("mjcf");
+
 struct Outcome {
   int code;
   std::string text;  // standard output and standard error
@@ -33,7 +38,7 @@ class Programs : public testing::Test {
   ~Programs() override { fs::remove_all(folder_); }
 
   // one of tauext's programs, with its arguments
-  Outcome run(const std::string& command) const { return run_system(TAUEXT_BIN "/" + command); }
+  Outcome run(const std::string& command) const { return run_system(kBin + "/" + command); }
   // any other
   Outcome run_system(const std::string& command) const {
     const std::string line = "cd " + folder_.string() + " && (" + command + ") 2>&1";

@@ -38,7 +38,7 @@ TEST_F(Programs, ReplayWritesOneRowPerSampleAndPrintsTheErrors) {
 
 // the dynamic linker tells what it loads
 TEST_F(Programs, ReplayOfARobotByNameRunsWithoutMuJoCo) {
-  const std::string linker = "LD_DEBUG=files " TAUEXT_BIN "/";
+  const std::string linker = "LD_DEBUG=files " + kBin + "/";
   const Outcome record =
       run_system(linker + "tauext-record --robot wallmobot3 --scenario step --out log.csv");
   EXPECT_TRUE(record.says("file=libmujoco")) << "who simulates needs it";
@@ -50,7 +50,7 @@ TEST_F(Programs, ReplayOfARobotByNameRunsWithoutMuJoCo) {
 
 // by the truth of a touch without a moment, at the end effector of an arm that sees all of it
 TEST_F(Programs, ReplayFindsTheForceAndTheLink) {
-  const std::string arm = " --robot " TAUEXT_EXAMPLES "/arm7.xml --lock 'finger.*'";
+  const std::string arm = " --robot " + kExamples + "/arm7.xml --lock 'finger.*'";
   run("tauext-record" + arm + " --scenario blow --out log.csv");
   const Outcome o = run("tauext-replay log.csv" + arm +
                         " --estimator truth --wrench end_effector "
@@ -160,7 +160,7 @@ TEST_F(Programs, ReplayRefusesLogsItCannotUse) {
   EXPECT_EQ(npy.code, 2);
   EXPECT_TRUE(npy.says("--out est.npy: estimates are written as CSV, or to an .npz")) << npy.text;
   EXPECT_FALSE(exists("est.npy"));
-  const Outcome pipe = run_system("mkfifo log.fifo && " TAUEXT_BIN
+  const Outcome pipe = run_system("mkfifo log.fifo && " + kBin +
                                   "/tauext-replay log.fifo --robot wallmobot3 --estimator ndob "
                                   "--out est.csv");
   EXPECT_EQ(pipe.code, 2);
@@ -185,7 +185,7 @@ long memory_of(const std::string& folder, const std::string& command) {
   const pid_t child = ::fork();
   if (child == 0) {
     const std::string line =
-        "cd " + folder + " && exec " TAUEXT_BIN "/" + command + " >/dev/null 2>&1";
+        "cd " + folder + " && exec " + kBin + "/" + command + " >/dev/null 2>&1";
     ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
     ::_exit(127);
   }
@@ -246,7 +246,7 @@ TEST_F(Programs, RenderDrawsARobotAndSaysWhatItCannot) {
   EXPECT_TRUE(run("tauext-render --list").says("wallmobot6\n"));
   EXPECT_TRUE(run("tauext-render --list --robot wallmobot6").says("front"));
   EXPECT_NE(png, content("b.png")) << "another pose";
-  const std::string arm = "tauext-render --robot " TAUEXT_EXAMPLES "/two_arms.urdf ";
+  const std::string arm = "tauext-render --robot " + kExamples + "/two_arms.urdf ";
   EXPECT_EQ(run(arm + "--out c.png").code, 0) << "without shapes or cameras";
   EXPECT_EQ(run(arm + "--q 1,2 --out d.png").code, 2);
   EXPECT_EQ(run(arm + "--camera nose --out d.png").code, 2);

@@ -90,9 +90,9 @@ TEST_F(Speed, TheTestbedsEkfTakesLessThanHalfOfWallmobot3s) {
 }
 
 TEST_F(Speed, TheNdobIsMoreThanTwiceAsFastAsTheEkf) {
-  const double r = ratio(runner("ekf"), runner("ndob"), 2.4);
+  const double r = ratio(runner("ekf"), runner("ndob"), 2);
   std::printf("ekf / ndob: %.2f\n", r);
-  EXPECT_GE(r, 2.4);
+  EXPECT_GE(r, 2) << "2.4 where it was measured";
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {

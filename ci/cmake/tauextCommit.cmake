@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DSOURCE=FOLDER -DTO=FILE -P tauextCommit.cmake: a header with the commit of the tree, "" where there is no git
+# cmake -DSOURCE=FOLDER -DTO=FILE -P tauextCommit.cmake: commit() of bench/report/provenance.h, that of the tree, "" where there is no git
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
   OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
-set(text "#define TAUEXT_COMMIT \"${commit}\"\n")
+set(text "#include \"bench/report/provenance.h\"\nconst char* tauext::commit() { return \"${commit}\"; }\n")
 if(EXISTS ${TO})
   file(READ ${TO} before)
 endif()

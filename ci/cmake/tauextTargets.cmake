@@ -73,7 +73,9 @@ endfunction()
 # a GoogleTest program, at -O1 as the precompiled headers of tests are, which takes a fifth less to compile; FAST: as what
 # is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; a
 # source that is in both lists has tests that mean something else there. LONG
-# (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
+# (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs. Tests run at the top of the
+# tree, so that no path of it is compiled in, and another checkout takes them from ccache.
+file(RELATIVE_PATH TAUEXT_BIN_FROM_TOP ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bin)
 function(tauext_test name)
   cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;DEFINITIONS;PROPERTIES" ${ARGN})
   if(TAUEXT_ONLY_RELEASE_TESTS)
@@ -96,7 +98,7 @@ function(tauext_test name)
     target_compile_options(${name} PRIVATE -O1)
   endif()
   # asked when ctest runs, not within 5 s of a busy build; tests with a parameter name it themselves, in a word
-  set(how DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES)
+  set(how WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES)
   if(ARG_LONG)
     list(TRANSFORM ARG_PROPERTIES REPLACE "^selftest$" selftest-long OUTPUT_VARIABLE properties)
     if(NOT LABELS IN_LIST properties)

@@ -72,7 +72,7 @@ TEST(ReadingTest, EachDriverHasItsOwnSigns) {
 // drake_*_status.bin: written by a program with lcm-gen's C++ of Drake's own types, lcmtypes/
 // lcmt_*_status.lcm (commit bf8ef803a732). Joint j of the type's f-th field is f + j/8
 std::vector<std::byte> written_by_drake(const std::string& name) {
-  std::ifstream file(TAUEXT_LCM_FIXTURES "/drake_" + name + "_status.bin", std::ios::binary);
+  std::ifstream file("lcmtypes/test/drake_" + name + "_status.bin", std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
   return {begin, begin + text.size()};

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d, Eigen::VectorXd;
 
-const std::string kExamples = TAUEXT_EXAMPLES;
+const std::string kExamples = "bench/examples";
 
 Model arm7() {
   return simulated(load_mjcf(kExamples + "/arm7.xml", {"finger.*"}));

@@ -35,7 +35,7 @@ void PrintTo(const Arm& arm, std::ostream* out) {
 }
 
 Model model_of(const Arm& arm) {
-  return simulated(load_mjcf(fmt::format("{}/{}", TAUEXT_EXAMPLES, arm.file), {arm.lock}));
+  return simulated(load_mjcf(fmt::format("bench/examples/{}", arm.file), {arm.lock}));
 }
 
 // the largest |B qdd + bias + F + tau_ext - tau|, B and bias by our own dynamics

@@ -76,7 +76,7 @@ TEST(RecordPlain, StudiesSimulateWithoutMuJoCo) {
       }
     }
   }
-  const Model arm = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
+  const Model arm = simulated(load_mjcf("bench/examples/arm6.xml"));
   EXPECT_TRUE(plain_arm(arm).has_value());
   Scenario touched = touched_arm(scale_of(arm), TouchKind::kBlow, 7);
   touched.duration = 8;
@@ -105,7 +105,7 @@ TEST(RecordPlain, SeveralRunsAtOnceAreMuJoCosTruthEach) {
 }
 
 TEST(RecordPlain, ARunThatComesNearALimitGoesOnInMuJoCoAndTheOthersWithoutIt) {
-  const Model arm = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
+  const Model arm = simulated(load_mjcf("bench/examples/arm6.xml"));
   Scenario near = quiet(), free = quiet();
   near.duration = free.duration = 4;
   near.reference = [](double t, int joint) {  // of the first joint to 6.274 rad of 6.28
@@ -130,7 +130,7 @@ TEST(RecordPlain, WhatNeedsMuJoCoIsLeftToIt) {
   const Recording finer{.substeps = 2};
   EXPECT_EQ(difference(simulate(dry, quiet(), finer), simulate_plain<3>(dry, quiet(), finer)), 0);
   // a limit ends a run, whoever simulates it
-  const Model six = simulated(load_mjcf(std::string(TAUEXT_EXAMPLES) + "/arm6.xml"));
+  const Model six = simulated(load_mjcf("bench/examples/arm6.xml"));
   Scenario far = quiet();
   far.reference = [](double t, int joint) { return Reference{joint == 0 ? 4 * t : 0, 0, 0}; };
   Scenario near = quiet();

@@ -96,8 +96,7 @@ TEST_F(Time, ADivideInTheChainFailsThoughInstructionsAreTheSame) {
                  "--baselines", baselines()}),
             kSlower);
   EXPECT_TRUE(says("instructions do not explain it")) << text_;
-  const std::string subject =
-      read_whole(std::string(TAUEXT_SOURCE) + "/regression/test/subject_plugin.cc");
+  const std::string subject = read_whole("regression/test/subject_plugin.cc");
   const auto before = subject.substr(0, subject.find("double divisor"));
   EXPECT_TRUE(says(fmt::format("a step at regression/test/subject_plugin.cc:{}",
                                1 + std::count(before.begin(), before.end(), '\n'))))

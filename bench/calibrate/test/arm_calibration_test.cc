@@ -18,7 +18,7 @@
 namespace tauext::test {
 namespace {
 
-constexpr const char* kArm6 = TAUEXT_EXAMPLES "/arm6.xml";
+constexpr const char* kArm6 = "bench/examples/arm6.xml";
 
 // what its file does not know of one of its joints
 MeasuredJoint some_joint(int i) {

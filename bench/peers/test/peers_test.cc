@@ -13,7 +13,7 @@
 namespace tauext::peers::test {
 namespace {
 
-const std::string kExamples = TAUEXT_EXAMPLES;
+const std::string kExamples = "bench/examples";
 const std::string kModule = TAUEXT_BIN "/tauext_kdl.so";
 
 // KDL as an oracle: other people's code, another algorithm

@@ -131,7 +131,7 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
     EXPECT_GE(c.blows, 8) << c.condition;
     EXPECT_NEAR(c.hours(), 26. / 3600, 1e-5) << c.condition;
   }
-  for (const char* robot : {"", TAUEXT_EXAMPLES "/arm6.xml"}) {
+  for (const char* robot : {"", "bench/examples/arm6.xml"}) {
     const StudyRuns& runs = touched_runs(robot);
     EXPECT_EQ(std::count(runs.quick.begin(), runs.quick.end(), "hard"), 0) << "only if asked for";
     const PlantKey known = plant_of(runs.conditions.front());
@@ -158,7 +158,7 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
 }
 
 TEST(MovedOn, IsFromWhereTheMeetingBeganToWhereOurOwnModelSaysThePointIs) {
-  const StudyRuns& runs = touched_runs(TAUEXT_EXAMPLES "/arm6.xml");
+  const StudyRuns& runs = touched_runs("bench/examples/arm6.xml");
   const Job job{plant_of(condition(runs, "hard")), TouchKind::kSlowPush, 1, 0};
   const Model model = runs.model(job.plant);
   const Trace truth = std::move(simulated(runs, {&job, 1}, model).front());

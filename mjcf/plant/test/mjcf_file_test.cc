@@ -48,7 +48,7 @@ class MjcfFile : public testing::Test {
 
 TEST_F(MjcfFile, ComesBackAsMuJoCoItselfCompilesIt) {
   for (const char* name : {"wallmobot3", "testbed1"}) {
-    const std::string path = fmt::format(TAUEXT_MJCF "/{}.xml", name);
+    const std::string path = fmt::format("mjcf/{}.xml", name);
     const std::string bytes = compiled_mjcf(path);
     char why[1000];
     mjModel* const m = mj_loadXML(path.c_str(), nullptr, why, sizeof why);

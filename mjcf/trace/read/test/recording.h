@@ -70,9 +70,7 @@ class Recording : public testing::Test {
     out << std::ifstream(file, std::ios::binary).rdbuf();
     return out.str();
   }
-  static std::string fixture(const std::string& name) {
-    return std::string(TAUEXT_READ_FIXTURES) + "/" + name;
-  }
+  static std::string fixture(const std::string& name) { return "mjcf/trace/read/test/" + name; }
   // what reading each beginning of a file does, which must not be to end the program
   template <class Source>
   int beginnings_that_can_be_read(const std::string& bytes) const {
