@@ -15,8 +15,8 @@ using Context = std::vector<std::pair<std::string, std::string>>;
 /// What built this program: its version, the compiler and its flags.
 std::string build();
 
-/// The commit that this program was built of, with "-dirty" behind it where files were changed;
-/// "" outside of git.
+/// The commit that this program was built from, followed by "-dirty" if files had been changed; ""
+/// outside of git.
 const char* commit();
 
 /// First tauext (build(), MuJoCo's version and `run`), then date, commit (unless it was built

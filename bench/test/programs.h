@@ -18,7 +18,7 @@ namespace tauext::test {
 
 namespace fs = std::filesystem;
 
-// for whoever is in another folder; tests run at the top of the tree
+// absolute, because programs run in a folder of their own; tests start at the top of the tree
 inline const std::string kBin = fs::absolute(TAUEXT_BIN);
 inline const std::string kExamples = fs::absolute("bench/examples");
 inline const std::string kMjcf = fs::absolute("mjcf");

@@ -92,12 +92,12 @@ TEST_F(Speed, TheTestbedsEkfTakesLessThanHalfOfWallmobot3s) {
 TEST_F(Speed, TheNdobIsMoreThanTwiceAsFastAsTheEkf) {
   const double r = ratio(runner("ekf"), runner("ndob"), 2);
   std::printf("ekf / ndob: %.2f\n", r);
-  EXPECT_GE(r, 2) << "2.4 where it was measured";
+  EXPECT_GE(r, 2) << "2.4 where it was measured; the rest is for code layout and neighbours";
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
-  // of the EKF's 142 ns, or 178, which differs from start to start: 65 or 70 ns for observers, 80
-  // for the sliding mode, 200 for the Kalman filter; 16 ns of each judge the sample
+  // measured: 2.5, 2.5, 2.0, 2.0, 1.9 and 1.1, 1.9, 0.88, 0.8; the EKF's time differs from start to
+  // start, and the rest is for code layout and neighbours
   const std::pair<const char*, double> kLeast[] = {
       {"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 1.8}, {"mo3", 1.8},         {"smo", 1.7},
       {"aob", 0.9}, {"eso", 0.9},     {"dkf", 0.7}, {"dkf_adaptive", 0.6}};

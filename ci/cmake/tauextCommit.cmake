@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DSOURCE=FOLDER -DTO=FILE -P tauextCommit.cmake: commit() of bench/report/provenance.h, that of the tree, "" where there is no git
+# cmake -DSOURCE=FOLDER -DTO=FILE -P tauextCommit.cmake: writes FILE, a source with commit() of
+# bench/report/provenance.h, which returns the commit of the tree, or "" where there is no git
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
   OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(text "#include \"bench/report/provenance.h\"\nconst char* tauext::commit() { return \"${commit}\"; }\n")

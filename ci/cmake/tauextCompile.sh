@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# sh tauextCompile.sh COMPILER COMMAND... -o X.o -c SOURCE: compiles by COMMAND to assembly X.s, which stays for tauextLink.cmake,
-# and assembles it by COMPILER. So ccache, which may be in COMMAND, keeps the assembly; what -save-temps leaves it does not
-# keep. One instruction is encoded anew where it is found: as valgrind 3.19, which counts, does not know it, vmovq from a
-# register above 7 to one below 8.
+# sh tauextCompile.sh COMPILER WORDS COMMAND... -o X.o -c SOURCE: compiles with COMMAND to the assembly X.s, which stays there
+# for tauextLink.cmake, and assembles it with COMPILER WORDS. COMMAND may begin with ccache, which caches this step; it caches
+# nothing that is compiled with -save-temps. One instruction is encoded in another way where it occurs, because valgrind 3.19,
+# which counts instructions, does not know it: vmovq from a register above 7 to one below 8.
 set -eu
-compiler=$1
-shift
+compiler=$1 words=$2
+shift 2
 before=
 for argument; do
   shift
@@ -22,4 +22,5 @@ unknown='	vmovq	%xmm([89]|1[0-5]), %xmm[0-7]$'
 if grep -qE "$unknown" "$assembly"; then
   sed -i -E "s/$unknown/	{load}&/" "$assembly"
 fi
-exec "$compiler" -c "$assembly" -o "$object"
+# shellcheck disable=SC2086  # mostly there are none
+exec "$compiler" $words -c "$assembly" -o "$object"

@@ -4,14 +4,13 @@
 # tauext_add_plugin(target source...): a plug-in for tauext-gate, bin/target.so, with flags that are the same in every
 # build type, because two commits can only be compared if their flags are the same. Beside it bin/target.so.code/ holds
 # its assembly and how it is linked, of which the gate makes the layouts that it times.
-include_guard(GLOBAL)
+include_guard()
 include(CheckCXXSourceRuns)
 
 set(TAUEXT_CODE_FLAGS -falign-functions=64 -falign-loops=64)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND TAUEXT_CODE_FLAGS -falign-jumps=64 -falign-labels=16 -fno-gnu-unique)
 endif()
-set(TAUEXT_PLUGIN_SCRIPTS ${CMAKE_CURRENT_LIST_DIR})
 
 function(tauext_add_plugin target)
   if(NOT DEFINED TAUEXT_ARCH)
@@ -41,6 +40,6 @@ function(tauext_add_plugin target)
   target_compile_definitions(${target} PRIVATE TAUEXT_PLUGIN_FLAGS="${text}")
   set_target_properties(${target} PROPERTIES PREFIX "" UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
-    RULE_LAUNCH_COMPILE "sh \"${TAUEXT_PLUGIN_SCRIPTS}/tauextCompile.sh\" \"${CMAKE_CXX_COMPILER}\""
-    RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -P \"${TAUEXT_PLUGIN_SCRIPTS}/tauextLink.cmake\" --")
+    RULE_LAUNCH_COMPILE "sh \"${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tauextCompile.sh\" \"${CMAKE_CXX_COMPILER}\" \"${CMAKE_CXX_COMPILER_ARG1}\""
+    RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -P \"${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tauextLink.cmake\" --")
 endfunction()

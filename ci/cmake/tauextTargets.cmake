@@ -74,7 +74,7 @@ endfunction()
 # is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; a
 # source that is in both lists has tests that mean something else there. LONG
 # (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs. Tests run at the top of the
-# tree, so that no path of it is compiled in, and another checkout takes them from ccache.
+# tree. So no path of the checkout is compiled into them, and another checkout gets them from ccache.
 file(RELATIVE_PATH TAUEXT_BIN_FROM_TOP ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bin)
 function(tauext_test name)
   cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;DEFINITIONS;PROPERTIES" ${ARGN})

@@ -70,7 +70,7 @@ std::string function_name(const std::string& text, std::map<std::string, std::st
 }
 
 // "././estimators/ekf.h" and "build/release/./estimators/ekf.h", as a mapped prefix makes them, and
-// "build/release/../../estimators/ekf.h", as ccache does
+// "./build/release/../../estimators/ekf.h", because ccache makes paths relative
 std::string from_the_top(std::string_view file) {
   if (const auto top = file.rfind("/./"); top != file.npos) file.remove_prefix(top + 3);
   return std::filesystem::path(file).lexically_normal().generic_string();

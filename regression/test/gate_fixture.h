@@ -19,7 +19,7 @@ namespace tauext::gate::test {
 
 namespace fs = std::filesystem;
 
-inline const std::string kBin = fs::absolute(TAUEXT_BIN);  // tests run at the top of the tree
+inline const std::string kBin = fs::absolute(TAUEXT_BIN);  // for programs in other folders
 inline constexpr const char* kEntries = "testbed1/hold/subject$";
 
 inline std::string plugin(const std::string& name) {
