@@ -192,7 +192,8 @@ void require_match(const Rows& rows) {
   const auto wanted = entry_filter(filter == "all" ? "" : filter.substr(negative ? 1 : 0));
   if (std::none_of(rows.begin(), rows.end(),
                    [&](const Row& r) { return wanted(r.entry.name()) != negative; }))
-    throw std::invalid_argument("--benchmark_filter matches nothing; see tauext-bench --list");
+    throw std::invalid_argument(
+        fmt::format("--benchmark_filter={} matches nothing; see tauext-bench --list", filter));
 }
 
 // whether everything that was asked for by name ran somewhere; says what did not

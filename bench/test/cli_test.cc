@@ -100,7 +100,7 @@ TEST_F(Programs, AFilterThatMatchesNothingExitsWith2) {
       run("tauext-bench --benchmark_filter=nosuchthing --benchmark_out=r.json --lcm "
           "'file://x.lcm?mode=w'");
   EXPECT_EQ(o.code, 2);
-  EXPECT_TRUE(o.says("matches nothing")) << o.text;
+  EXPECT_TRUE(o.says("--benchmark_filter=nosuchthing matches nothing")) << o.text;
   EXPECT_FALSE(exists("r.json"));
   EXPECT_EQ(content("x.lcm"), "a log");
 }

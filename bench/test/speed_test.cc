@@ -96,8 +96,8 @@ TEST_F(Speed, TheNdobIsMoreThanTwiceAsFastAsTheEkf) {
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
-  // measured: 2.5, 2.5, 2.0, 2.0, 1.9 and 1.1, 1.9, 0.88, 0.8; the EKF's time differs from start to
-  // start, and the rest is for code layout and neighbours
+  // measured, in this order: 2.5, 2.5, 2.0, 2.0, 1.9, 1.1, 1.9, 0.88, 0.8; the EKF's time differs
+  // from start to start, and the rest is for code layout and neighbours
   const std::pair<const char*, double> kLeast[] = {
       {"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 1.8}, {"mo3", 1.8},         {"smo", 1.7},
       {"aob", 0.9}, {"eso", 0.9},     {"dkf", 0.7}, {"dkf_adaptive", 0.6}};

@@ -69,13 +69,15 @@ function(tauext_program name source)
   install(TARGETS ${name} OPTIONAL COMPONENT programs)  # ci/bench does not build them all
 endfunction()
 
+# Tests run at the top of the tree. So no path of the checkout is compiled into them, and another checkout gets them from
+# ccache.
+file(RELATIVE_PATH TAUEXT_BIN_FROM_TOP ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bin)
+
 # tauext_test(NAME SOURCES s... [RELEASE s...] LIBRARIES lib... [DEFINITIONS d...] [FAST] [PROPERTIES p v...] [LONG f]):
 # a GoogleTest program, at -O1 as the precompiled headers of tests are, which takes a fifth less to compile; FAST: as what
 # is measured. RELEASE are sources that take minutes without optimisation, or whose numbers no sanitizer has to see; a
 # source that is in both lists has tests that mean something else there. LONG
-# (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs. Tests run at the top of the
-# tree. So no path of the checkout is compiled into them, and another checkout gets them from ccache.
-file(RELATIVE_PATH TAUEXT_BIN_FROM_TOP ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bin)
+# (a filter of GoogleTest's) are tests that take a minute or more, which ci/test --long runs.
 function(tauext_test name)
   cmake_parse_arguments(ARG "FAST" "LONG" "SOURCES;RELEASE;LIBRARIES;DEFINITIONS;PROPERTIES" ${ARGN})
   if(TAUEXT_ONLY_RELEASE_TESTS)
