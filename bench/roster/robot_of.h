@@ -268,7 +268,7 @@ void RobotOf<N>::add_roster_detectors() {
   });
 }
 
-// compiled in the library, from kernels/file_robot_of.cc.in
+// compiled in the library, by the sources of kernels/
 extern template class RobotOf<1>;
 extern template class RobotOf<2>;
 extern template class RobotOf<3>;

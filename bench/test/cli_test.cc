@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -141,6 +142,25 @@ TEST_F(Programs, BenchPrintsItsTableThoughItsJsonCannotBeWritten) {
   EXPECT_EQ(o.code, 2);
   EXPECT_TRUE(o.says("wallmobot3/free/ndob ")) << o.text;
   EXPECT_TRUE(o.says("/dev/full: cannot write")) << o.text;
+}
+
+// an inline function's copy that the linker takes there may round otherwise
+TEST_F(Programs, TheFirstTableHasTheNumbersOfBench) {
+  const auto results = [&](const std::string& program) {
+    const Outcome o = run(program + " --benchmark_filter='step|hold' --benchmark_out=r" + kQuick);
+    EXPECT_EQ(o.code, 0) << o.text;
+    return nlohmann::json::parse(content("r")).at("benchmarks");
+  };
+  const auto first = results("../bench/run/suite/tauext-first-table"),
+             bench = results("tauext-bench");
+  ASSERT_EQ(first.size(), bench.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].at("name"), bench[i].at("name"));
+    for (const auto& [key, value] : first[i].items()) {
+      if (!value.is_number_float() || key.ends_with("_time") || key == "cpu_ns") continue;
+      EXPECT_NEAR(value, bench[i].at(key), 1e-9 + 1e-6 * std::abs(value.get<double>())) << key;
+    }
+  }
 }
 
 TEST_F(Programs, BenchNamesTheEstimatorThatRanNowhere) {

@@ -37,10 +37,11 @@ function(tauext_not_fuzzed target)
   endif()
 endfunction()
 
-# tauext_library(NAME [SOURCES s...] [HEADERS h...] [PUBLIC lib...] [PRIVATE lib...] [OPTIONS o...]): static, as
-# tauext_NAME and tauext::NAME; installed and exported with its headers, below the folder's own path.
+# tauext_library(NAME [SOURCES s...] [HEADERS h...] [PUBLIC lib...] [PRIVATE lib...] [OPTIONS o...] [WITH l]): static, as
+# tauext_NAME and tauext::NAME; installed and exported with its headers, below the folder's own path, as part of component
+# NAME or l.
 function(tauext_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
+  cmake_parse_arguments(ARG "" "WITH" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
   set(target tauext_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(tauext::${name} ALIAS ${target})
@@ -51,8 +52,12 @@ function(tauext_library name)
   if(fmt::fmt IN_LIST ARG_PRIVATE)
     target_precompile_headers(${target} REUSE_FROM tauext_precompiled)
   endif()
-  install(TARGETS ${target} EXPORT tauext-${name})
-  install(EXPORT tauext-${name} NAMESPACE tauext:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tauext)
+  if(ARG_WITH)
+    install(TARGETS ${target} EXPORT tauext-${ARG_WITH})
+  else()
+    install(TARGETS ${target} EXPORT tauext-${name})
+    install(EXPORT tauext-${name} NAMESPACE tauext:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tauext)
+  endif()
   tauext_headers(${ARG_HEADERS})
 endfunction()
 

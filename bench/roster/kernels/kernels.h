@@ -19,6 +19,15 @@ namespace tauext::detail {
 template <int N>
 std::unique_ptr<const Robot> file_robot_of(const std::string& name, const Model& model);
 
+// one of a model of ours; from named_robot_of.cc.in
+template <class M>
+std::unique_ptr<const Robot> named_robot_of(const std::string& name, const M& model,
+                                            const Model& file);
+template <>
+std::unique_ptr<const Robot> named_robot_of(const std::string&, const WallMoBot3&, const Model&);
+template <>
+std::unique_ptr<const Robot> named_robot_of(const std::string&, const Testbed1&, const Model&);
+
 // what was compiled for one level
 struct Kernels {
   using OfFile = std::unique_ptr<const Robot> (*)(const std::string& name, const Model& model);
@@ -26,8 +35,9 @@ struct Kernels {
   using Of = std::unique_ptr<const Robot> (*)(const std::string& name, const M& model,
                                               const Model& file);
 
-  const char* level;                           // as -march has it; "" is any processor
-  std::array<OfFile, kMaxFileJoints> of_file;  // by joints, less one
+  const char* level;  // as -march has it; "" is any processor
+  std::array<OfFile, kMaxFileJoints>
+      of_file;  // by joints, less one; null in ci/bench's first table
   Of<WallMoBot3> wallmobot3;
   Of<Testbed1> testbed1;
 };

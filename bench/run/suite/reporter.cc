@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/reporter.h"
+#include "bench/run/suite/reporter.h"
 
 #include <fmt/format.h>
 

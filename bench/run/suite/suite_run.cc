@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/suite_run.h"
+#include "bench/run/suite/suite_run.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -8,21 +8,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
-#include "bench/live/entry_tap.h"
 #include "bench/program/program.h"
-#include "bench/report/page.h"
 #include "bench/report/provenance.h"
-#include "bench/report/traces.h"
-#include "bench/roster/robots.h"
-#include "bench/run/reporter.h"
+#include "bench/run/suite/reporter.h"
 #include "bench/score/degradation.h"
 #include "bench/score/table.h"
-#include "bench/study/table3.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
 
@@ -41,11 +35,11 @@ std::string never_label(const Score& score) {
 }
 
 // score first; a wrong answer is an error and is not timed
-void run_entry(benchmark::State& state, Suite& suite, Row& row, const EntryTap& tap) {
+void run_entry(benchmark::State& state, Suite& suite, Row& row, const SuiteHooks& hooks) {
   if (row.score.empty()) {
     row.score = suite.score(row.entry);
     try {
-      if (tap.logs()) tap.log(row.entry, suite.run(row.entry), row.score);
+      if (hooks.scored) hooks.scored(row, suite.run(row.entry));
     } catch (const std::exception& e) {  // a full disk costs this entry, not the run
       row.score.error = e.what();
     }
@@ -90,21 +84,22 @@ void add_time(const Reporter& reporter, Row& row) {
   if (time != reporter.cpu_ns().end()) row.score.set(Metric::kCpu, time->second);
 }
 
-// the entry that is through, with its time
-void publish(const std::string& name, const Rows& rows, const Reporter& reporter, EntryTap& tap) {
+// tells of the entry that is through, with its time
+void tell(const std::string& name, const Rows& rows, const Reporter& reporter,
+          const SuiteHooks& hooks) {
   const auto it =
       std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.entry.name() == name; });
-  if (it == rows.end()) return;
+  if (it == rows.end() || !hooks.through) return;
   Row row = *it;
   add_time(reporter, row);
-  tap.publish(row.entry, row.score);
+  hooks.through(row);
 }
 
-void register_benchmarks(Suite& suite, Rows& rows, const EntryTap& tap) {
+void register_benchmarks(Suite& suite, Rows& rows, const SuiteHooks& hooks) {
   for (Row& row : rows) {
     benchmark::RegisterBenchmark(
         row.entry.name().c_str(),
-        [&suite, &row, &tap](benchmark::State& s) { run_entry(s, suite, row, tap); });
+        [&suite, &row, &hooks](benchmark::State& s) { run_entry(s, suite, row, hooks); });
   }
 }
 
@@ -135,54 +130,13 @@ void print_results(const SuiteRun& run, const Rows& rows) {
   fmt::print(words, "{}\n\n", provenance(run_line(run.suite)).front().second);
   print_tables(rows, run.format, tables_of(run));
   fmt::print(words, "{}", table_legend(rows));
-  const bool step = std::any_of(rows.begin(), rows.end(), [](const Row& r) {
-    return r.entry.group() == "wallmobot3/step";  // what Table III is about
-  });
-  if (run.paper && step) fmt::print(words, "\n{}", study::format_table3());
 }
 
-void write_json(const SuiteRun& run, const Reporter& reporter) {
+void write_json(const SuiteRun& run, const std::string& json) {
   AtomicFile file(*run.out);
-  file.write(reporter.json());
+  file.write(json);
   file.commit();
   fmt::print(words_of(run), "\n{}: results as JSON\n", *run.out);
-}
-
-using Forces = std::map<std::string, std::unique_ptr<const ArmForces>>;  // by robot
-
-// of all that are selected
-Forces forces_of(const SuiteRun& run, const Rows& rows) {
-  Forces all;
-  for (const Row& row : rows) {
-    const Robot& r = row.entry.robot();
-    auto& of_robot = all[r.name()];
-    if (run.wrench.empty() || of_robot) continue;
-    try {
-      of_robot = r.forces_at(run.wrench, r.dof() >= kJointsOfMoment);
-    } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(
-          fmt::format("--wrench: {}: {} (--robot selects one)", r.name(), e.what()));
-    }
-  }
-  return all;
-}
-
-void write_report(const SuiteRun& run, Suite& suite, const Rows& rows, const Reporter& reporter,
-                  const Forces& forces) {
-  Progress progress("drawing");
-  report::Traces traces(run.wrench);
-  for (const Row& row : rows) {
-    if (row.score.error.empty())
-      traces.add(row.entry, suite.run(row.entry), forces.at(row.entry.robot().name()).get());
-    progress.show(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()));
-  }
-  AtomicFile file(*run.report);
-  file.write(
-      report::page_of({checked_result(report::kOwnResults, reporter.json()),
-                       checked_result(report::kOwnTraces, traces.json(run_line(run.suite)))}));
-  file.commit();
-  progress.clear();
-  fmt::print(words_of(run), "\n{}: the report; open it in a browser\n", *run.report);
 }
 
 // that the filter selects something, before any file is written
@@ -216,23 +170,21 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
 
 }  // namespace
 
-int run_suite(const SuiteRun& run) {
+int run_suite(const SuiteRun& run, const SuiteHooks& hooks) {
   Rows rows;
   for (const Entry& e : entries(run.selection)) rows.push_back({e, {}});
   require_match(rows);
-  for (const auto& path : {run.out, run.report}) {
-    if (path) AtomicFile{*path};  // an unwritable path should not cost a run
-  }
+  if (run.out) AtomicFile{*run.out};  // an unwritable path should not cost a run
   const auto display = make_display(run.display);
+  if (hooks.begin) hooks.begin(rows);
   Suite suite(run.suite);
-  const Forces forces = forces_of(run, rows);
-  EntryTap tap(run.lcm, run.lcm_log.value_or(""));
-  register_benchmarks(suite, rows, tap);
-  for (const auto& [key, text] : provenance(run_line(run.suite))) {
+  register_benchmarks(suite, rows, hooks);
+  const std::string line = run_line(run.suite);
+  for (const auto& [key, text] : provenance(line)) {
     if (key != "date") benchmark::AddCustomContext(key, text);  // which it writes itself
   }
   Reporter reporter(display.get(), run.all ? static_cast<int>(rows.size()) : 0);
-  reporter.on_done = [&](const std::string& name) { publish(name, rows, reporter, tap); };
+  reporter.on_done = [&](const std::string& name) { tell(name, rows, reporter, hooks); };
   benchmark::RunSpecifiedBenchmarks(&reporter);
 
   std::erase_if(rows, [](const Row& r) { return r.score.empty(); });
@@ -240,11 +192,12 @@ int run_suite(const SuiteRun& run) {
   if (rows.empty()) throw std::invalid_argument("no benchmark ran: check --benchmark_repetitions");
   for (Row& row : rows) add_time(reporter, row);
   print_results(run, rows);
-  if (run.out) write_json(run, reporter);
-  if (run.report) write_report(run, suite, rows, reporter, forces);
-  if (!tap.heard()) say("no summary could be published");
+  const SuiteResults results{suite, rows, reporter.json(), line, words_of(run)};
+  if (hooks.printed) hooks.printed(results);
+  if (run.out) write_json(run, results.json);
+  if (hooks.written) hooks.written(results);
   const bool all = all_ran(run.selection, rows);
-  if (reporter.any_error() || !tap.heard()) return kAnswerIsNo;
+  if (reporter.any_error()) return kAnswerIsNo;
   return all ? kGood : kCouldNotRun;
 }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/suite/benchmark_flags.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "bench/program/program.h"
+
+namespace tauext {
+namespace {
+
+// takes --name=value (or --name value) out of argv
+std::optional<std::string> take_flag(std::vector<std::string>& args, const std::string& name) {
+  for (std::size_t i = 1; i < args.size(); ++i) {
+    if (args[i].starts_with(name + "=")) {
+      std::string value = args[i].substr(name.size() + 1);
+      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i));
+      return value;
+    }
+    if (args[i] == name && i + 1 < args.size()) {
+      std::string value = args[i + 1];
+      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i),
+                 args.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+      return value;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+BenchmarkFlags::BenchmarkFlags(int argc, char** argv) : texts_(argv, argv + argc) {
+  out = take_flag(texts_, "--benchmark_out");
+  format = take_flag(texts_, "--benchmark_format");
+  out_format_ = take_flag(texts_, "--benchmark_out_format");
+  const auto given = [&](std::string_view flag) {
+    return std::any_of(texts_.begin(), texts_.end(),
+                       [&](const std::string& text) { return text.starts_with(flag); });
+  };
+  const bool help = given("--help") || given("-h");
+  if (!help && !given("--benchmark_min_time"))  // its own 0.5 s would be minutes
+    texts_.insert(texts_.begin() + 1, "--benchmark_min_time=0.05");
+  list_tests_ = given("--benchmark_list_tests");
+  for (std::string& text : texts_) pointers_.push_back(text.data());
+  argc_ = static_cast<int>(pointers_.size());
+  pointers_.push_back(nullptr);
+  if (!help) benchmark::Initialize(&argc_, pointers_.data());
+}
+
+void BenchmarkFlags::require_known() const {
+  for (int i = 1; i < argc_; ++i) {
+    const std::string_view flag = pointers_[static_cast<std::size_t>(i)];
+    if (!flag.starts_with("--benchmark_")) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: {}", flag,
+        flag.starts_with("--benchmark_context=")
+            ? "write KEY=VALUE,KEY=VALUE; a value cannot contain a comma"
+            : "Google Benchmark does not know this flag, or not with this value; see --help"));
+  }
+  if (out_format_.value_or("json") == "json") return;
+  throw std::invalid_argument(
+      "--benchmark_out_format: json is the only format; rows have different counters");
+}
+
+std::string BenchmarkFlags::filter() const {
+  const std::string filter = benchmark::GetBenchmarkFilter();
+  if (filter.empty() || filter == "." || filter == "all") return "";
+  const std::string pattern = filter.starts_with('-') ? filter.substr(1) : filter;
+  if (const std::string trouble = regular_expression(pattern); !trouble.empty())
+    throw std::invalid_argument(fmt::format("--benchmark_filter={}: {}", filter, trouble));
+  return filter;
+}
+
+void BenchmarkFlags::put(SuiteRun& run) const {
+  run.all = filter().empty();
+  run.list_tests = list_tests_;
+  run.display = format;
+  run.out = out;
+}
+
+}  // namespace tauext
