@@ -66,7 +66,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, const BenchmarkF
   const bool suite = !study && !listing && !golden && !commands;
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   if (report) report::require_page(*report, "--report");
-  if (report && report == benchmark.out)
+  if (report && report == benchmark.out())
     throw std::invalid_argument(fmt::format(
         "--report and --benchmark_out both name {}; the page and the JSON need two files",
         *report));
@@ -81,7 +81,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, const BenchmarkF
                {"--estimator"});
   require_mode(app, seeds, "--seeds", {"--against"});
   require_mode(app, !golden && !seeds, "one seed, not with --seeds or --golden", {"--seed"});
-  if (!suite && (benchmark.out || benchmark.format)) {
+  if (!suite && (benchmark.out() || benchmark.format())) {
     throw std::invalid_argument(
         "--benchmark_out and --benchmark_format go with the suite alone; a study has --out and "
         "--format");
@@ -131,7 +131,7 @@ int run(const CLI::App& app, Flags& flags, const BenchmarkFlags& benchmark) {
                  .selection = flags.selection,
                  .format = table_format(flags.studies.format.value_or("text"))};
   benchmark.put(suite);
-  return run_suite(suite, flags.outputs);
+  return run_suite_with_outputs(suite, flags.outputs);
 }
 
 void add_selection_flags(CLI::App& app, Flags& flags) {
@@ -204,15 +204,15 @@ int bench_main(int argc, char** argv) {
       "tauext-bench");
   Flags flags;
   add_flags(app, flags);
-  app.footer(
-      "Of tauext-record: --scenarios --loadcell --degrade --velocity_noise --kp --kd. Google "
-      "Benchmark's:\n"
-      "  --benchmark_filter=REGEX --benchmark_out=FILE (JSON) --benchmark_min_time=0.05\n"
-      "  --benchmark_repetitions=N --benchmark_format=console|json");
+  app.footer(std::string("Of tauext-record: --scenarios --loadcell --degrade --velocity_noise --kp "
+                         "--kd. Google Benchmark's:\n") +
+             kBenchmarkHelp);
   BenchmarkFlags benchmark(argc, argv);
   app.preparse_callback([&](std::size_t) { benchmark.require_known(); });
-  return run_program(app, benchmark.argc(), benchmark.argv(),
-                     [&] { return run(app, flags, benchmark); });
+  return run_program(app, benchmark.argc(), benchmark.argv(), [&] {
+    benchmark.require_values();
+    return run(app, flags, benchmark);
+  });
 }
 
 }  // namespace tauext

@@ -59,7 +59,7 @@ void write_report(const SuiteOutputs& outputs, const SuiteResults& results, cons
   }
   AtomicFile file(*outputs.report);
   file.write(report::page_of({checked_result(report::kOwnResults, results.json),
-                              checked_result(report::kOwnTraces, traces.json(results.run))}));
+                              checked_result(report::kOwnTraces, traces.json(results.line))}));
   file.commit();
   progress.clear();
   fmt::print(results.words, "\n{}: the report; open it in a browser\n", *outputs.report);
@@ -67,7 +67,8 @@ void write_report(const SuiteOutputs& outputs, const SuiteResults& results, cons
 
 }  // namespace
 
-int run_suite(const SuiteRun& run, const SuiteOutputs& outputs) {
+int run_suite_with_outputs(const SuiteRun& run, const SuiteOutputs& outputs) {
+  bool ran = false;
   Forces forces;
   std::optional<EntryTap> tap;
   SuiteHooks hooks;
@@ -81,11 +82,14 @@ int run_suite(const SuiteRun& run, const SuiteOutputs& outputs) {
       tap->log(row.entry, of, row.score);
     };
   hooks.through = [&](const Row& row) { tap->publish(row.entry, row.score); };
-  if (outputs.paper) hooks.printed = print_table3;
+  hooks.printed = [&](const SuiteResults& results) {
+    ran = true;
+    if (outputs.paper) print_table3(results);
+  };
   if (outputs.report)
     hooks.written = [&](const SuiteResults& results) { write_report(outputs, results, forces); };
   const int code = run_suite(run, hooks);
-  if (run.list_tests || tap->heard()) return code;
+  if (!ran || tap->heard()) return code;
   say("no summary could be published");
   return kAnswerIsNo;
 }

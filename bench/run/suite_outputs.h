@@ -10,7 +10,7 @@
 
 namespace tauext {
 
-/// What else becomes of it.
+/// What a run leaves beside its tables and its JSON.
 struct SuiteOutputs {
   bool paper = false;                  ///< whether Table III is printed beside ours
   std::optional<std::string> report;   ///< file for the page of the results
@@ -19,8 +19,9 @@ struct SuiteOutputs {
   std::optional<std::string> lcm_log;  ///< folder for logs
 };
 
-/// run_suite() with these.
+/// run_suite(), with these.
+/// @returns the exit code
 /// @throws as run_suite() does, and std::invalid_argument for a point that a robot does not have
-int run_suite(const SuiteRun& run, const SuiteOutputs& outputs);
+int run_suite_with_outputs(const SuiteRun& run, const SuiteOutputs& outputs);
 
 }  // namespace tauext

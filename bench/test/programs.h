@@ -64,6 +64,7 @@ class Programs : public testing::Test {
   fs::path folder_;
 };
 
+inline constexpr const char* kFirstTable = "../bench/run/suite/tauext-first-table";  // from kBin
 inline constexpr const char* kQuick = " --benchmark_min_time=0.001";
 
 }  // namespace tauext::test

@@ -38,8 +38,8 @@ function(tauext_not_fuzzed target)
 endfunction()
 
 # tauext_library(NAME [SOURCES s...] [HEADERS h...] [PUBLIC lib...] [PRIVATE lib...] [OPTIONS o...] [WITH l]): static, as
-# tauext_NAME and tauext::NAME; installed and exported with its headers, below the folder's own path, as part of component
-# NAME or l.
+# tauext_NAME and tauext::NAME; installed and exported with its headers, below the folder's own path, as component NAME.
+# WITH l: as a part of component l.
 function(tauext_library name)
   cmake_parse_arguments(ARG "" "WITH" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
   set(target tauext_${name})

@@ -19,14 +19,11 @@ namespace tauext::detail {
 template <int N>
 std::unique_ptr<const Robot> file_robot_of(const std::string& name, const Model& model);
 
-// one of a model of ours; from named_robot_of.cc.in
-template <class M>
-std::unique_ptr<const Robot> named_robot_of(const std::string& name, const M& model,
+// one of our robots, by its model; from named_robot_of.cc.in
+std::unique_ptr<const Robot> named_robot_of(const std::string& name, const WallMoBot3& model,
                                             const Model& file);
-template <>
-std::unique_ptr<const Robot> named_robot_of(const std::string&, const WallMoBot3&, const Model&);
-template <>
-std::unique_ptr<const Robot> named_robot_of(const std::string&, const Testbed1&, const Model&);
+std::unique_ptr<const Robot> named_robot_of(const std::string& name, const Testbed1& model,
+                                            const Model& file);
 
 // what was compiled for one level
 struct Kernels {
@@ -36,8 +33,8 @@ struct Kernels {
                                               const Model& file);
 
   const char* level;  // as -march has it; "" is any processor
-  std::array<OfFile, kMaxFileJoints>
-      of_file;  // by joints, less one; null in ci/bench's first table
+  // by joints, less one; null in a program without robots from files
+  std::array<OfFile, kMaxFileJoints> of_file;
   Of<WallMoBot3> wallmobot3;
   Of<Testbed1> testbed1;
 };

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "bench/program/program.h"
+#include "bench/run/suite/suite_run.h"
 
 namespace tauext {
 namespace {
@@ -34,8 +35,8 @@ std::optional<std::string> take_flag(std::vector<std::string>& args, const std::
 }  // namespace
 
 BenchmarkFlags::BenchmarkFlags(int argc, char** argv) : texts_(argv, argv + argc) {
-  out = take_flag(texts_, "--benchmark_out");
-  format = take_flag(texts_, "--benchmark_format");
+  out_ = take_flag(texts_, "--benchmark_out");
+  format_ = take_flag(texts_, "--benchmark_format");
   out_format_ = take_flag(texts_, "--benchmark_out_format");
   const auto given = [&](std::string_view flag) {
     return std::any_of(texts_.begin(), texts_.end(),
@@ -61,6 +62,13 @@ void BenchmarkFlags::require_known() const {
             ? "write KEY=VALUE,KEY=VALUE; a value cannot contain a comma"
             : "Google Benchmark does not know this flag, or not with this value; see --help"));
   }
+}
+
+void BenchmarkFlags::require_values() const {
+  const std::string expression = filter();
+  const std::string pattern = expression.starts_with('-') ? expression.substr(1) : expression;
+  if (const std::string trouble = regular_expression(pattern); !trouble.empty())
+    throw std::invalid_argument(fmt::format("--benchmark_filter={}: {}", expression, trouble));
   if (out_format_.value_or("json") == "json") return;
   throw std::invalid_argument(
       "--benchmark_out_format: json is the only format; rows have different counters");
@@ -68,18 +76,14 @@ void BenchmarkFlags::require_known() const {
 
 std::string BenchmarkFlags::filter() const {
   const std::string filter = benchmark::GetBenchmarkFilter();
-  if (filter.empty() || filter == "." || filter == "all") return "";
-  const std::string pattern = filter.starts_with('-') ? filter.substr(1) : filter;
-  if (const std::string trouble = regular_expression(pattern); !trouble.empty())
-    throw std::invalid_argument(fmt::format("--benchmark_filter={}: {}", filter, trouble));
-  return filter;
+  return filter == "." || filter == "all" ? "" : filter;
 }
 
 void BenchmarkFlags::put(SuiteRun& run) const {
-  run.all = filter().empty();
+  run.filter = filter();
   run.list_tests = list_tests_;
-  run.display = format;
-  run.out = out;
+  run.display = format_;
+  run.out = out_;
 }
 
 }  // namespace tauext

@@ -87,9 +87,10 @@ void add_time(const Reporter& reporter, Row& row) {
 // tells of the entry that is through, with its time
 void tell(const std::string& name, const Rows& rows, const Reporter& reporter,
           const SuiteHooks& hooks) {
+  if (!hooks.through) return;
   const auto it =
       std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.entry.name() == name; });
-  if (it == rows.end() || !hooks.through) return;
+  if (it == rows.end()) return;
   Row row = *it;
   add_time(reporter, row);
   hooks.through(row);
@@ -140,10 +141,9 @@ void write_json(const SuiteRun& run, const std::string& json) {
 }
 
 // that the filter selects something, before any file is written
-void require_match(const Rows& rows) {
-  const std::string filter = benchmark::GetBenchmarkFilter();
+void require_match(const std::string& filter, const Rows& rows) {
   const bool negative = filter.starts_with('-');
-  const auto wanted = entry_filter(filter == "all" ? "" : filter.substr(negative ? 1 : 0));
+  const auto wanted = entry_filter(filter.substr(negative ? 1 : 0));
   if (std::none_of(rows.begin(), rows.end(),
                    [&](const Row& r) { return wanted(r.entry.name()) != negative; }))
     throw std::invalid_argument(
@@ -173,7 +173,7 @@ bool all_ran(const Selection& wanted, const Rows& rows) {
 int run_suite(const SuiteRun& run, const SuiteHooks& hooks) {
   Rows rows;
   for (const Entry& e : entries(run.selection)) rows.push_back({e, {}});
-  require_match(rows);
+  require_match(run.filter, rows);
   if (run.out) AtomicFile{*run.out};  // an unwritable path should not cost a run
   const auto display = make_display(run.display);
   if (hooks.begin) hooks.begin(rows);
@@ -183,7 +183,7 @@ int run_suite(const SuiteRun& run, const SuiteHooks& hooks) {
   for (const auto& [key, text] : provenance(line)) {
     if (key != "date") benchmark::AddCustomContext(key, text);  // which it writes itself
   }
-  Reporter reporter(display.get(), run.all ? static_cast<int>(rows.size()) : 0);
+  Reporter reporter(display.get(), run.filter.empty() ? static_cast<int>(rows.size()) : 0);
   reporter.on_done = [&](const std::string& name) { tell(name, rows, reporter, hooks); };
   benchmark::RunSpecifiedBenchmarks(&reporter);
 

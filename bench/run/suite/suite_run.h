@@ -16,12 +16,12 @@
 
 namespace tauext {
 
-/// What tauext-bench was asked for.
+/// What the suite is asked for.
 struct SuiteRun {
   SuiteOptions suite;
   Selection selection;
-  bool all = true;          ///< whether Google Benchmark's filter lets every entry pass
-  bool list_tests = false;  ///< whether Google Benchmark lists and runs nothing
+  std::string filter;                       ///< Google Benchmark's: BenchmarkFlags::filter()
+  bool list_tests = false;                  ///< whether Google Benchmark lists and runs nothing
   TableFormat format = TableFormat::kText;  ///< of the tables
   std::optional<std::string> display;       ///< Google Benchmark's own format on standard output
   std::optional<std::string> out;           ///< file for the results as JSON
@@ -32,7 +32,7 @@ struct SuiteResults {
   Suite& suite;
   const std::vector<Row>& rows;  ///< that ran
   std::string json;              ///< all of it
-  std::string run;               ///< as of provenance()
+  std::string line;              ///< what they depend on, for provenance()
   std::FILE* words;              ///< where sentences go
 };
 
@@ -42,9 +42,11 @@ struct SuiteHooks {
   std::function<void(const std::vector<Row>&)> begin;
   /// An entry that was scored, and what was judged. What it throws becomes the entry's error.
   std::function<void(const Row&, const Suite::Run&)> scored;
-  std::function<void(const Row&)> through;           ///< an entry that was timed, too
-  std::function<void(const SuiteResults&)> printed;  ///< once the tables are
-  std::function<void(const SuiteResults&)> written;  ///< once the JSON is
+  /// An entry that is done, with its time if it was timed.
+  std::function<void(const Row&)> through;
+  std::function<void(const SuiteResults&)> printed;  ///< after the tables
+  /// After that, and after the JSON if a file was asked for.
+  std::function<void(const SuiteResults&)> written;
 };
 
 /// Scores and times the entries, and prints their tables.
