@@ -14,22 +14,20 @@
 namespace tauext {
 namespace {
 
-// takes --name=value (or --name value) out of argv
+// takes every --name=value (or --name value) out of argv; the last one counts
 std::optional<std::string> take_flag(std::vector<std::string>& args, const std::string& name) {
-  for (std::size_t i = 1; i < args.size(); ++i) {
-    if (args[i].starts_with(name + "=")) {
-      std::string value = args[i].substr(name.size() + 1);
-      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i));
-      return value;
+  std::optional<std::string> value;
+  for (std::size_t i = 1; i < args.size();) {
+    const bool with_value = args[i].starts_with(name + "=");
+    if (!with_value && (args[i] != name || i + 1 == args.size())) {
+      ++i;
+      continue;
     }
-    if (args[i] == name && i + 1 < args.size()) {
-      std::string value = args[i + 1];
-      args.erase(args.begin() + static_cast<std::ptrdiff_t>(i),
-                 args.begin() + static_cast<std::ptrdiff_t>(i) + 2);
-      return value;
-    }
+    value = with_value ? args[i].substr(name.size() + 1) : args[i + 1];
+    const auto at = args.begin() + static_cast<std::ptrdiff_t>(i);
+    args.erase(at, at + (with_value ? 1 : 2));
   }
-  return std::nullopt;
+  return value;
 }
 
 }  // namespace
