@@ -96,11 +96,12 @@ TEST_F(Speed, TheNdobIsMoreThanTwiceAsFastAsTheEkf) {
 }
 
 TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
-  // measured, in this order: 2.5, 2.5, 2.0, 2.0, 1.9, 1.1, 1.9, 0.88, 0.8; the EKF's time differs
-  // from start to start, and the rest is for code layout and neighbours
+  // measured, in this order: 2.5, 2.5, 2.0, 2.0, 1.9, 1.1, 1.9, 0.88, 0.8, and on another processor
+  // 2.25, 2.27, 1.85, 1.85, 1.75, 1.35, 1.69, 0.77, 0.71; the EKF's time differs from start to
+  // start, and the rest, a tenth, is for code layout and neighbours
   const std::pair<const char*, double> kLeast[] = {
-      {"mo1", 2.2}, {"ndob_wb", 2.2}, {"mo2", 1.8}, {"mo3", 1.8},         {"smo", 1.7},
-      {"aob", 0.9}, {"eso", 0.9},     {"dkf", 0.7}, {"dkf_adaptive", 0.6}};
+      {"mo1", 2.0}, {"ndob_wb", 2.0}, {"mo2", 1.65}, {"mo3", 1.65},        {"smo", 1.55},
+      {"aob", 0.9}, {"eso", 0.9},     {"dkf", 0.65}, {"dkf_adaptive", 0.6}};
   for (const auto& [name, least] : kLeast) {
     const double r = ratio(runner("ekf"), runner(name), least);
     std::printf("ekf / %s: %.2f\n", name, r);
