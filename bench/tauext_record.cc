@@ -78,7 +78,7 @@ Supervisor supervisor_of(const Robot& robot, const std::string& stop, const Driv
 
 // in the layout that is asked for, or as its name ends
 void write(const Trace& trace, const Flags& f, const Robot& r) {
-  if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), f.out);
+  if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), r.joints(), f.out);
   if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
   if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
   LogBuffer log;
@@ -97,7 +97,8 @@ int record_set(const Flags& f) {
                                                           {"slow_push", TouchKind::kSlowPush},
                                                           {"brisk_push", TouchKind::kBriskPush},
                                                           {"clamp", TouchKind::kClamp}};
-  const study::StudyRuns& runs = study::touched_runs(with_lock(f.robot, f.lock));
+  const std::string arm = with_lock(f.robot, f.lock);
+  const study::StudyRuns& runs = study::touched_runs(arm);
   const std::vector<std::uint64_t> seeds = seeds_of(f.seeds);
   study::Condition condition;
   condition.panel = runs.carries;

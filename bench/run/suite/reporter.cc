@@ -8,6 +8,18 @@
 #include "bench/score/metric_list.h"
 
 namespace tauext {
+namespace {
+
+// Google Benchmark 1.8 renamed it
+template <class Run>
+bool has_failed(const Run& run) {
+  if constexpr (requires { run.error_occurred; })
+    return run.error_occurred;
+  else
+    return static_cast<bool>(run.skipped);
+}
+
+}  // namespace
 
 Reporter::Reporter(benchmark::BenchmarkReporter* display, int total)
     : display_(display), total_(total) {
@@ -23,7 +35,7 @@ void Reporter::ReportRuns(const std::vector<Run>& runs) {
   std::vector<Run> finite = runs;
   for (Run& run : finite) {
     std::erase_if(run.counters, [](const auto& c) { return !std::isfinite(c.second.value); });
-    any_error_ = any_error_ || run.error_occurred;
+    any_error_ = any_error_ || has_failed(run);
     const auto time = run.counters.find(key_of(Metric::kCpu));
     if (time == run.counters.end()) continue;
     const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";

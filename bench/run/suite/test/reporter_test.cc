@@ -27,12 +27,10 @@ TEST(Reporter, ItsJsonIsValidWhateverTheCountersHold) {
   Result odd = run_of("a/b/odd", 3);
   odd.counters["cv"] = benchmark::Counter(std::nan(""));
   odd.counters["settling_s"] = benchmark::Counter(-INFINITY);
-  Result failed = run_of("a/b/failed", 1);
-  failed.error_occurred = true;
-  failed.error_message = "wrong \"answer\"";
   reporter.ReportRuns({odd});
-  reporter.ReportRuns({failed});
-  reporter.Finalize();
+  benchmark::RegisterBenchmark(
+      "a/b/failed", [](benchmark::State& state) { state.SkipWithError("wrong \"answer\""); });
+  benchmark::RunSpecifiedBenchmarks(&reporter, "a/b/failed");  // ends with Finalize()
   const auto json = nlohmann::json::parse(reporter.json());  // throws on a bare NaN
   ASSERT_EQ(json["benchmarks"].size(), 2u);
   EXPECT_EQ(json["benchmarks"][0]["cpu_ns"], 3);
