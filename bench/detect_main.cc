@@ -80,7 +80,7 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   refuse_twice("recording", files);
   std::vector<study::FreeRecording> recordings;
   for (const std::string& path : f.logs) {
-    RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, r.joints(), true});
     log.require_consistent(path);
     usable = usable && log.usable();
     r.make_torques(log.trace);

@@ -106,7 +106,7 @@ std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
                              const std::vector<std::string>& paths, bool& usable) {
   std::vector<Trace> all;
   for (const std::string& path : paths) {
-    RecordedLog log = read_any_log(path, {f.channel, f.columns, true});
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, arm.joint_names(), true});
     log.require_consistent(path);
     usable = usable && log.usable();
     if (log.trace.dof() != arm.dof())

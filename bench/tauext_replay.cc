@@ -188,7 +188,7 @@ int replay(Flags& f) {
   const std::vector<DetectorSettings> settings = settings_of(f, r);
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
-  const LogOptions options{f.channel, f.columns, true};
+  const LogOptions options{f.channel, f.columns, r.joints(), true};
   LogReader log(f.log, options);
   const RecordingContents& contents = log.contents();
   r.require_joints(contents.dof, f.log);

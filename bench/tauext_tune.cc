@@ -153,7 +153,7 @@ class Recordings {
  public:
   Recordings(const Flags& f, const Robot& r, const std::vector<std::string>& paths) : robot_(r) {
     for (const std::string& path : paths) {
-      logs_.push_back(read_any_log(path, {f.channel, f.columns, true}));
+      logs_.push_back(read_any_log(path, {f.channel, f.columns, r.joints(), true}));
       logs_.back().require_consistent(path);
       r.require_joints(logs_.back().trace, path);
       r.make_torques(logs_.back().trace);

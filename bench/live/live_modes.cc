@@ -56,7 +56,7 @@ DetectorsOf thresholds_of(const Options& o) {
 
 // samples of a log, to be played
 RecordedLog read_samples(const Options& o, const Robot& r) {
-  RecordedLog log = read_any_log(o.from, {o.channel, o.columns, true});
+  RecordedLog log = read_any_log(o.from, {o.channel, o.columns, r.joints(), true});
   r.make_torques(log.trace);
   return log;
 }

@@ -165,7 +165,7 @@ struct LogReader::Impl {
       source = lcm.get();
     } else {
       rows = std::make_unique<RecordingReader>(
-          path, RecordingOptions{.columns = o.columns, .topic = o.channel});
+          path, RecordingOptions{.columns = o.columns, .topic = o.channel, .joints = o.joints});
       source = rows.get();
     }
     contents = source->contents();

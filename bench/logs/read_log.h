@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mjcf/trace/read/recording.h"
 #include "mjcf/trace/trace.h"
@@ -19,6 +20,7 @@ struct LogOptions {
   std::string channel;
   /// of any other log a preset or a TOML file of mjcf/trace/read/column_map.h; "": ours
   std::string columns;
+  std::vector<std::string> joints;  ///< the robot's, as RecordingOptions has them
   bool currents =
       false;  ///< whether tau may be currents, which LogReader::use_gains() or Robot::make_torques() then mends
 };

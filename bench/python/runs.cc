@@ -53,13 +53,14 @@ py::object or_none(const Eigen::MatrixXd& m) {
 
 Trace read(const std::string& path, const std::string& columns, const std::string& channel,
            const std::string& robot_name) {
-  RecordedLog log =
-      read_any_log(path, {.channel = channel, .columns = columns, .currents = !robot_name.empty()});
+  const Robot* const of = robot_name.empty() ? nullptr : &robot(robot_name);
+  LogOptions options{.channel = channel, .columns = columns, .currents = of != nullptr};
+  if (of != nullptr) options.joints = of->joints();
+  RecordedLog log = read_any_log(path, options);
   log.require_consistent(path);
-  if (!robot_name.empty()) {
-    const Robot& of = robot(robot_name);
-    of.make_torques(log.trace);
-    of.require_joints(log.trace, path);
+  if (of != nullptr) {
+    of->make_torques(log.trace);
+    of->require_joints(log.trace, path);
   }
   return std::move(log.trace);
 }

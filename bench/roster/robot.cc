@@ -78,6 +78,10 @@ std::string Robot::label() const {
   return (taken ? path.filename() : path.stem()).string();
 }
 
+std::vector<std::string> Robot::joints() const {
+  return file_ ? tree_of(file_).joint_names() : std::vector<std::string>();
+}
+
 Eigen::VectorXd Robot::small_torque() const {
   return file_ ? Eigen::VectorXd(usual_torque_ / 240) : Eigen::VectorXd::Constant(dof_, 5);
 }

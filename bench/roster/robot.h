@@ -51,6 +51,9 @@ class Robot {
   /// so, ending.
   std::string label() const;
   int dof() const { return dof_; }  ///< joints
+  /// Their names in a robot's file, by which recordings call them, too; else empty, and where q
+  /// mixes joints.
+  std::vector<std::string> joints() const;
 
   /// [N m] that matters little, of each joint: 5, or of a file's robot 1/240 of
   /// ArmScale::usual_torque.

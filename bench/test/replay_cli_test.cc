@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "bench/test/programs.h"
+#include "mjcf/trace/read/layout_writer.h"
+#include "mjcf/trace/read/recording.h"
 
 namespace tauext::test {
 namespace {
@@ -178,6 +180,41 @@ TEST_F(Programs, ReplayOfALogInWrongUnitsIsAnErrorAndNotAnEstimate) {
   const Outcome o = run("tauext-replay --robot testbed1 --estimator ekf,ndob ms.csv --out est.csv");
   EXPECT_EQ(o.code, 1) << o.text;
   EXPECT_TRUE(o.says("Samples are 1 s apart")) << o.text;
+}
+
+// ROS sorts the names of a message by the alphabet
+TEST_F(Programs, ReplayFindsTheJointsOfABagByName) {
+  const std::string arm = " --robot " + kExamples + "/arm6.xml";
+  run("tauext-record" + arm + " --scenario in_motion --out log.csv");
+  SkippedRows skipped;
+  const Trace log = read_recording((folder_ / "log.csv").string(), {}, &skipped);
+  const std::vector<std::string> names = {"shoulder_pan", "shoulder_lift", "elbow",
+                                          "wrist1",       "wrist2",        "wrist3"};
+  const auto estimates_of = [&](const std::vector<int>& order) {
+    Trace turned = log;
+    turned.q = log.q(order, Eigen::placeholders::all);
+    turned.qd = log.qd(order, Eigen::placeholders::all);
+    turned.tau = log.tau(order, Eigen::placeholders::all);
+    std::vector<std::string> turned_names;
+    for (const int j : order) turned_names.push_back(names[static_cast<std::size_t>(j)]);
+    write_layout(turned, "joint_state", {}, turned_names, (folder_ / "log.db3").string());
+    const Outcome o = run("tauext-replay log.db3" + arm + " --estimator mo2 --out est.csv");
+    EXPECT_EQ(o.code, 0) << o.text;
+    return content("est.csv");
+  };
+  const std::string plain = estimates_of({0, 1, 2, 3, 4, 5});
+  EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 1 + log.size());
+  EXPECT_TRUE(estimates_of({2, 1, 0, 3, 4, 5}) == plain) << "by the alphabet";
+  EXPECT_TRUE(estimates_of({5, 3, 1, 0, 4, 2}) == plain);
+
+  const Outcome other = run("tauext-replay log.db3 --robot " + kExamples +
+                            "/arm7.xml --lock 'finger.*' --estimator mo2 --out other.csv");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_TRUE(other.says("never name joint1, joint2, joint3, joint4, joint5, joint6, joint7; the "
+                         "robot has joint1, ") &&
+              other.says("and they name elbow, shoulder_lift, shoulder_pan, wrist1"))
+      << other.text;
+  EXPECT_FALSE(exists("other.csv"));
 }
 
 // [kB] the peak memory of one of the programs

@@ -134,6 +134,16 @@ bool ArmTree::slides(int i) const {
   return joints[static_cast<std::size_t>(leader)].kind == TreeJoint::Kind::kSlide;
 }
 
+std::vector<std::string> ArmTree::joint_names() const {
+  std::vector<std::string> all;
+  for (int i = 0; i < dof(); ++i) {
+    const int leader = leaders[static_cast<std::size_t>(i)];
+    if (drho.row(leader) != Eigen::RowVectorXd::Unit(dof(), i) || rho0[leader] != 0) return {};
+    all.push_back(names[static_cast<std::size_t>(leader)]);
+  }
+  return std::count(all.begin(), all.end(), "") == 0 ? all : std::vector<std::string>();
+}
+
 const ArmPoint& ArmTree::point(const std::string& name) const {
   return find_known(points, "site", name, [](const auto& p) { return p.first; }).second;
 }

@@ -57,6 +57,8 @@ struct ArmTree {
   Eigen::VectorXd friction_rate;
   /// [N m/A] of the drive of each coordinate; 0 if nobody knows
   Eigen::VectorXd gain;
+  /// [N m] or [N] what the drive of each coordinate can do; 0 where the file does not say
+  Eigen::VectorXd rated;
   Vec<3> base = Vec<3>::Zero();  ///< [m] the tree's origin in the world, whose axes it has
   /// Sites, and origins of bodies, that joints move; and kEndEffector.
   std::map<std::string, ArmPoint> points;
@@ -65,6 +67,8 @@ struct ArmTree {
 
   int dof() const { return static_cast<int>(drho.cols()); }  ///< coordinates
   bool slides(int i) const;                                  ///< whether q_i is one of a slide
+  /// Of each coordinate its joint's name; empty where a coordinate is not a joint's position, or one has none.
+  std::vector<std::string> joint_names() const;
   /// A point by its name.
   /// @throws std::invalid_argument listing the known ones
   const ArmPoint& point(const std::string& name) const;

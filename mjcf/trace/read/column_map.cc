@@ -142,6 +142,11 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
   m = std::move(ordered);
 }
 
+bool ColumnMap::leaves_order_open() const {
+  const auto q = wanted_.find("q");
+  return q != wanted_.end() && q->second.of_preset && order_.empty();
+}
+
 std::vector<std::string> ColumnMap::missing_in(const MappedColumns& found) const {
   std::vector<std::string> all;
   for (const auto& [name, w] : wanted_) {

@@ -65,6 +65,9 @@ class ColumnMap {
   /// among those found.
   std::vector<std::string> missing_in(const MappedColumns& found) const;
 
+  /// Whether it says nothing of which joint is which: its q is a preset's, and it has no `order`.
+  bool leaves_order_open() const;
+
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written
   /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
   double velocity_filter() const { return velocity_filter_; }

@@ -63,7 +63,7 @@ std::string csv_of(const Trace& t, const Layout& layout, const Eigen::MatrixXd& 
 }  // namespace
 
 void write_layout(const Trace& t, const std::string& layout, const Eigen::VectorXd& gain,
-                  const std::string& path) {
+                  std::vector<std::string> joints, const std::string& path) {
   const Layout& l = find_known(kLayouts, "layout", layout, [](const Layout& x) { return x.name; });
   Eigen::MatrixXd torque = t.tau;
   if (layout == "ur_rtde") {
@@ -73,8 +73,8 @@ void write_layout(const Trace& t, const std::string& layout, const Eigen::Vector
           "drive");
     torque = gain.cwiseInverse().asDiagonal() * t.tau;
   }
-  std::vector<std::string> joints;
-  for (int j = 0; j < t.dof(); ++j) joints.push_back(fmt::format("joint{}", j + 1));
+  for (int j = static_cast<int>(joints.size()); j < t.dof(); ++j)
+    joints.push_back(fmt::format("joint{}", j + 1));
   const std::string bytes =
       layout == "joint_state" ? bag_of(t, joints, l.begin) : csv_of(t, l, torque);
   AtomicFile file(path);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "mjcf/trace/trace.h"
 
@@ -18,9 +19,10 @@ namespace tauext {
 /// @param layout libfranka, ur_rtde (currents, and blanks between, as UR's record.py) or
 /// joint_state (a bag, without contact)
 /// @param gain [N m/A] of each drive, for currents
+/// @param joints their names, for a bag; empty: joint1, joint2, ..
 /// @throws std::invalid_argument for another layout, listing these, and for a gain that is 0
 /// @throws std::runtime_error naming the path
 void write_layout(const Trace& trace, const std::string& layout, const Eigen::VectorXd& gain,
-                  const std::string& path);
+                  std::vector<std::string> joints, const std::string& path);
 
 }  // namespace tauext

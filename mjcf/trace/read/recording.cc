@@ -38,7 +38,7 @@ bool is_bag(const std::string& path) {
 
 std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOptions& options,
                                      const CsvFormat& csv) {
-  if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic);
+  if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic, options.joints);
   if (!options.topic.empty())
     throw std::invalid_argument(
         fmt::format("{}: has no channel '{}', as LCM logs have, and no topic, as ROS 2 bags have",
@@ -82,10 +82,11 @@ class VelocityFilter {
 struct RecordingReader::Impl {
   Impl(const std::string& file, const RecordingOptions& o)
       : path(file),
+        joints(o.joints),
         map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
                                           : "tauext")),
-        rows(open_rows(path, o, map.csv())),
+        rows(open_rows(path, {o.columns, o.topic, map.leaves_order_open() ? o.joints : std::vector<std::string>()}, map.csv())),
         layout(layout_of(known(), rows->columns(), path)),
         timed(0, skipped),
         filter(map.velocity_filter()) {
@@ -104,6 +105,8 @@ struct RecordingReader::Impl {
     MappedColumns all = map.mapped(rows->columns(), path);
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
     if (!is_bag(path)) return all;
+    if (joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
+      skipped.notes.push_back("no joints' names to compare with: their order is that of the first message");
     has_first = rows->next(raw, skipped);
     std::erase_if(all, [&](const auto& q) {
       const auto& columns = q.second.columns;
@@ -156,6 +159,7 @@ struct RecordingReader::Impl {
   }
 
   std::string path;
+  std::vector<std::string> joints;  // of the robot
   RecordingContents contents;
   SkippedRows skipped;
   std::vector<double> raw, row;

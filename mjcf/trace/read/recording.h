@@ -20,6 +20,9 @@ struct RecordingOptions {
   /// A preset or a TOML file of column_map.h; "": `joint_state` for a bag, else `tauext`.
   std::string columns;
   std::string topic;  ///< of a bag; "": the only one of JointState
+  /// The robot's joints by name, in its order: by these a bag's are found, unless the map names
+  /// columns or has an `order`. Empty: unknown.
+  std::vector<std::string> joints;
 };
 
 /// The rows of a file of any of these formats, which its first bytes tell; else it is CSV.

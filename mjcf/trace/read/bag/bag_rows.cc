@@ -2,10 +2,12 @@
 #include "mjcf/trace/read/bag/bag_rows.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/bag_messages.h"
@@ -20,10 +22,20 @@ const char* read_message(const BagMessage& message, JointState& state) {
   return read_joint_state(message.bytes, state);
 }
 
+// for messages to people
+void keep_some(std::set<std::string>& names, const std::string& name) {
+  if (names.size() < kMostJoints) names.insert(name);
+}
+
+template <class Names>
+std::string listed(const Names& names) {
+  return printable_name(fmt::format("{}", fmt::join(names, ", ")), 400);
+}
+
 }  // namespace
 
-BagRows::BagRows(const std::string& path, const std::string& topic)
-    : messages_(std::make_unique<BagMessages>(path, topic)) {
+BagRows::BagRows(const std::string& path, const std::string& topic, std::vector<std::string> joints)
+    : messages_(std::make_unique<BagMessages>(path, topic)), joints_(std::move(joints)) {
   look_ahead();
   columns_.emplace_back("t");
   for (const char* what : {"position", "velocity", "effort"}) {
@@ -33,23 +45,46 @@ BagRows::BagRows(const std::string& path, const std::string& topic)
 
 BagRows::~BagRows() = default;
 
-// for the joints, and for the first stamp that is not 0
+// for all joints, and for the first stamp that is not 0
 void BagRows::look_ahead() {
   BagMessage message;
   JointState state;
   const char* first = "there is none";
-  for (bool begin = true; !use_stamps_ && messages_->next(message); begin = false) {
+  std::vector<std::string> missing = joints_;
+  std::set<std::string> named;
+  bool any = false;
+  while (!(any && missing.empty() && use_stamps_) && messages_->next(message)) {
     const char* const why = read_message(message, state);
-    if (begin && why != nullptr) first = why;
-    if (why != nullptr) continue;
+    if (why != nullptr) {
+      if (number_++ == 0) first = why;
+      continue;
+    }
+    ++number_;
     if (joints_.empty()) joints_ = state.name;
-    use_stamps_ = state.stamp != 0;
+    any = true;
+    use_stamps_ = use_stamps_ || state.stamp != 0;
+    for (const std::string& name : state.name) {
+      std::erase(missing, name);
+      keep_some(named, name);
+    }
   }
   messages_->rewind();
-  if (!joints_.empty()) return;
+  number_ = 0;
+  if (any && missing.empty()) return;
+  if (any) fail_missing(missing, named);
   throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}",
                                        messages_->path(), printable_name(messages_->topic()),
                                        first));
+}
+
+void BagRows::fail_missing(const std::vector<std::string>& missing,
+                           const std::set<std::string>& named) const {
+  throw std::runtime_error(fmt::format(
+      "{}: the messages on topic {} never name {}; the robot has {}, and they name {}. Where a "
+      "joint has another name there, --columns FILE.toml says which it is: [q] columns = "
+      "[\"position.NAME\", ..], and [qd] and [tau_instant] likewise",
+      messages_->path(), printable_name(messages_->topic()), listed(missing), listed(joints_),
+      listed(named)));
 }
 
 bool BagRows::next(std::vector<double>& row, SkippedRows& skipped) {
@@ -78,7 +113,7 @@ bool BagRows::fill(std::vector<double>& row, const JointState& state) {
   for (std::size_t i = 0; i < state.name.size(); ++i) {
     const auto joint = std::find(joints_.begin(), joints_.end(), state.name[i]);
     if (joint == joints_.end()) {
-      if (stranger_.empty()) stranger_ = printable_name(state.name[i]);
+      keep_some(strangers_, state.name[i]);
       continue;
     }
     ++ours;
@@ -94,10 +129,8 @@ bool BagRows::fill(std::vector<double>& row, const JointState& state) {
 
 void BagRows::note_strangers(SkippedRows& skipped) {
   if (with_strangers_ == 0) return;
-  skipped.notes.push_back(
-      fmt::format("{} messages name joints that the first one does not, like '{}': these are left "
-                  "out",
-                  with_strangers_, stranger_));
+  skipped.notes.push_back(fmt::format("{} messages name other joints, which are left out: {}",
+                                      with_strangers_, listed(strangers_)));
   with_strangers_ = 0;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct JointState;
 ///
 /// The first column is "t" [s], the stamp of the header or, where that is 0 throughout, the time at
 /// which the message was recorded. Then follow "position.NAME" [rad], "velocity.NAME" [rad/s] and
-/// "effort.NAME" [N m], of each joint that the first good message names and in its order. Later
-/// messages may have another order; what one does not have is NaN. A message without any of these
-/// joints is no row; where messages name other joints, a note says so once, at the end.
+/// "effort.NAME" [N m], of each joint of the robot in its order or, where nobody says what these
+/// are, of each that the first good message names and in its order. Messages may have another
+/// order; what one does not have is NaN. A message without any of these joints is no row; where
+/// messages name other joints, a note names them once, at the end.
 ///
 /// The file is not believed: it is opened to be read alone, nothing is written beside it, a message
 /// may have 1 MB and 64 joints. Messages that are longer, cut off, or no CDR are skipped, and are
@@ -29,9 +31,12 @@ struct JointState;
 class BagRows : public RowSource {
  public:
   /// @param topic "": the only one of that type
+  /// @param joints the robot's, by name; empty: unknown
   /// @throws std::runtime_error naming the path and what is wrong: unreadable, no such bag, no such
-  /// topic, several to choose from, no good message; or that SQLite was missing at build
-  explicit BagRows(const std::string& path, const std::string& topic = "");
+  /// topic, several to choose from, no good message, a joint of the robot that no message names; or
+  /// that SQLite was missing at build
+  explicit BagRows(const std::string& path, const std::string& topic = "",
+                   std::vector<std::string> joints = {});
   ~BagRows() override;
 
   const std::vector<std::string>& columns() const override { return columns_; }
@@ -42,6 +47,8 @@ class BagRows : public RowSource {
 
  private:
   void look_ahead();
+  [[noreturn]] void fail_missing(const std::vector<std::string>& missing,
+                                 const std::set<std::string>& named) const;
   bool fill(std::vector<double>& row, const JointState& state);
   void note_strangers(SkippedRows& skipped);
 
@@ -49,7 +56,7 @@ class BagRows : public RowSource {
   std::vector<std::string> joints_, columns_;
   bool use_stamps_ = false;
   long number_ = 0, with_strangers_ = 0;
-  std::string stranger_;  // the first joint that the first good message does not name
+  std::set<std::string> strangers_;  // joints that are not ours, the first few
 };
 
 }  // namespace tauext

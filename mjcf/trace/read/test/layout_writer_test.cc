@@ -23,7 +23,7 @@ class Layouts : public Recording {
     trace_.contact = {0, 1};
   }
   std::string written(const std::string& layout, const std::string& name) const {
-    write_layout(trace_, layout, Eigen::Vector2d(10, 5), path(name));
+    write_layout(trace_, layout, Eigen::Vector2d(10, 5), {}, path(name));
     return read_whole(path(name));
   }
   Trace read(const std::string& columns, const std::string& name) const {
@@ -52,14 +52,14 @@ TEST_F(Layouts, OfRtdeHasCurrentsAndBlanks) {
             "4021.500 0.1 -1.5 0.2 -3 1 -30 0\n4021.508 0.2 1.25 0.4 2.5 2 25 1\n");
   EXPECT_TRUE(read("ur_rtde", "u.csv").tau_is_current);
   EXPECT_NE(error_of([&] {
-              write_layout(trace_, "ur_rtde", Eigen::Vector2d(10, 0), path("x.csv"));
+              write_layout(trace_, "ur_rtde", Eigen::Vector2d(10, 0), {}, path("x.csv"));
             }).find("must say the `gain` of each drive"),
             std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path("x.csv")));
 }
 
 TEST_F(Layouts, OfABagIsCdrByTheBook) {
-  write_layout(trace_, "joint_state", {}, path("b.db3"));
+  write_layout(trace_, "joint_state", {}, {}, path("b.db3"));
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path("b.db3").c_str(), &db), SQLITE_OK);
   sqlite3_stmt* s = nullptr;
