@@ -81,6 +81,20 @@ void drop_other(const XMLElement& e, std::map<std::string, int>& dropped) {
   ++dropped[std::string(name_of(e))];
 }
 
+// an attribute that is not known stands for nothing in other programs, too; but here it could be a
+// known one, misspelt, or a newer way to say where something is
+void drop_attribute(const XMLElement& e, const std::string& owner, std::string_view name,
+                    std::string_view known, std::map<std::string, int>& dropped) {
+  std::istringstream words{std::string(known)};
+  for (std::string word; words >> word;) {
+    const bool stands_for_it = e.Attribute(word.c_str()) == nullptr && edits(name, word) <= 2;
+    if (stands_for_it || name_of(e) == "origin")
+      fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
+           known.substr(0, known.size() - 1));
+  }
+  ++dropped[fmt::format("{}.{}", name_of(e), name)];
+}
+
 // typing errors would change the arm, and nobody would see it
 void refuse_unknown(const XMLElement& e, const std::string& owner,
                     std::map<std::string, int>& dropped) {
@@ -98,8 +112,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
     const std::string_view name = a->Name();
     if (name.find(':') != name.npos) continue;
     if (!has_word(known->attributes, name))
-      fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
-           known->attributes.substr(0, known->attributes.size() - 1));
+      drop_attribute(e, owner, name, known->attributes, dropped);
   }
   refuse_doubles(e, owner);
   for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())

@@ -138,9 +138,33 @@ TEST_F(OfUrdf, MayDescribeControllersAndSensorsBesideTheArm) {
   EXPECT_EQ(tree_of(load_mjcf(path)).dof(), 3);
 }
 
+// as Franka's files have them
+TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
+  std::string text = urdf();
+  const auto add = [&](const std::string& behind, const std::string& attributes) {
+    text.insert(text.find(behind) + behind.size(), attributes);
+  };
+  add("<dynamics", " D='1' K='7000' mu_coulomb='0' mu_viscous='16'");
+  add("<axis", " rpy='0 0 0'");
+  add("<inertia", " iyx='0'");
+  const ArmTree arm = tree_of(load_mjcf(put(text, "arm.urdf")));
+  const ArmTree plain = tree_of(load_mjcf(put(urdf(), "plain.urdf")));
+  ASSERT_EQ(arm.joints.size(), plain.joints.size());
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    EXPECT_EQ(arm.joints[i].viscous, plain.joints[i].viscous);
+    EXPECT_EQ(arm.joints[i].inertia, plain.joints[i].inertia);
+    EXPECT_EQ(arm.joints[i].axis, plain.joints[i].axis);
+  }
+  const auto left_out = import_mjcf(path("arm.urdf")).dropped;
+  for (const char* name : {"dynamics.D", "dynamics.K", "dynamics.mu_coulomb", "dynamics.mu_viscous",
+                           "axis.rpy", "inertia.iyx"})
+    EXPECT_EQ(left_out.count(name), 1u) << name;
+}
+
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
   for (const auto& [right, wrong, words] : std::vector<std::array<const char*, 3>>{
            {"damping=", "dampping=", "joint 'shoulder': <dynamics> knows no 'dampping'; known: da"},
+           {"rpy=", "quat_xyzw=", "<origin> knows no 'quat_xyzw'; known: xyz rpy"},
            {"<dynamics", "<dynamcis",
             "this import knows no <dynamcis>; did you mean 'dynamics'? If"},
            {"<visual>", "<visula/><visual>", "link 'upper': this import knows no <visula>"},
