@@ -96,7 +96,7 @@ void add_maker_metrics(const std::vector<LogRun>& runs, Score& score) {
 
 void add_label_metrics(const std::vector<LogRun>& runs, Score& score) {
   metrics::DetectionScore all;
-  double hours = 0;
+  double hours = 0;  // that were watched
   for (const LogRun& run : runs) {
     if (run.output->marks.empty()) return;
     const Trace& t = *run.trace;
@@ -111,7 +111,7 @@ void add_label_metrics(const std::vector<LogRun>& runs, Score& score) {
     all.detected += d.detected;
     all.false_alarms += d.false_alarms;
     all.delays.insert(all.delays.end(), d.delays.begin(), d.delays.end());
-    if (times.size() > 1) hours += (times.back() - times.front()) / 3600;
+    hours += d.watched / 3600;
   }
   if (all.collisions > 0) {
     const metrics::Interval recall = metrics::share_interval(all.detected, all.collisions);

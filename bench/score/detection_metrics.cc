@@ -27,9 +27,24 @@ double poisson_mean(int count, double share) {
 
 }  // namespace
 
+void DetectionCounter::watch(double t) {
+  switch (clock_.accept(t)) {
+    case Status::kOk:
+      ++steps_;
+      s_.watched += clock_.h();
+      break;
+    case Status::kStarted:
+      if (steps_ == 1) s_.watched = before_;  // its only step was a gap
+      before_ = s_.watched;
+      steps_ = 0;
+      break;
+    default:
+      break;
+  }
+}
+
 void DetectionCounter::take(double t, bool contact, bool mark) {
-  if (samples_++ == 0) from_ = t;
-  to_ = t;
+  watch(t);
   const bool goes_on = contact && touched_;  // whatever the time between two samples
   touched_ = contact;
   if (in_collision_ && !goes_on && t > last_ + kGrace) in_collision_ = false;
@@ -53,7 +68,7 @@ void DetectionCounter::take(double t, bool contact, bool mark) {
 DetectionScore DetectionCounter::score() const {
   DetectionScore s = s_;
   s.delay = s.delays.empty() ? kNoValue : *std::max_element(s.delays.begin(), s.delays.end());
-  if (samples_ > 1) s.false_alarms_per_hour = 3600 * s.false_alarms / (to_ - from_);
+  if (s.watched > 0) s.false_alarms_per_hour = 3600 * s.false_alarms / s.watched;
   return s;
 }
 

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "bench/roster/stages.h"
 #include "bench/score/score.h"
+#include "estimators/samples/clock.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
@@ -26,7 +28,8 @@ struct DetectionScore {
   std::vector<double> delays;        ///< [s] of these
   int false_alarms = 0;              ///< marks outside of them
   double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
-  double false_alarms_per_hour = 0;  ///< [1/h]
+  double watched = 0;  ///< [s] the steps by which a Clock goes on: what lies in a gap, nobody saw
+  double false_alarms_per_hour = 0;  ///< [1/h] of this time
 };
 
 /// The same score, of samples that come one by one.
@@ -37,9 +40,12 @@ class DetectionCounter {
   DetectionScore score() const;  ///< of those that were taken
 
  private:
+  void watch(double t);
+
   DetectionScore s_;
-  std::int64_t samples_ = 0;
-  double from_ = 0, to_ = 0;  // [s] of the samples
+  Clock clock_{std::numeric_limits<double>::infinity()};
+  std::int64_t steps_ = 0;  // of this clock
+  double before_ = 0;       // [s] watched before it started
   bool in_collision_ = false, touched_ = false, marked_ = false;
   double begin_ = 0, last_ = 0;  // [s] of the collision: its first and last contact
 };

@@ -149,7 +149,7 @@ inline constexpr std::array kRowsOfMarks{
     MetricRow{kFalseAlarms, "false_alarms", "false", "alarms", 0, kLess, kNone, kUsual,
               "The number of marks that belong to no collision."},
     MetricRow{kFalseAlarmsPerHour, "false_alarms_per_hour", "false alarms", "1/h", 1, kLess, kNone,
-              0, "The number of marks in an hour that belong to no collision."},
+              0, "The number of marks in an hour, gaps left aside, that belong to no collision."},
     MetricRow{kFalseAlarmsLow, "false_alarms_per_hour_low", "false from", "1/h", 1, kLess, kNone,
               kTable, "The least number in an hour that logs leave likely (Garwood, 95 %)."},
     MetricRow{kFalseAlarmsHigh, "false_alarms_per_hour_high", "false to", "1/h", 1, kLess, kNone,

@@ -195,6 +195,22 @@ TEST(DetectionScore, CountsEachCollisionOnceAndTheRestAsFalse) {
 }
 
 // an arm that was stopped 15 ms after the first contact touches again twice, 0.18 s apart each time
+// one row that strayed hours away in a recording of a minute, and an hour's break in the middle
+TEST(DetectionScore, RatesCountTheTimeThatWasWatched) {
+  for (const bool at_begin : {false, true}) {
+    std::vector<double> t;
+    if (at_begin) t.push_back(-3 * 3600);
+    for (int k = 0; k <= 60000; ++k) t.push_back(1e-3 * k + (k > 20000 ? 3600 : 0));
+    if (!at_begin) t.push_back(9 * 3600);
+    std::vector<std::uint8_t> marks(t.size(), 0);
+    for (const std::size_t k : {5000, 25000, 45000}) marks[k] = 1;
+    const DetectionScore s = detection_score(t, std::vector<std::uint8_t>(t.size(), 0), marks);
+    EXPECT_EQ(s.false_alarms, 3);
+    EXPECT_NEAR(s.watched, 60, 0.01) << "a few steps, until a clock is trusted, are lost";
+    EXPECT_NEAR(s.false_alarms_per_hour, 180, 0.1);
+  }
+}
+
 TEST(DetectionScore, ReboundsWithinTheGraceAreTheSameCollision) {
   const Times t = times(3000);
   const auto contact = flags(3000, {{1000, 1019}, {1200, 1209}, {1390, 1399}});
