@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -237,9 +238,18 @@ inline Kernels& plugin_kernels() {
   return all;
 }
 
+// zeros where the kernels are about to be made: a copy may take along what pads its original, and
+// GCC 12 does not clear all that pads a large object
+[[gnu::noinline]] inline void clear_stack() {
+  unsigned char below[1 << 20];
+  std::memset(below, 0, sizeof below);
+  keep(below);
+}
+
 inline const tauext_plugin* make_plugin(void (*fill)(Kernels&)) {
   static constexpr auto kernel = [](std::size_t i) { return plugin_kernels().all()[i].get(); };
   static const tauext_plugin plugin = [&] {
+    clear_stack();
     fill(plugin_kernels());
     return tauext_plugin{
         TAUEXT_PLUGIN_ABI,

@@ -42,7 +42,8 @@ struct tauext_plugin {  // NOLINT(readability-identifier-naming): a C name
   /** What runs an instance of that kernel: all that is timed. */
   tauext_run (*runner)(int kernel);
   /** Copies at most so many bytes of an instance's subject, its parameters and its memory, and
-   * gives their number. What pads it is 0, where the compiler can tell. */
+   * gives their number; 0 if it owns memory elsewhere, of which they say nothing. Padding is 0,
+   * where the compiler can tell. */
   int (*state)(void* instance, int most, void* bytes);
   /** What create() made. */
   void (*destroy)(void* instance);

@@ -17,25 +17,34 @@ template <class T>
 }
 
 /// Writes at most so many bytes of it, and gives their number; 0 stands for those of no member.
+/// Gives 0 for an object that owns memory elsewhere, of which these bytes say nothing.
 template <class T>
 int copy_state(const T& object, int most, void* bytes) noexcept {
-  // what no copy writes holds what lay there before: on two grounds it differs, and is left out
+  // what no copy writes holds what lay there before, which is 0 in one copy and 255 in the other
   alignas(T) unsigned char copies[2][sizeof(T)];
-  for (auto& copy : copies) {
-    std::memset(copy, &copy == copies ? 0 : 255, sizeof copy);
-    keep(copy);  // else the compiler knows that constructors and destructors end it
-    std::destroy_at(new (copy) T(object)), keep(copy);
+  T* made[2];
+  for (int i : {0, 1}) {
+    std::memset(copies[i], i == 0 ? 0 : 255, sizeof(T));
+    keep(copies[i]);  // else the compiler leaves that out, as a constructor follows,
+    made[i] = new (copies[i]) T(object);
+    keep(*made[i]);  // and what the constructor writes, as nobody reads it as a T
   }
-  // and so is what pads it, which a copy may take along
+  // what pads it is left out, too: a copy may take it along
   T plain(object);
 #if __has_builtin(__builtin_clear_padding)
   __builtin_clear_padding(&plain);
 #endif
   const auto* const value = reinterpret_cast<const unsigned char*>(&plain);
   auto* const out = static_cast<unsigned char*>(bytes);
-  for (int i = 0; i < std::min<int>(most, sizeof(T)); ++i)
-    out[i] = copies[0][i] == copies[1][i] ? value[i] : 0;
-  return static_cast<int>(sizeof(T));
+  bool known = true;
+  for (int i = 0; i < static_cast<int>(sizeof(T)); ++i) {
+    const bool same = copies[0][i] == copies[1][i];
+    // two copies differ in what they write where each holds an address of its own
+    known = known && (same || (copies[0][i] == 0 && copies[1][i] == 255));
+    if (i < most) out[i] = same ? value[i] : 0;
+  }
+  for (T* copy : made) std::destroy_at(copy);
+  return known ? static_cast<int>(sizeof(T)) : 0;
 }
 
 }  // namespace tauext::detail

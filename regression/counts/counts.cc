@@ -153,6 +153,15 @@ std::vector<CountChange> compare_counts(const Counts& before, const Counts& afte
   return changes;
 }
 
+std::set<std::string> counted_otherwise(const Counts& before, const Counts& after) {
+  std::set<std::string> names;
+  for (const auto& [kernel, count] : after.kernels) {
+    const auto old = before.kernels.find(kernel);
+    if (old != before.kernels.end() && old->second != count) names.insert(kernel);
+  }
+  return names;
+}
+
 bool too_many(const CountChange& c) {
   return c.accepted.empty() && c.change() > kCountLimit;
 }

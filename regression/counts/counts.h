@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ inline constexpr double kCountLimit = 0.01, kCountNote = 0.002;
 /// Kernels of both whose count changed by any amount; `gained` where both know lines or functions.
 /// @throws std::invalid_argument if the keys differ: such counts are never compared
 std::vector<CountChange> compare_counts(const Counts& before, const Counts& after);
+
+/// Kernels of both whose count differs, whatever the keys.
+std::set<std::string> counted_otherwise(const Counts& before, const Counts& after);
 
 /// Whether a count grew beyond the limit, and nobody accepted it.
 bool too_many(const CountChange& change);

@@ -30,11 +30,14 @@ void refuse_what_is_no_record(const Record& r, const std::vector<Record>& histor
 }
 
 std::map<std::string, KernelRecord> kernels_of(const MeasureOptions& o, std::string& machine) {
-  const TimeReport times =
-      compare_times({.base = o.base, .head = o.head, .kernels = o.kernels, .progress = o.progress});
   if (o.progress) o.progress("counting instructions");
   const Counts base = count_instructions(o.base, o.kernels);
   const Counts head = count_instructions(o.head, o.kernels);
+  const TimeReport times = compare_times({.base = o.base,
+                                          .head = o.head,
+                                          .kernels = o.kernels,
+                                          .counted_otherwise = counted_otherwise(base, head),
+                                          .progress = o.progress});
   machine = fmt::format("{}, {}", processor(), head.key.at("compiler"));
   std::map<std::string, KernelRecord> kernels;
   for (const KernelTime& k : times.kernels) {

@@ -86,7 +86,7 @@ class Work {
  public:
   Work(const Plugin& plugin, int kernel, Samples samples);
   void run(int steps) { run_(instance_.get(), steps); }
-  /// The bytes of what it works with.
+  /// The bytes of what it works with; "" if they are not all of it.
   std::string state() const;
 
  private:

@@ -77,21 +77,26 @@ GateResult run_layers(const GateOptions& options) {
     r.notes.emplace_back("no --bench: accuracy was not looked at");
   }
   if (o.time || o.instructions) leave_out_other_abi(o, r.notes);
-  if (o.time) {
-    r.time = compare_times({.base = o.base,
-                            .head = o.head,
-                            .kernels = o.kernels,
-                            .even_if_identical = o.even_if_identical,
-                            .limits = o.limits,
-                            .period = o.period,
-                            .progress = o.progress});
-  }
   if (o.instructions) {
     r.instructions = compare_instructions({.base = o.base,
                                            .head = o.head,
                                            .kernels = o.kernels,
                                            .baselines = o.baselines,
                                            .progress = o.progress});
+  }
+  if (o.time) {
+    const Counts* const base =
+        r.instructions && r.instructions->base ? &*r.instructions->base : nullptr;
+    r.time =
+        compare_times({.base = o.base,
+                       .head = o.head,
+                       .kernels = o.kernels,
+                       .even_if_identical = o.even_if_identical,
+                       .counted_otherwise = base ? counted_otherwise(*base, *r.instructions->head)
+                                                 : std::set<std::string>(),
+                       .limits = o.limits,
+                       .period = o.period,
+                       .progress = o.progress});
   }
   if (o.accuracy && !o.bench.empty()) {
     r.accuracy = score_and_compare(

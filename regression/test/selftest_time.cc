@@ -53,6 +53,23 @@ TEST_F(Time, TwoFunctionsThatChangePlacesInATableFail) {
   EXPECT_EQ(time("table"), kSlower) << "equal in all but what the linker fills in: " << text_;
 }
 
+TEST_F(Time, TheSameCodeFailsIfItsConstructorSetsAFlagForASlowPath) {
+  EXPECT_EQ(time("flag_true", "flag_false"), kSlower) << text_;
+  EXPECT_EQ(time("owned_true", "owned_false"), kSlower) << "in memory that it owns: " << text_;
+  EXPECT_EQ(time("flag_true", "flag_true"), kGood) << text_;
+  EXPECT_TRUE(says("1 kernels identical")) << "a flag alone is no difference: " << text_;
+}
+
+TEST_F(Time, AKernelWithAnotherCountIsTimed) {
+  make_counts();
+  EXPECT_EQ(run({"check", "--base", plugin("spoiled"), "--head", plugin("base"), "--bench", "",
+                 "--baselines", baselines()}),
+            kGood)
+      << text_;
+  EXPECT_TRUE(says("1 kernels beside base: 1 differ") && says("1 kernels, 1 ok")) << text_;
+  EXPECT_FALSE(says("identical")) << text_;
+}
+
 TEST_F(Time, AStallThatIsRareFails) {
   EXPECT_EQ(time("stall"), kSlower) << text_;
   EXPECT_TRUE(says("stalls: the 50 steps from sample 100000 on")) << text_;

@@ -10,13 +10,18 @@
 //   SUBJECT_BAD=n           divides where the sample is bad
 //   SUBJECT_BRANCH          takes a branch that nobody can predict
 //   SUBJECT_LINES=n         a chain of 128 loads from n cache lines, in no order that is foreseen
+//   SUBJECT_FLAG=true       divides if a member says so, which its constructor sets
+//   SUBJECT_FLAG_IN=type    of that member, an array unless said
+//   SUBJECT_SPOILED         its arm's samples are all bad
 //   SUBJECT_TABLE=1         two functions change places in a table, and the dear one is called
 //   SUBJECT_EKF             instead of all that, the EKF of wallmobot3
 #include <array>
 #include <bit>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <thread>
+#include <vector>
 
 #include "bench/kit/kernels.h"
 #include "estimators/ekf.h"
@@ -36,6 +41,9 @@ asm(".text\n.skip " TEXT(SUBJECT_SHIFT) ", 0x90\n");
 #endif
 #ifndef SUBJECT_BAD
 #define SUBJECT_BAD 0
+#endif
+#ifndef SUBJECT_FLAG_IN
+#define SUBJECT_FLAG_IN std::array<bool, 1>
 #endif
 #ifndef SUBJECT_TABLE
 #define SUBJECT_TABLE 0
@@ -84,6 +92,9 @@ class Subject {
       stage += 0.1 * (x - stage);
       x = stage;
     }
+#ifdef SUBJECT_FLAG
+    if (slow_[0]) x = divided(x, 10);
+#endif
     if (SUBJECT_DIVIDES > 0) x = divided(x, SUBJECT_DIVIDES);
     stages_.back() = x;
     if (!(x - x == 0)) {  // after a bad sample it begins anew
@@ -119,6 +130,9 @@ class Subject {
 
  private:
   std::array<double, SUBJECT_STAGES> stages_{};
+#ifdef SUBJECT_FLAG
+  SUBJECT_FLAG_IN slow_{SUBJECT_FLAG};
+#endif
 };
 
 }  // namespace
@@ -129,6 +143,10 @@ TAUEXT_PLUGIN(kernels) {
   const tauext::WallMoBot3 arm;
   kernels.add_estimator("wallmobot3", arm, Ekf(arm, Ekf::Parameters::paper()));
 #else
-  kernels.add_estimator("testbed1", tauext::Testbed1(), Subject());
+  tauext::Testbed1::Parameters arm;
+#ifdef SUBJECT_SPOILED
+  arm.theta2 = std::numeric_limits<double>::infinity();
+#endif
+  kernels.add_estimator("testbed1", tauext::Testbed1(arm), Subject());
 #endif
 }

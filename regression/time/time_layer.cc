@@ -124,8 +124,9 @@ class Identity {
   bool same(const std::string& kernel) {
     const int b = base_.find(kernel), h = head_.find(kernel);
     const std::string code = reached(base_code_, base_, b);
-    return !code.empty() && code == reached(head_code_, head_, h) &&
-           state(base_, b) == state(head_, h);
+    if (code.empty() || code != reached(head_code_, head_, h)) return false;
+    const std::string bytes = state(base_, b);
+    return !bytes.empty() && bytes == state(head_, h);
   }
 
  private:
@@ -203,7 +204,8 @@ TimeReport compare_times(const TimeOptions& o) {
   Identity identity(o, layouts.base(), layouts.head());
   std::vector<KernelTime*> different;
   for (KernelTime& k : report.kernels) {
-    if (!o.even_if_identical && identity.same(k.kernel)) {
+    const bool timed = o.even_if_identical || o.counted_otherwise.contains(k.kernel);
+    if (!timed && identity.same(k.kernel)) {
       k.verdict.verdict = k.cold.verdict = Verdict::kIdentical;
     } else {
       different.push_back(&k);

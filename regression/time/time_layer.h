@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct TimeOptions {
   std::string base, head;    ///< paths of plug-ins; an empty base: L3 alone
   std::string kernels = "";  ///< regular expression; empty: all
   bool even_if_identical = false;
+  std::set<std::string> counted_otherwise;  ///< kernels that execute another number of instructions
   TimeLimits limits;
   double period = 1e-3;                              ///< [s] of control; a step has a tenth of it
   std::function<void(const std::string&)> progress;  ///< may be empty
@@ -46,8 +48,8 @@ struct TimeReport {
   std::vector<KernelTime> alone;    ///< in head alone: L3, and nothing to compare with
 };
 
-/// A kernel is identical where both builds reach the same code from it, and begin with the same
-/// bytes.
+/// A kernel is identical where both builds reach the same code from it, begin with the same bytes,
+/// and are not known to execute other numbers of instructions.
 /// @throws std::runtime_error for a plug-in that does not load or has no assembly beside it,
 /// std::invalid_argument for a filter that matches nothing
 TimeReport compare_times(const TimeOptions& options);

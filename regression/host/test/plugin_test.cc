@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <set>
+#include <string>
 
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
@@ -65,6 +66,17 @@ TEST(RosterPlugin, GivesEachKernelALifeOfItsRobot) {
     EXPECT_GT(repeated, 10);
     EXPECT_GT(largest, 50) << "N m, a blow";
     Work(plugin, i, samples).run(2 * kSamples + 500);
+  }
+}
+
+// every one has parameters, of its own or of its arm; a state of zeros would be anybody's
+TEST(RosterPlugin, ShowsTheStateOfEachKernel) {
+  const Plugin plugin(TAUEXT_BIN "/tauext_plugin.so");
+  Lives lives(1, 1);
+  for (int i = 0; i < plugin.count(); ++i) {
+    const std::string state = Work(plugin, i, lives.of(plugin, i)).state();
+    EXPECT_NE(state.find_first_not_of('\0'), std::string::npos)
+        << plugin.name(i) << ": " << state.size() << " bytes";
   }
 }
 
