@@ -165,6 +165,7 @@ void add_memory(CLI::App* sub, Flags& f) {
   add("--base-changelog", f.gate.base_committed.changelog);
   add("--changelog", f.gate.changelog);
   add("--base-commit", f.base_commit);
+  add("--no-base", f.gate.no_base);
 }
 
 // each of these judges one layer or all of them
@@ -274,8 +275,9 @@ int main(int argc, char** argv) {
       "tauext-gate");
   app.footer(
       "Exit codes: 0 passed, 1 slower, 5 less accurate, 3 no baseline or update needed, 4 "
-      "inconclusive,\n"
-      "2 could not run: wrong flags, or a harness error. Each subcommand has a --help.");
+      "inconclusive\n"
+      "(too noisy, or no base), 2 could not run: wrong flags, or a harness error. Each subcommand "
+      "has a --help.");
   Flags f;
   add_flags(app, f);
   app.preparse_callback([&](std::size_t) { refuse_unknown_subcommand(app, first); });

@@ -12,7 +12,7 @@ enum ExitCode : int {
   kSlower = 1,        ///< the same of tauext-gate: a step takes more time or more instructions
   kCouldNotRun = 2,   ///< wrong flags, bad input or output, nothing ran, a broken harness
   kUpdateNeeded = 3,  ///< of tauext-gate: no baseline, or one that has to be looked at
-  kInconclusive = 4,  ///< of tauext-gate: too noisy to say
+  kInconclusive = 4,  ///< of tauext-gate: too noisy to say, or no base
   kLessAccurate = 5,  ///< of tauext-gate: an estimate is less accurate
 };
 /// Exit code after Ctrl-C or kill, where what was done until then is kept.

@@ -236,14 +236,21 @@ void add_summary(const InstructionReport& r, std::vector<std::string>& lines) {
 }  // namespace
 
 std::vector<Finding> findings(const GateResult& r) {
-  std::vector<Finding> all = time_findings(r);
+  std::vector<Finding> all;
   const auto add = [&](const std::vector<Finding>& more) {
     all.insert(all.end(), more.begin(), more.end());
   };
+  if (!r.no_base.empty()) add({{"base", "base", Verdict::kInconclusive, no_base_text(r), {}}});
+  add(time_findings(r));
   if (r.instructions) add(instruction_findings(*r.instructions));
   add(accuracy_findings(r));
   if (r.memory) add(memory_findings(*r.memory));
   return all;
+}
+
+std::string no_base_text(const GateResult& r) {
+  return "no base, so neither times nor instructions were compared with what was before: " +
+         r.no_base;
 }
 
 std::vector<std::string> summary(const GateResult& r) {

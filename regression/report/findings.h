@@ -22,6 +22,9 @@ struct Finding {
 /// All of them, layer by layer.
 std::vector<Finding> findings(const GateResult& result);
 
+/// What it means that there was no base, and why there was none.
+std::string no_base_text(const GateResult& result);
+
 /// A line for each layer.
 std::vector<std::string> summary(const GateResult& result);
 

@@ -14,18 +14,14 @@ namespace tauext::gate {
 namespace {
 
 // a base of another ABI is no base
-void leave_out_other_abi(GateOptions& o, std::vector<std::string>& notes) {
-  if (!o.base.empty()) {
-    try {
-      const TemporaryFolder folder;
-      Plugin(folder.copy(o.base, "base.so"), o.base);
-    } catch (const OtherAbi& e) {
-      notes.push_back(fmt::format("{}: nothing to compare with", e.what()));
-      o.base.clear();
-    }
-  }
-  if (o.base.empty()) {
-    notes.emplace_back("no base to compare with: head stands beside the committed counts alone");
+void leave_out_other_abi(GateOptions& o) {
+  if (o.base.empty()) return;
+  try {
+    const TemporaryFolder folder;
+    Plugin(folder.copy(o.base, "base.so"), o.base);
+  } catch (const OtherAbi& e) {
+    o.no_base = e.what();
+    o.base.clear();
   }
 }
 
@@ -76,7 +72,11 @@ GateResult run_layers(const GateOptions& options) {
     if (!o.time && !o.instructions) throw std::invalid_argument("accuracy wants a --bench PROGRAM");
     r.notes.emplace_back("no --bench: accuracy was not looked at");
   }
-  if (o.time || o.instructions) leave_out_other_abi(o, r.notes);
+  if (o.time || o.instructions) leave_out_other_abi(o);
+  // a count alone is beside the committed ones, unless somebody named a base
+  if (o.base.empty() && (o.time || (o.instructions && !options.base.empty()))) {
+    r.no_base = o.no_base.empty() ? "none was named: --base SO" : o.no_base;
+  }
   if (o.instructions) {
     r.instructions = compare_instructions({.base = o.base,
                                            .head = o.head,
@@ -109,7 +109,7 @@ GateResult run_layers(const GateOptions& options) {
 }
 
 ExitCode exit_code(const GateResult& r) {
-  Seen seen;
+  Seen seen{.unsure = !r.no_base.empty()};
   if (r.time) see(*r.time, seen);
   if (r.instructions) see(*r.instructions, seen);
   if (r.accuracy) see(*r.accuracy, seen);

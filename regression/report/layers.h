@@ -25,6 +25,7 @@ struct GateOptions {
   std::string kernels, entries;  ///< regular expressions; empty: all
   std::string changelog;         ///< of the baselines
   Committed base_committed;      ///< what base's commit holds; empty: not looked at
+  std::string no_base;           ///< why there is no base, if somebody knows
   bool time = true, instructions = true, accuracy = true;
   bool even_if_identical = false;
   TimeLimits limits;
@@ -38,7 +39,8 @@ struct GateResult {
   std::optional<InstructionReport> instructions;
   std::optional<AccuracyReport> accuracy;
   std::optional<MemoryReport> memory;
-  std::vector<std::string> notes;  ///< what could not be compared, and why
+  std::string no_base;             ///< why no base was there, though it was to be compared with
+  std::vector<std::string> notes;  ///< what else could not be compared, and why
   std::string base, head, bench;   ///< to be named in commands
 };
 

@@ -53,14 +53,9 @@ std::string junit_case(const Finding& f) {
   return out + "</testcase>\n";
 }
 
-}  // namespace
-
-bool timed(const GateResult& r) {
-  return r.time && std::any_of(r.time->kernels.begin(), r.time->kernels.end(),
-                               [](const KernelTime& k) { return !k.processes.empty(); });
-}
-
-std::string advice(ExitCode code) {
+// one line of what follows from the exit code
+std::string advice(const GateResult& r) {
+  const ExitCode code = exit_code(r);
   switch (code) {
     case kGood:
       return "passed";
@@ -77,9 +72,17 @@ std::string advice(ExitCode code) {
           "tauext-gate-commits with --update 'the reason'",
           int{code});
     case kInconclusive:
-      return fmt::format("INCONCLUSIVE (exit {}): if it is for noise, run it again", int{code});
+      return fmt::format("INCONCLUSIVE (exit {}): {}", int{code},
+                         r.no_base.empty() ? "if it is for noise, run it again" : no_base_text(r));
   }
   return "";
+}
+
+}  // namespace
+
+bool timed(const GateResult& r) {
+  return r.time && std::any_of(r.time->kernels.begin(), r.time->kernels.end(),
+                               [](const KernelTime& k) { return !k.processes.empty(); });
 }
 
 std::string format_terminal(const GateResult& r, bool all) {
@@ -106,7 +109,7 @@ std::string format_terminal(const GateResult& r, bool all) {
   if (all && r.time) out += life_table(r);
   if (!out.empty()) out += "\n";
   for (const std::string& line : summary(r)) out += line + "\n";
-  return out + advice(exit_code(r)) + "\n";
+  return out + advice(r) + "\n";
 }
 
 std::string format_junit(const GateResult& r) {
@@ -125,7 +128,7 @@ std::string format_junit(const GateResult& r) {
 }
 
 std::string format_markdown(const GateResult& r) {
-  std::string out = fmt::format("## tauext-gate: {}\n\n", advice(exit_code(r)));
+  std::string out = fmt::format("## tauext-gate: {}\n\n", advice(r));
   for (const std::string& line : summary(r)) out += "- " + line + "\n";
   std::string layer;
   for (const Finding& f : findings(r)) {

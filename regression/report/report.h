@@ -27,7 +27,4 @@ bool timed(const GateResult& result);
 /// @throws std::invalid_argument if nothing was timed
 std::string format_benchmark(const GateResult& result, bool head);
 
-/// One line of what follows from the exit code.
-std::string advice(ExitCode code);
-
 }  // namespace tauext::gate

@@ -18,6 +18,14 @@ TEST_F(Instructions, OnePercentMoreFailsWhereverTheyComeFrom) {
       << text_;
 }
 
+TEST_F(Instructions, WithoutABaseNoCheckPasses) {
+  make_counts();
+  const std::vector<std::string> check = {"check", "--head",      plugin("base"), "--bench",
+                                          "",      "--baselines", baselines()};
+  EXPECT_EQ(run(check), kInconclusive) << text_;
+  EXPECT_TRUE(says("no base, so ") && !says("passed")) << text_;
+}
+
 TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
   EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
   const std::string path = make_counts();

@@ -171,6 +171,20 @@ TEST(ExitCode, OfWhatCannotBeCompared) {
   EXPECT_EQ(exit_code(r), kSlower) << "a new kernel has its budget, too";
 }
 
+TEST(ExitCode, WithoutABaseIsNeverGood) {
+  GateResult r = times({});
+  r.time->alone = {kernel("a", 1, Verdict::kPass)};
+  r.no_base = "the first commit";
+  EXPECT_EQ(exit_code(r), kInconclusive);
+  for (const std::string& text : {format_terminal(r, false), format_markdown(r), format_junit(r)}) {
+    EXPECT_NE(text.find("compared with what was before: the first commit"), std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("passed"), std::string::npos) << text;
+  }
+  r.time->alone[0].over_budget = true;
+  EXPECT_EQ(exit_code(r), kSlower) << "what is known counts";
+}
+
 TEST(Markdown, LeadsWithTheVerdict) {
   const std::string text = format_markdown(metric(Change::kWorse));
   EXPECT_EQ(text.find("## tauext-gate: LESS ACCURATE (exit 5)"), 0u) << text;
