@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct Bucket {
   int from, to;
-  double change;  // of the signal that changes most, as a share of its range
+  double change;  // of the signal that changes most, as a share of its range or floor
   bool operator<(const Bucket& other) const { return change < other.change; }
 };
 
@@ -81,13 +81,24 @@ Json drawn_rows(const Eigen::MatrixXd& signals, const std::vector<int>& edges) {
 
 }  // namespace
 
-std::vector<int> bucket_edges(const std::vector<Eigen::VectorXd>& signals, int buckets) {
-  const int n = static_cast<int>(signals.at(0).size());
+std::vector<int> bucket_edges(const std::vector<Signals>& of_units, int buckets) {
+  constexpr double kFloor = 1e-3;  // of the unit's largest range: less is rest, like rounding noise
+  std::vector<std::pair<const Eigen::VectorXd*, double>> ranges;
+  for (const Signals& signals : of_units) {
+    const std::size_t begin = ranges.size();
+    double largest = 0;
+    for (const Eigen::VectorXd& s : signals) {
+      ranges.emplace_back(&s, s.maxCoeff() - s.minCoeff());
+      largest = std::max(largest, ranges.back().second);
+    }
+    for (std::size_t i = begin; i < ranges.size(); ++i)
+      ranges[i].second = std::max(ranges[i].second, kFloor * largest);
+  }
+  const int n = static_cast<int>(ranges.at(0).first->size());
   const auto bucket = [&](int from, int to) {
     double most = 0;
-    for (const Eigen::VectorXd& s : signals) {
-      const auto part = s.segment(from, to - from);
-      const double range = s.maxCoeff() - s.minCoeff();
+    for (const auto& [s, range] : ranges) {
+      const auto part = s->segment(from, to - from);
       if (range > 0) most = std::max(most, (part.maxCoeff() - part.minCoeff()) / range);
     }
     // of two that change alike, and where nothing does, the longer one
@@ -146,13 +157,13 @@ void Traces::add(const Entry& entry, const Suite::Run& run, const ArmForces* for
 
 void Traces::close() {
   if (series_.empty()) return;
-  std::vector<Eigen::VectorXd> signals;
+  Signals torques, forces;  // [N m], [N]
   for (const Series& s : series_) {
-    for (const Eigen::MatrixXd* rows : {&s.tau_ext, &s.wrench}) {
-      for (const auto& signal : rows->rowwise()) signals.push_back(finite(signal.transpose()));
-    }
+    for (const auto& row : s.tau_ext.rowwise()) torques.push_back(finite(row.transpose()));
+    for (Eigen::Index i = 0; i < s.wrench.rows(); ++i)
+      (i < 3 ? forces : torques).push_back(finite(s.wrench.row(i).transpose()));
   }
-  const std::vector<int> edges = bucket_edges(signals);
+  const std::vector<int> edges = bucket_edges({torques, forces});
   Json j = {{"name", group_}, {"t", Json::array()}};
   if (!site_.empty()) j["site"] = site_;
   // a bucket's first and last sample, at which its extremes are drawn

@@ -16,11 +16,15 @@ namespace tauext::report {
 /// Times at which a group's signals are shown.
 inline constexpr int kBuckets = 400;
 
+/// Signals of one unit.
+using Signals = std::vector<Eigen::VectorXd>;
+
 /// Where n samples are cut into buckets: begins of buckets, and n. The bucket in which some signal
 /// changes most, as a share of its range, is halved until there are `buckets` of them or each holds
-/// one sample; so a step is resolved to the sample, and rest costs nothing.
-/// @param signals n numbers each
-std::vector<int> bucket_edges(const std::vector<Eigen::VectorXd>& signals, int buckets = kBuckets);
+/// one sample; so a step is resolved to the sample, and rest costs nothing. A range is taken for at
+/// least a thousandth of the largest one of its unit, so that rounding noise is rest.
+/// @param of_units n numbers each
+std::vector<int> bucket_edges(const std::vector<Signals>& of_units, int buckets = kBuckets);
 
 /// The first and the second extreme of each bucket, in the order in which they come, as 16-bit
 /// shares of the signal's range.

@@ -54,7 +54,7 @@ TEST(Traces, EveryPulseOfThreeSamplesIsDrawnToItsHeight) {
     Eigen::VectorXd s = noise(30'000, 1, seed);
     const int at = static_cast<int>(seed) * 297 + 5;
     s.segment<3>(at).array() += 25;
-    const std::vector<int> edges = bucket_edges({s, noise(30'000, 3, seed + 1000)});
+    const std::vector<int> edges = bucket_edges({Signals{s, noise(30'000, 3, seed + 1000)}});
     EXPECT_EQ(edges.size(), kBuckets + 1);
     const Drawn d = draw(s, edges);
     EXPECT_EQ(d.high, s.segment<3>(at).maxCoeff());
@@ -64,7 +64,7 @@ TEST(Traces, EveryPulseOfThreeSamplesIsDrawnToItsHeight) {
 
 TEST(Traces, BucketsHoldTheirSamples) {
   const Eigen::VectorXd s = noise(5000, 2, 1);
-  const std::vector<int> edges = bucket_edges({s});
+  const std::vector<int> edges = bucket_edges({Signals{s}});
   EXPECT_EQ(edges.front(), 0);
   EXPECT_EQ(edges.back(), 5000);
   EXPECT_TRUE(std::is_sorted(edges.begin(), edges.end()));
@@ -75,14 +75,36 @@ TEST(Traces, BucketsHoldTheirSamples) {
 TEST(Traces, AStepIsResolvedToTheSampleAndRestIsNot) {
   Eigen::VectorXd s = Eigen::VectorXd::Zero(30'000);
   s.tail(29'000).setConstant(98.2);
-  const std::vector<int> edges = bucket_edges({s});
+  const std::vector<int> edges = bucket_edges({Signals{s}});
   EXPECT_EQ(std::count(edges.begin(), edges.end(), 1000), 1);
   expect_drawn(s, edges);
 }
 
+TEST(Traces, AStepStandsWhereItIsBesideRoundingNoise) {
+  for (const double height : {4e-14, 1e-9, 1e-4}) {  // [N m]
+    constexpr int kSamples = 30'000, kStep = 1966;
+    Trace trace;
+    trace.q = Eigen::MatrixXd::Zero(3, kSamples);
+    trace.tau_ext = Eigen::MatrixXd::Zero(3, kSamples);
+    trace.tau_ext.row(0).tail(kSamples - kStep).setConstant(3);
+    trace.tau_ext.row(0).tail(kSamples / 2).setConstant(10);
+    trace.tau_ext.row(1) = noise(kSamples, height, 1);
+    for (int k = 0; k < kSamples; ++k) trace.t.push_back(k * 1e-3);
+    Output estimate;
+    estimate.tau_ext = trace.tau_ext;
+    estimate.tau_ext.row(2) = noise(kSamples, height, 2);
+    Traces traces;
+    traces.add(Entry("wallmobot3", "contact", "mo2"), {trace, estimate, {}});
+    const auto group = nlohmann::json::parse(traces.json("here"))["groups"][0];
+    const auto t = group["t"].get<std::vector<double>>();
+    for (const std::size_t k : {kStep - 1, kStep})  // the last before it, and the first of it
+      EXPECT_GE(std::count(t.begin(), t.end(), trace.t[k]), 1) << trace.t[k] << " s, " << height;
+  }
+}
+
 TEST(Traces, AFewSamplesAreBucketsOfOne) {
   const Eigen::VectorXd s = noise(7, 1, 4);
-  const std::vector<int> edges = bucket_edges({s});
+  const std::vector<int> edges = bucket_edges({Signals{s}});
   EXPECT_EQ(edges, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
   expect_drawn(s, edges);
 }
