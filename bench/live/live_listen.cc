@@ -195,8 +195,7 @@ int run_listen(const Options& o) {
     begin = std::chrono::steady_clock::now();
   }
   Listener listener(url, {"TAUEXT_*"}, [&](std::string_view channel, Sender sender, Bytes m) {
-    table.take(channel, sender, now(), m);
-    viewers.take(channel, m);
+    if (table.take(channel, sender, now(), m)) viewers.take(channel, m);
   });
   say(fmt::format("listening to TAUEXT_* at {}{}; Ctrl-C ends", listener.url(), viewers.where()));
   Screen screen(listener, listener.url() + viewers.where());

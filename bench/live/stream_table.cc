@@ -57,46 +57,46 @@ bool StreamTable::decoded(Bytes message, const Envelope& e, Message& m) {
   if (reject == Reject::kNone) return true;
   ++rejects_[reject];
   const auto it = channels_.find(e.name);
-  if (it != channels_.end() && it->second.senders.is_ours(e.sender)) {
+  if (it != channels_.end() && it->second.senders.is_ours(e.sender))
     it->second.sequence.excuse(stamp_of(message).seq);
-  }
   return false;
 }
 
-void StreamTable::take(std::string_view channel, Sender sender, std::int64_t arrived,
+bool StreamTable::take(std::string_view channel, Sender sender, std::int64_t arrived,
                        Bytes message) {
   const std::int64_t hash = hash_of(message);
   Envelope envelope{std::string(channel.substr(0, kLongestChannel)), sender, arrived};
-  if (hash == detection_t::getHash()) {
-    if (detection_t d; decoded(message, envelope, d)) take_detection(d, envelope);
-  } else if (hash == force_t::getHash()) {
-    if (force_t f; decoded(message, envelope, f)) take_force(f, envelope);
-  } else if (hash == summary_t::getHash()) {
-    if (summary_t s; decoded(message, envelope, s)) take_summary(s, envelope);
-  } else if (hash == sample_t::getHash()) {
-    sample_t s{};
-    if (!decoded(message, envelope, s)) return;
-    Channel* const c = accept(channels_, envelope, s.seq);
-    if (c == nullptr) return;
-    c->newest.n = s.n;
-    c->newest.t = s.t;
-    c->newest.reference = s.reference;
-    std::copy_n(s.tau_ext_true, kMaxJoints, c->newest.tau_ext_true);
-  } else {
-    estimate_t e{};
-    if (!decoded(message, envelope, e)) return;
-    Channel* const c = accept(channels_, envelope, e.seq);
-    if (c == nullptr) return;
-    c->newest = e;
-    c->estimate = true;
-  }
+  const auto take_as = [&]<class Message>(Message m) {
+    return decoded(message, envelope, m) && use(m, envelope);
+  };
+  if (hash == detection_t::getHash()) return take_as(detection_t{});
+  if (hash == force_t::getHash()) return take_as(force_t{});
+  if (hash == summary_t::getHash()) return take_as(summary_t{});
+  if (hash == sample_t::getHash()) return take_as(sample_t{});
+  return take_as(estimate_t{});
 }
 
-// the channel, if the message is the newest of its sender
+bool StreamTable::use(const estimate_t& m, const Envelope& e) {
+  Channel* const c = accept(channels_, e, m.seq);
+  if (c == nullptr) return false;
+  c->newest = m;
+  return c->estimate = true;
+}
+
+bool StreamTable::use(const sample_t& s, const Envelope& e) {
+  Channel* const c = accept(channels_, e, s.seq);
+  if (c == nullptr) return false;
+  c->newest.n = s.n, c->newest.t = s.t, c->newest.reference = s.reference;
+  std::copy_n(s.tau_ext_true, kMaxJoints, c->newest.tau_ext_true);
+  return true;
+}
+
+// the channel, if the message is the newest of its sender and its number is believed
 StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std::int64_t seq) {
-  constexpr std::size_t kMost = 100;  // names come from outside
-  if (all.size() >= kMost && !all.contains(e.name)) {
-    ++beyond_;
+  if (all.size() >= kMostNames && !all.contains(e.name)) {
+    if (++beyond_ == 1)
+      events_.push_back(fmt::format("{}: rejected, as are all names beyond the first {}",
+                                    printable_name(e.name), kMostNames));
     return nullptr;
   }
   Channel& c = all[e.name];
@@ -112,21 +112,20 @@ StreamTable::Channel* StreamTable::accept(Channels& all, const Envelope& e, std:
     order = c.sequence.take(seq);
     const bool in_turn = order == Order::kNext || order == Order::kRestart;
     const bool followed = c.sequence.counts().foreign == foreign;
-    if (in_turn && followed) {
+    if (in_turn && followed)
       c.senders.in_turn(e.arrived);
-    } else {
+    else
       c.senders.out_of_turn(e.arrived);
-    }
   }
   if (order == Order::kRestart)
     events_.push_back(printable_name(e.name) + ": the sender has started anew");
-  if (const std::string trouble = c.senders.trouble(); !trouble.empty()) {
+  if (const std::string trouble = c.senders.trouble(); !trouble.empty())
     events_.push_back(printable_name(e.name) + ": " + trouble);
-  }
   if (whose == Senders::Whose::kOther) return nullptr;
   c.arrivals.push_back(e.arrived);
   while (c.arrivals.front() <= e.arrived - kSecond) c.arrivals.pop_front();
-  return order == Order::kNext || order == Order::kRestart ? &c : nullptr;
+  const bool used = order == Order::kRestart || (order == Order::kNext && c.sequence.is_settled());
+  return used ? &c : nullptr;
 }
 
 Account StreamTable::account() const {
@@ -145,21 +144,24 @@ Account StreamTable::account() const {
   return sum;
 }
 
-void StreamTable::take_detection(const detection_t& d, const Envelope& e) {
-  const std::string pair = printable_name(d.estimator) + "+" + printable_name(d.detector);
-  if (accept(pairs_, {pair, e.sender, e.arrived}, d.seq) == nullptr || d.mark == 0) return;
-  events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
-                                pair, d.contact == 0 ? "" : ": ", contact_name(d.contact)));
+bool StreamTable::use(const detection_t& d, const Envelope& e) {
+  const std::string pair = d.estimator + "+" + d.detector;
+  if (accept(pairs_, {pair, e.sender, e.arrived}, d.seq) == nullptr) return false;
+  if (d.mark != 0)
+    events_.push_back(fmt::format("{:.3f} s  {} marks{}{}", static_cast<double>(d.mark_utime) / 1e6,
+                                  printable_name(pair, 120), d.contact == 0 ? "" : ": ",
+                                  contact_name(d.contact)));
+  return true;
 }
 
-void StreamTable::take_force(const force_t& f, const Envelope& e) {
-  const std::string name = printable_name(f.estimator) + " at " +
-                           (f.site.empty() ? "end_effector" : printable_name(f.site));
+bool StreamTable::use(const force_t& f, const Envelope& e) {
+  const std::string name = f.estimator + " at " + (f.site.empty() ? "end_effector" : f.site);
   Channel* const c = accept(forces_, {name, e.sender, e.arrived}, f.seq);
   if (c != nullptr) c->force = f;
+  return c != nullptr;
 }
 
-void StreamTable::take_summary(const summary_t& s, const Envelope& e) {
+bool StreamTable::use(const summary_t& s, const Envelope& e) {
   ++summaries_;
   take_end(s, e);
   std::string line = printable_name(s.entry);
@@ -169,6 +171,7 @@ void StreamTable::take_summary(const summary_t& s, const Envelope& e) {
   if (s.published > 0)
     line += fmt::format("  {} messages, {} samples dropped", s.published, s.ring_drops);
   events_.push_back(line);
+  return true;
 }
 
 // the last messages may have been lost, too
@@ -265,7 +268,8 @@ std::string StreamTable::format_forces(std::int64_t now, bool small) const {
   TableWriter table(columns);
   for (const auto& [name, c] : forces_) {
     const force_t& f = c.force;
-    std::vector<std::string> cells = {small ? shortened(name, widest) : name,
+    const std::string shown = printable_name(name, 120);
+    std::vector<std::string> cells = {small ? shortened(shown, widest) : shown,
                                       fmt::to_string(c.rate(now))};
     if (!small) cells.push_back(fmt::to_string(c.sequence.counts().lost));
     for (int i = 0; i < 3; ++i) cells.push_back(seen(f, i));
@@ -280,16 +284,14 @@ std::string StreamTable::format_forces(std::int64_t now, bool small) const {
 std::string StreamTable::totals(const GroupSocket::Counts& refused) const {
   const Account all = account();
   std::string out = tauext::format(all, refused) + "\n";
-  std::int64_t foreign = 0;
-  for (const Channels* channels : {&channels_, &pairs_, &forces_}) {
-    for (const auto& [name, c] : *channels) foreign += c.sequence.counts().foreign + c.others;
-  }
+  std::int64_t foreign = all.rejected - beyond_;
   std::vector<std::string> why;
   for (const auto& [reason, count] : rejects_) {
+    foreign -= count;
     why.push_back(fmt::format("{} {}", count, describe(reason)));
   }
   if (foreign > 0) why.push_back(fmt::format("{} of a second sender", foreign));
-  if (beyond_ > 0) why.push_back(fmt::format("{} of more channels than a table holds", beyond_));
+  if (beyond_ > 0) why.push_back(fmt::format("{} of more names than are shown", beyond_));
   if (!why.empty()) out += fmt::format("rejected: {}\n", fmt::join(why, ", "));
   if (const std::string r = tauext::format(refused); !r.empty()) out += "refused: " + r + "\n";
   return out;

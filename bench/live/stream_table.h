@@ -20,8 +20,13 @@ namespace tauext::live {
 /// Takes messages as they come, checks them and keeps the newest of each channel.
 class StreamTable {
  public:
+  /// Channels, pairs of estimator and detector, and forces, of each so many; names come from
+  /// outside, and no run has a quarter of them, nor a screen room for more.
+  static constexpr std::size_t kMostNames = 100;
+
   /// @param arrived [us] on a clock that never goes back
-  void take(std::string_view channel, Sender sender, std::int64_t arrived, Bytes message);
+  /// @returns whether it is used: the one answer for all that show it
+  bool take(std::string_view channel, Sender sender, std::int64_t arrived, Bytes message);
 
   /// A row for each joint of each channel; rates are those of the second before `now` [us, the same
   /// clock].
@@ -63,18 +68,20 @@ class StreamTable {
   template <class Message>
   bool decoded(Bytes message, const Envelope& e, Message& m);
   Channel* accept(Channels& all, const Envelope& e, std::int64_t seq);
-  void take_detection(const detection_t& d, const Envelope& e);
-  void take_force(const force_t& f, const Envelope& e);
-  void take_summary(const summary_t& s, const Envelope& e);
+  bool use(const estimate_t& m, const Envelope& e);
+  bool use(const sample_t& s, const Envelope& e);
+  bool use(const detection_t& d, const Envelope& e);
+  bool use(const force_t& f, const Envelope& e);
+  bool use(const summary_t& s, const Envelope& e);
   void take_end(const summary_t& s, const Envelope& e);
 
   Channels channels_;
-  Channels pairs_;   // detections, by estimator and detector
-  Channels forces_;  // by estimator and site
+  Channels pairs_;   // detections, by estimator+detector
+  Channels forces_;  // by estimator at site
   std::map<Reject, std::int64_t> rejects_;
   std::vector<std::string> events_;
   std::int64_t summaries_ = 0;
-  std::int64_t beyond_ = 0;  // messages of more channels than a table can hold
+  std::int64_t beyond_ = 0;  // messages of names beyond kMostNames
 };
 
 }  // namespace tauext::live

@@ -45,6 +45,9 @@ class Sequence {
   /// The sender has started anew with this number.
   void restart(std::int64_t seq) noexcept;
 
+  /// Whether the newest number is believed; one that jumped is once the next goes on from there.
+  bool is_settled() const noexcept { return jump_.size() == 0; }
+
   const Counts& counts() const noexcept { return counts_; }  ///< since the begin
 
  private:

@@ -75,7 +75,8 @@ TEST(StreamTableTest, TwoSendersOnAChannelAreNamedAndTheFirstIsShown) {
       for (const int second : {0, 1}) {
         e.seq = 50'000 * second + k;
         e.tau_ext_hat[0] = second;
-        table.take("TAUEXT_ESTIMATE_ekf", known ? 1 + second : 0, 1000 * k, bytes_of(e));
+        const Sender sender = known ? 1 + second : 0;
+        EXPECT_NE(table.take("TAUEXT_ESTIMATE_ekf", sender, 1000 * k, bytes_of(e)), second) << k;
       }
     }
     const Account a = table.account();
@@ -88,7 +89,36 @@ TEST(StreamTableTest, TwoSendersOnAChannelAreNamedAndTheFirstIsShown) {
         << events[0];
     EXPECT_TRUE(has(table.totals({}), "of a second sender")) << table.totals({});
     const std::string text = table.format(500'000);
-    EXPECT_TRUE(!known || !has(text, "1.000")) << text;
+    EXPECT_FALSE(has(text, "1.000")) << text;
+  }
+}
+
+TEST(StreamTableTest, ALargeJumpIsUsedOnceTheStreamGoesOnFromThere) {
+  StreamTable table;
+  estimate_t e = estimate();
+  const auto used = [&](std::int64_t seq) {
+    e.seq = seq;
+    return table.take("TAUEXT_ESTIMATE_ekf", 0, 0, bytes_of(e));
+  };
+  for (const int seq : {0, 1, 2, 60}) EXPECT_TRUE(used(seq)) << seq;
+  EXPECT_FALSE(used(5000));
+  EXPECT_TRUE(used(61)) << "it did not";
+  EXPECT_FALSE(used(5000));
+  EXPECT_TRUE(used(5001));
+  EXPECT_FALSE(used(62)) << "late";
+  EXPECT_EQ(table.account().used, 7) << "what was not believed at first counts";
+}
+
+TEST(StreamTableTest, WhatIsUsedOfDetectionsAndForcesIsTheFirstSenders) {
+  StreamTable table;
+  for (int k = 0; k < 3; ++k) {
+    detection_t d = detection();
+    force_t f = force();
+    d.seq = f.seq = k;
+    for (const int second : {0, 1}) {
+      EXPECT_NE(table.take("TAUEXT_DETECTION", 1 + second, 0, bytes_of(d)), second);
+      EXPECT_NE(table.take("TAUEXT_FORCE", 1 + second, 0, bytes_of(f)), second);
+    }
   }
 }
 

@@ -44,10 +44,17 @@ function decode(view) {
 const KEPT = 600, FOLD = 16;
 class Rows {
   constructor(width, folds = true) {
-    Object.assign(this, {width, n: 0, t: new Float64Array(64), low: new Float32Array(64 * width), high: new Float32Array(64 * width)});
+    Object.assign(this, {width, n: 0, back: Infinity, t: new Float64Array(64), low: new Float32Array(64 * width), high: new Float32Array(64 * width)});
     this.coarse = folds ? new Rows(width, false) : null;
   }
   add(t, low, high) {
+    if (this.n && t < this.t[this.n - 1]) {  // one time that goes back says nothing, a second one near it that the stream goes on there
+      if (!(t >= this.back && t < this.back + 10)) return void (this.back = t);
+      const kept = this.from(this.back);
+      this.n = this.n - kept > 1 ? 0 : kept;  // one row ahead of it was wrong, more are of another run
+      if (this.coarse) this.coarse.n = this.n ? this.coarse.from(this.back) : 0;
+    }
+    this.back = Infinity;
     if (this.n === this.t.length) this.make_room();
     this.t[this.n] = t;
     this.low.set(low, this.n * this.width);
@@ -96,60 +103,71 @@ class Rows {
 const QUANTITIES = {tau_ext: 'N m', force: 'N', moment: 'N m', link: '1', statistic: '1', q: 'rad', qd: 'rad/s', tau: 'N m'};
 const FLOORS = {tau_ext: 0.02, force: 0.1, moment: 0.02, link: 1, statistic: 1.2, q: 1e-3, qd: 1e-3, tau: 0.02};
 const MEASURED = ['q', 'qd', 'tau'], WRENCH = ['force', 'moment'];
-const seen = {messages: 0, lost: 0, late: 0, rejected: 0, frames: 0, text: ''};
-let all, next, marks, contacts, newest, oldest, leads, site;  // leads: the channel whose measurements are shown; site: of forces
-function forget() {
-  all = Object.fromEntries(Object.keys(QUANTITIES).map((quantity) => [quantity, new Map()]));
-  next = new Map(), marks = [], contacts = [], newest = -Infinity, oldest = Infinity, leads = '', site = '';
-}
-forget();
+const seen = {messages: 0, lost: 0, rejected: 0, frames: 0, text: ''};
+const all = Object.fromEntries(Object.keys(QUANTITIES).map((quantity) => [quantity, new Map()])), streams = new Map();
+let marks = [], contacts = [], newest = -Infinity, oldest = Infinity, leads = '', site = '';  // leads: the channel whose measurements are shown; site: of forces
 function keep(quantity, who, t, low, high = low) {
-  if (all[quantity].size >= 100 && !all[quantity].has(who)) throw new RangeError('too many names');  // they come from outside
   if (!all[quantity].has(who)) all[quantity].set(who, new Rows(low.length)), layout = '';
   if (all[quantity].get(who).width === low.length) all[quantity].get(who).add(t, low, high);
 }
 
-// whether it is newer than all before it on its channel; where both its number and its time are older, its sender is new
-function in_turn(channel, {seq, utime}) {
-  const last = next.get(channel);
-  if (last && seq < last.seq && utime >= last.utime - 1e6) return ++seen.late, false;
-  if (last && seq < last.seq) forget();
-  else if (last) seen.lost += seq - last.seq;
-  next.set(channel, {seq: seq + 1, utime});
-  return true;
+// What comes was judged before it was sent: a number that goes back is a sender that has started anew.
+function count(stream, {seq, utime}) {
+  const last = streams.get(stream);
+  if (last) seen.lost += Math.max(0, seq - last.next);
+  streams.set(stream, {next: seq + 1, t: utime / 1e6, heard: clock, goes_on: Boolean(last)});
+}
+const speaks = (stream) => stream?.heard > clock - 1000;
+
+// What is seen ends at the time that most streams have come to, and of two halves at that of the first stream: no stream moves it alone,
+// and none with a single message.
+function settle() {
+  const now = [...streams.values()].filter(speaks), on = now.filter((s) => s.goes_on), times = (on.length ? on : now).map((s) => s.t);
+  if (times.length % 2 === 0) times.push(times[0]);
+  const time = times.sort((a, b) => a - b)[times.length >> 1];
+  if (time === undefined) return;
+  if (time < newest - 1) {  // they have begun anew; what has not is over
+    for (const rows of Object.values(all)) for (const [who, r] of rows) if (r.t[r.n - 1] > time + 1) rows.delete(who), layout = '';
+    [marks, contacts] = [marks.filter((mark) => mark.t < time + 1), contacts.filter(([begin]) => begin < time + 1)];
+    oldest = time, site = '';
+  }
+  newest = time;
+  marks = marks.filter((mark) => Math.abs(mark.t - newest) < KEPT);
+  contacts = contacts.filter(([, end]) => Math.abs(end - newest) < KEPT);
 }
 
 function take(channel, m) {
   if (m.type === 'summary_t') return;
-  const t = m.utime / 1e6, pair = `${m.estimator}+${m.detector}`;
-  if (!in_turn({detection_t: pair, force_t: `force of ${m.estimator}`}[m.type] ?? channel, m)) return;
-  [oldest, newest] = [Math.min(oldest, t), Math.max(newest, t)];
+  const t = m.utime / 1e6, pair = `${m.estimator}+${m.detector}`, at = m.site || 'end_effector';
+  count({detection_t: pair, force_t: `force of ${m.estimator} at ${at}`}[m.type] ?? channel, m);
+  oldest = Math.min(oldest, t);
   if (m.type === 'detection_t') {
     keep('statistic', pair, t, [m.score]);
     const contact = TYPES.get('detection_t').names_of('contact')[m.contact] ?? '?';
     if (m.mark) marks.push({t: m.mark_utime / 1e6, who: m.estimator, name: `${m.estimator} ${contact === 'None' ? m.detector : contact.toLowerCase()}`});
-    if (m.contact_true && contacts.at(-1)?.[1] >= t - 0.1) contacts.at(-1)[1] = t;
+    if (m.contact_true && contacts.at(-1)?.[0] <= t && contacts.at(-1)[1] >= t - 0.1) contacts.at(-1)[1] = t;
     else if (m.contact_true) contacts.push([t, t]);
-    marks = marks.filter((mark) => mark.t > newest - KEPT);
-    contacts = contacts.filter(([, end]) => end > newest - KEPT);
     return;
   }
   if (m.type === 'force_t') {
-    site = m.site || 'end_effector';
-    keep('force', m.estimator, t, m.force);
-    keep('link', m.estimator, t, [m.link]);
-    if (all.moment.size || m.moment.some((x) => x !== 0)) keep('moment', m.estimator, t, m.moment);
+    site ||= at;
+    const who = m.estimator + (at === site ? '' : ` at ${at}`);
+    keep('force', who, t, m.force);
+    keep('link', who, t, [m.link]);
+    if (all.moment.size || m.moment.some((x) => x !== 0)) keep('moment', who, t, m.moment);
     return;
   }
-  const n = m.n, first = (x) => x.slice(0, n), who = channel.replace(/^TAUEXT_(ESTIMATE_)?/, '');
+  const n = m.n, first = (x) => x.slice(0, n), estimator = channel.replace(/^TAUEXT_ESTIMATE_/, ''), who = estimator === 'reference' ? channel : estimator;
   if (m.type === 'estimate_t') keep('tau_ext', who, t, first(m.tau_ext_hat_min), first(m.tau_ext_hat_max));
-  leads ||= channel;  // all estimates carry the same measurements
+  if (!speaks(streams.get(leads))) leads = channel;  // all estimates carry the same measurements
   if (leads !== channel) return;
   for (const quantity of MEASURED) keep(quantity, 'measured', t, first(m[quantity]));
   if (m.reference) keep('tau_ext', 'reference', t, first(m.tau_ext_true_min ?? m.tau_ext_true), first(m.tau_ext_true_max ?? m.tau_ext_true));
 }
 
+let clock = 0, frame_at = 0;  // [ms] clock: while others speak, so that a page that was held up takes nobody for silent
 function take_frame(buffer) {
+  clock += Math.min(100, performance.now() - frame_at), frame_at = performance.now();
   const view = new DataView(buffer);
   for (let at = 0; at < view.byteLength;) {
     const name = view.getUint16(at, true), size = view.getUint32(at + 2, true), from = at + 6 + name;
@@ -161,6 +179,7 @@ function take_frame(buffer) {
     }
     at = from + size;
   }
+  settle();
 }
 
 // ---- what is seen: the last seconds, or what was chosen
@@ -169,7 +188,7 @@ const window_now = () => {
   const end = Math.max(newest, oldest + state.seconds);  // a time before the first sample is none
   return state.paused ?? [end - state.seconds, end];
 };
-const order = (who) => who === 'reference' ? -1 : [...all.tau_ext.keys()].filter((w) => w !== 'reference').indexOf(who.split('+')[0]);
+const order = (who) => who === 'reference' ? -1 : [...all.tau_ext.keys()].filter((w) => w !== 'reference').indexOf(who.split(/\+| at /)[0]);
 const style_of = (who) => ({width: 1, ...(order(who) < 0 ? {color: themed('--truth'), dash: []} : look(order(who)))});  // a pixel: wider takes longer
 let layout = '', plots = [];
 function lay_out() {
@@ -256,7 +275,7 @@ addEventListener('resize', () => { layout = '', drawn = -1; });
 let before = 0;
 setInterval(() => {
   document.getElementById('status').textContent = `${seen.text}; ${seen.messages - before} messages/s, ${seen.messages} in all, ${seen.lost} lost, `
-    + `${seen.late} late, ${seen.rejected} rejected`;
+    + `${seen.rejected} rejected`;
   before = seen.messages;
 }, 1000);
 fetch('/stream.json').then((r) => r.json()).then(({title, types}) => {
