@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <locale>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -78,6 +81,36 @@ void put_payload(XMLElement& root, const Payload& p) {
   inertial->SetAttribute("diaginertia", fmt::format("{0:.17g} {0:.17g} {0:.17g}", I).c_str());
 }
 
+// an attribute, or that of its class: the one that it names, or a body around it, or the file's
+std::string with_defaults(XMLElement& root, const XMLElement& e, const char* attribute) {
+  if (e.Attribute(attribute) != nullptr) return text(e, attribute);
+  std::string name = text(e, "class");
+  for (const tinyxml2::XMLNode* at = e.Parent(); name.empty() && at->ToElement() != nullptr;
+       at = at->Parent())
+    name = text(*at->ToElement(), "childclass");
+  const XMLElement* found = nullptr;
+  each(root, [&](XMLElement& d) {
+    if (name_of(d) == "default" &&
+        (name.empty() ? parent_name(d) != "default" : text(d, "class") == name))
+      found = &d;
+    return found == nullptr;
+  });
+  for (; found != nullptr && name_of(*found) == "default"; found = found->Parent()->ToElement()) {
+    const XMLElement* const values = found->FirstChildElement(e.Name());
+    if (values != nullptr && values->Attribute(attribute) != nullptr)
+      return text(*values, attribute);
+  }
+  return "";
+}
+
+// the larger end of a range; 0 without one
+double most(const std::string& range) {
+  double from = 0, to = 0;
+  std::istringstream in(range);
+  in.imbue(std::locale::classic());
+  return in >> from >> to ? std::max(-from, to) : 0;
+}
+
 }  // namespace
 
 void put_measured(XMLElement& mujoco, const MeasuredTerms& terms) {
@@ -99,6 +132,35 @@ void put_measured(XMLElement& mujoco, const MeasuredTerms& terms) {
                                       .c_str());
   }
   if (terms.payload) put_payload(mujoco, *terms.payload);
+}
+
+void put_rated_torque(XMLElement& mujoco, const std::string& joint, double rated) {
+  if (!(rated > 0) || !std::isfinite(rated)) return;
+  XMLElement* const number =
+      mujoco.InsertNewChildElement("custom")->InsertNewChildElement("numeric");
+  number->SetAttribute("name", (std::string(kRated) + joint).c_str());
+  number->SetAttribute("data", exact(rated).c_str());
+}
+
+void keep_rated_torques(XMLElement& mujoco) {
+  std::map<std::string, double> rated;
+  each(mujoco, [&](XMLElement& e) {
+    if (parent_name(e) != "actuator" || e.Attribute("joint") == nullptr) return true;
+    const std::string forces = with_defaults(mujoco, e, "forcerange");
+    const double force = most(
+        forces.empty() && name_of(e) == "motor" ? with_defaults(mujoco, e, "ctrlrange") : forces);
+    std::istringstream gear(with_defaults(mujoco, e, "gear"));
+    double factor = 1;
+    gear.imbue(std::locale::classic());
+    if (!(gear >> factor)) factor = 1;
+    double& of_joint = rated[text(e, "joint")];
+    of_joint = std::max(of_joint, std::abs(factor) * force);
+    return true;
+  });
+  for (auto& [name, joint] : named(mujoco, "joint"))
+    if (const double range = most(with_defaults(mujoco, *joint, "actuatorfrcrange")); range > 0)
+      rated[name] = range;
+  for (const auto& [name, torque] : rated) put_rated_torque(mujoco, name, torque);
 }
 
 }  // namespace tauext::detail

@@ -47,5 +47,16 @@ inline constexpr std::string_view kMeasured = "tauext:";
 /// @throws std::runtime_error for a joint or a body that it does not have, listing those there are
 void put_measured(tinyxml2::XMLElement& mujoco, const MeasuredTerms& terms);
 
+/// Before the name of a joint: the <numeric> with its rated torque [N m] or [N].
+inline constexpr std::string_view kRated = "tauext:rated:";
+
+/// Puts a joint's rated torque into MJCF; nothing, unless it is above 0 and finite: files have 0
+/// where nobody knows it.
+void put_rated_torque(tinyxml2::XMLElement& mujoco, const std::string& joint, double rated);
+
+/// The same of each joint that has an `actuatorfrcrange`, or else an actuator with a `forcerange`,
+/// or else a motor with a `ctrlrange`, by itself or by its class.
+void keep_rated_torques(tinyxml2::XMLElement& mujoco);
+
 }  // namespace detail
 }  // namespace tauext

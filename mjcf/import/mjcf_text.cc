@@ -53,8 +53,7 @@ class Import {
   }
 
   ImportedText run() {
-    load(doc_, path_);
-    if (name_of(*doc_.RootElement()) == "robot") {
+    if (name_of(load(doc_, path_)) == "robot") {
       XMLDocument mjcf;
       detail::urdf_to_mjcf(*doc_.RootElement(), mjcf, out_.dropped);
       mjcf.DeepCopy(&doc_);
@@ -64,6 +63,7 @@ class Import {
     include(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     find_bodies_with_mass(root);
+    detail::keep_rated_torques(root);
     keep(root);
     detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
     set_compiler(root);

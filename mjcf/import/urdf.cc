@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/measured_terms.h"
 #include "mjcf/import/schema.h"
 #include "mjcf/import/xml.h"
 
@@ -270,10 +271,9 @@ class Urdf {
     set(out, "damping", {number(dynamics, "damping", 0)});
     set(out, "frictionloss", {number(dynamics, "friction", 0)});
     set(out, "armature", {number(dynamics, "armature", 0)});  // URDF itself has no word for it
+    if (limit != nullptr) put_rated_torque(mujoco_, name, limit->DoubleAttribute("effort"));
     if (const XMLElement* const mimic = joint.FirstChildElement("mimic")) {
-      XMLElement* all = mujoco_.FirstChildElement("equality");
-      if (all == nullptr) all = mujoco_.InsertNewChildElement("equality");
-      XMLElement& tie = *all->InsertNewChildElement("joint");
+      XMLElement& tie = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
       tie.SetAttribute("joint1", name.c_str());
       tie.SetAttribute("joint2", leader_of(*mimic, name).c_str());
       set(tie, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});

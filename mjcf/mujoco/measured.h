@@ -18,4 +18,8 @@ struct Measured {
 /// @param joint its number, from 0
 Measured measured(const mjModel& m, int joint);
 
+/// [N m] or [N] what the drive of a joint can do at most: `custom`'s `numeric` called
+/// `tauext:rated:JOINT`, or else the ranges of its motors; 0 where the file does not say.
+double rated_torque(const mjModel& m, int joint);
+
 }  // namespace tauext
