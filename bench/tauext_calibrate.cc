@@ -87,6 +87,15 @@ auto naming(const std::vector<std::string>& logs, Make&& make) {
   }
 }
 
+int not_sure(const Flags& f) {
+  say(fmt::format(
+      "tauext-calibrate: {}these numbers are not to be used: is this the robot of the recordings, "
+      "and do their columns have the right joints, units (rad, rad/s, N m or A) and signs? "
+      "--columns tells them; where the speed is noisy, a longer --window helps",
+      f.out.empty() ? "" : f.out + " is not written, as "));
+  return kAnswerIsNo;
+}
+
 int identify_one(const Flags& f) {
   if (f.logs.size() != 1)
     throw std::invalid_argument("a log of one joint, or --robot FILE and logs of it, are required");
@@ -96,8 +105,12 @@ int identify_one(const Flags& f) {
   const RecordedLog recorded = read_any_log(f.logs[0], {f.channel, f.columns});
   recorded.require_consistent(f.logs[0]);
   const auto id = naming(f.logs, [&] { return identify(recorded.trace, model, f.windows); });
-  if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
   fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
+  if (!id.doubts.empty()) {
+    for (const std::string& why : id.doubts) say(why);
+    return not_sure(f);
+  }
+  if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
   return recorded.usable() ? kGood : kAnswerIsNo;
 }
 
@@ -135,16 +148,22 @@ int calibrate(const Flags& f, const ArmTree& arm) {
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;
-  const auto joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
+  NewRobotFile robot{f.robot, f.lock, {}, nullptr, f.logs};
+  robot.joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
+  judge_by_file(robot, logs, f.windows);
   std::FILE* const to = f.out == "-" ? stderr : stdout;
   const TableFormat format = table_format(f.format);
-  fmt::print(to, "{}", parameter_table(joints, format));
-  if (format == TableFormat::kText) fmt::print(to, "\n{}", fit_report(joints));
-  if (!f.out.empty()) {
-    std::vector<std::string> said;
-    write_file(robot_file_text({f.robot, f.lock, joints, nullptr, f.logs}, f.out, said), f.out);
-    for (const std::string& line : said) say(line);
+  fmt::print(to, "{}", parameter_table(robot.joints, format));
+  if (format == TableFormat::kText) fmt::print(to, "\n{}", fit_report(robot.joints));
+  bool sure = true;
+  for (const CalibratedJoint& j : robot.joints) {
+    const std::string name = printable_name(j.name);
+    for (const std::string& words : j.held) say(fmt::format("{}: {}", name, words));
+    for (const std::string& why : j.doubts) say(fmt::format("joint '{}': {}", name, why));
+    sure = sure && j.doubts.empty();
   }
+  if (!sure) return not_sure(f);
+  if (!f.out.empty()) write_file(robot_file_text(robot, f.out), f.out);
   return usable ? kGood : kAnswerIsNo;
 }
 
@@ -156,13 +175,17 @@ int weigh_payload(const Flags& f, const ArmTree& arm) {
     for (Trace& log : *all) make_torques(log, arm.gain);
   const auto w = naming(f.loaded, [&] { return weigh(arm, loaded, empty, f.windows); });
   fmt::print(f.out == "-" ? stderr : stdout, "{}", weighing_table(w, table_format(f.format)));
+  std::string why = doubt(w);
+  if (why.empty() && !f.out.empty() && !(w.payload.mass > 0))
+    why = "the recordings show no payload";
+  if (!why.empty()) {
+    say(why);
+    return not_sure(f);
+  }
   if (!f.out.empty()) {
-    if (!(w.payload.mass > 0))
-      throw std::invalid_argument(fmt::format(
-          "{}: not written, as the payload came out as {:.3g} kg", f.out, w.payload.mass));
-    std::vector<std::string> recordings = f.logs, said;
+    std::vector<std::string> recordings = f.logs;
     recordings.insert(recordings.end(), f.loaded.begin(), f.loaded.end());
-    write_file(robot_file_text({f.robot, f.lock, {}, &w, recordings}, f.out, said), f.out);
+    write_file(robot_file_text({f.robot, f.lock, {}, &w, recordings}, f.out), f.out);
   }
   return usable ? kGood : kAnswerIsNo;
 }

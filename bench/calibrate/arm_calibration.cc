@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "bench/calibrate/arm_motion.h"
-#include "bench/calibrate/least_squares.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -19,15 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// of one joint, a row for each window
-struct Rows {
-  MatrixXd terms;     // what the parameters multiply
-  VectorXd rigid;     // [N m] what the masses take
-  VectorXd measured;  // [N m] or [A]
-  MatrixXd others;    // what may be missing
-  int left_out = 0;
-};
 
 // what a joint's friction may have beside the terms that were asked for
 constexpr JointTerm kSuspects[] = {
@@ -82,9 +72,9 @@ Terms find_joint_terms(const std::vector<std::string>& names) {
   return all;
 }
 
-Rows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motions, int joint,
-             const Terms& terms, const Windows& w, double v_s) {
-  Rows r;
+JointRows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motions, int joint,
+                  const Terms& terms, const Windows& w, double v_s) {
+  JointRows r;
   std::vector<std::pair<std::size_t, Window>> windows;  // and the log of each
   for (std::size_t l = 0; l < logs.size(); ++l)
     for (const Window& window : windows_of(logs[l], joint, w, r.left_out))
@@ -92,8 +82,11 @@ Rows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motio
   const auto m = static_cast<Index>(windows.size()), n = static_cast<Index>(terms.size());
   r.terms.resize(m, n), r.rigid.resize(m), r.measured.resize(m);
   r.others.resize(m, static_cast<Index>(std::size(kSuspects)));
+  for (const JointTerm& t : kSuspects) r.suspects.emplace_back(t.name);
   for (Index i = 0; i < m; ++i) {
     const auto& [l, window] = windows[static_cast<std::size_t>(i)];
+    for (int k = window.first; k <= window.second; ++k)
+      r.fastest = std::max(r.fastest, std::abs(logs[l].qd(joint, k)));
     r.rigid[i] = motions[l].expected(joint, window);
     r.measured[i] = mean_torque(logs[l], joint, window);
     const auto of = [&, l = l, window = window](const JointTerm& t) {
@@ -105,149 +98,33 @@ Rows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motio
   return r;
 }
 
-// what a fit says: the parameters, and for currents the gain before them
-struct Answer {
-  Fit fit;
-  VectorXd theta;   // in the terms' units
-  double gain = 1;  // [N m/A], or 1
-};
-
-Answer answer(const Rows& r, const std::vector<std::string>& names, bool currents) {
-  if (!currents) {
-    Fit f = fit(r.terms, r.measured - r.rigid, names);
-    VectorXd theta = f.theta();
-    return {std::move(f), std::move(theta)};
-  }
-  MatrixXd A(r.terms.rows(), r.terms.cols() + 1);
-  A << r.rigid, r.terms;
-  std::vector<std::string> all = {"the drive's gain"};
-  all.insert(all.end(), names.begin(), names.end());
-  Fit f = fit(A, r.measured, all);
-  const VectorXd theta = f.theta();
-  return {std::move(f), theta.tail(theta.size() - 1) / theta[0], 1 / theta[0]};
-}
-
-// rows of all stretches but one, or of that one alone
-Rows part(const Rows& r, int stretch, bool without) {
-  const Index m = r.rigid.size(), from = stretch * m / kStretches,
-              to = (stretch + 1) * m / kStretches;
-  std::vector<Index> chosen;
-  for (Index i = 0; i < m; ++i)
-    if ((i >= from && i < to) != without) chosen.push_back(i);
-  return {r.terms(chosen, Eigen::all), r.rigid(chosen), r.measured(chosen),
-          r.others(chosen, Eigen::all), 0};
-}
-
-double rms(const VectorXd& v) {
-  return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
-}
-
-VectorXd left_over(const Rows& r, const Answer& a) {
-  return a.gain * r.measured - r.rigid - r.terms * a.theta;
-}
-
-// errors by leaving stretches out one by one; and what is left in these
-void hold_out(const Rows& r, const std::vector<std::string>& names, bool currents,
-              const Answer& all, CalibratedJoint& joint) {
-  MatrixXd theta(all.theta.size(), kStretches);
-  MatrixXd gain(1, kStretches);
-  double squares = 0;
-  for (int s = 0; s < kStretches; ++s) {
-    const Answer a = answer(part(r, s, true), names, currents);
-    theta.col(s) = a.theta;
-    gain(0, s) = a.gain;
-    squares += left_over(part(r, s, false), a).squaredNorm();
-  }
-  joint.held_out = std::sqrt(squares / static_cast<double>(r.rigid.size()));
-  const VectorXd errors = jackknife_errors(theta);
-  for (Index k = 0; k < all.theta.size(); ++k) {
-    CalibratedTerm& t = joint.terms[static_cast<std::size_t>(k)];
-    t.error = std::max(t.error, errors[k]);
-  }
-  if (currents) joint.gain_error = std::max(joint.gain_error, jackknife_errors(gain)[0]);
-}
-
-// [1] and its error, from another fit in which it is free
-void find_scale(const Rows& r, const std::vector<std::string>& names, CalibratedJoint& joint) {
-  const Answer a = answer(r, names, true);
-  const Parameter& inverse = a.fit.parameters[0];
-  joint.scale = a.gain;
-  joint.scale_error = std::abs(a.gain * inverse.robust / inverse.theta);
-}
-
-CalibratedJoint calibrated(const Rows& r, const std::vector<std::string>& names, bool currents) {
-  const Answer a = answer(r, names, currents);
-  CalibratedJoint joint;
-  joint.windows = static_cast<int>(r.rigid.size());
-  joint.left_out = r.left_out;
-  const std::size_t first = currents ? 1 : 0;
-  const double of_gain = currents ? a.fit.parameters[0].robust / a.fit.parameters[0].theta : 0;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const Parameter& p = a.fit.parameters[k + first];
-    const double value = a.theta[static_cast<Index>(k)];
-    joint.terms.push_back(
-        {names[k], value, std::hypot(a.gain * p.robust, value * of_gain), p.excitation, p.own});
-  }
-  joint.torque = rms(a.gain * r.measured);
-  joint.rigid = rms(r.rigid);
-  const bool seen = joint.rigid >= kSeen * joint.torque;
-  if (currents) {
-    joint.gain = a.gain;
-    joint.gain_error = std::abs(a.gain * of_gain);
-    if (!seen)
-      throw std::invalid_argument(fmt::format(
-          "the gain of its drive cannot be seen, as its masses take {:.3g} of {:.3g} N m in these "
-          "motions; `gain` in the map of columns gives that of each drive [N m/A]",
-          joint.rigid, joint.torque));
-  } else if (seen) {
-    find_scale(r, names, joint);
-  }
-  constexpr double kSurely = 5;  // standard errors
-  for (const CalibratedTerm& t : joint.terms) {
-    if (t.name == "coulomb" && t.value < -kSurely * t.error)
-      throw std::invalid_argument(fmt::format(
-          "its dry friction came out as {:.3g} +- {:.2g} N m, which no joint has: is the "
-          "sign of its torque or current right? `sign` in the map of columns turns it",
-          t.value, t.error));
-  }
-  if (joint.scale < -kSurely * joint.scale_error)
-    throw std::invalid_argument(
-        fmt::format("its torque fits its masses by a factor of {:.3g}: the sign is wrong, which "
-                    "`sign` in the map of columns turns",
-                    joint.scale));
-  joint.before = rms(a.gain * r.measured - r.rigid);
-  joint.after = rms(left_over(r, a));
-  if (joint.after > joint.torque)
-    throw std::invalid_argument(fmt::format(
-        "what is left over, {:.3g} N m, is more than the torque that was measured, {:.3g} N m: is "
-        "this the arm of the recordings, and do their columns have the right order, units (rad, "
-        "rad/s, N m or A) and signs? --columns tells them",
-        joint.after, joint.torque));
-  hold_out(r, names, currents, a, joint);
-  if (joint.after <= 1e-6 * joint.torque) return joint;  // no noise, but the integration's error
-  joint.colour = colour(a.fit.residuals);
-  MatrixXd A = r.terms;
-  if (currents) A.conservativeResize(Eigen::NoChange, A.cols() + 1), A << r.rigid, r.terms;
-  std::vector<std::string> suspected;
-  for (const JointTerm& t : kSuspects) suspected.emplace_back(t.name);
-  joint.missing = suspects(A, a.fit.inverse, a.fit.residuals, r.others, suspected);
-  return joint;
-}
-
 // [rad/s] over which the joint's friction is smooth, as tree_of() will have it with what was found
-double slip_speed(const ArmTree& arm, int joint, const std::vector<std::string>& names,
-                  const VectorXd& theta) {
+double slip_speed(const ArmTree& arm, int joint, const std::vector<CalibratedTerm>& terms) {
   const TreeJoint& file = arm.joints[static_cast<std::size_t>(joint)];
-  double dry = names == std::vector<std::string>{"armature"} ? file.dry : 0,
+  double dry = terms.size() == 1 && terms[0].name == "armature" ? file.dry : 0,
          armature = file.armature;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const double value = std::max(theta[static_cast<Index>(k)], 0.);
-    if (names[k] == "coulomb") dry = value;
-    if (names[k] == "armature") armature = value;
+  for (const CalibratedTerm& t : terms) {
+    if (t.name == "coulomb") dry = t.value;
+    if (t.name == "armature") armature = t.value;
   }
   const double mobility = arm.mobility[joint];
   return std::max(TreeJoint().v_s,
                   dry / (1 / mobility + armature - file.armature) / kQuickestFriction);
+}
+
+// no joint's scale is seen, though the arm was lifted as much as it can be
+void doubt_units(const ArmTree& arm, std::vector<CalibratedJoint>& joints) {
+  constexpr double kFriction = 50;  // [1] of what the masses take, that no friction is
+  for (const CalibratedJoint& j : joints)
+    if (j.scale != 0 || j.gain != 0) return;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    CalibratedJoint& j = joints[i];
+    const bool lifted = j.rigid > kSeen * arm.usual_torque[static_cast<Index>(i)];
+    if (lifted && j.torque > kFriction * j.rigid)
+      j.doubts.push_back(
+          fmt::format("its masses take {:.3g} N m, and {:.3g} N m were measured: are they N m?",
+                      j.rigid, j.torque));
+  }
 }
 
 }  // namespace
@@ -278,22 +155,29 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
     const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
     const std::string name = joint_name_in_file(arm, i);
     try {
-      Rows r = rows_of(logs, motions, i, terms, o.windows, arm.joints[leader].v_s);
+      JointRows r = rows_of(logs, motions, i, terms, o.windows, arm.joints[leader].v_s);
       const std::size_t needed = 5 * (terms.size() + (currents ? 1 : 0));
       if (static_cast<std::size_t>(r.rigid.size()) < needed)
         throw std::invalid_argument(
             too_few(static_cast<std::size_t>(r.rigid.size()), needed, r.left_out, o.windows));
       for (int pass = 0; pass < 3; ++pass) {  // how friction slips depends on what is found
-        const double v_s =
-            slip_speed(arm, static_cast<int>(leader), names, answer(r, names, currents).theta);
-        r = rows_of(logs, motions, i, terms, o.windows, v_s);
+        const double slip =
+            slip_speed(arm, static_cast<int>(leader), calibrated_joint(r, names, currents).terms);
+        // smooth over more than it moves, dry friction would be viscous friction
+        r = rows_of(logs, motions, i, terms, o.windows, std::min(slip, r.fastest / 2));
       }
-      all.push_back(calibrated(r, names, currents));
-      all.back().name = name;
+      CalibratedJoint joint = calibrated_joint(r, names, currents);
+      joint.slip = slip_speed(arm, static_cast<int>(leader), joint.terms);
+      joint.name = name;
+      for (const Trace& log : logs)
+        joint.largest = std::max(joint.largest, (joint.gain == 0 ? 1 : std::abs(joint.gain)) *
+                                                    log.tau.row(i).cwiseAbs().maxCoeff());
+      all.push_back(std::move(joint));
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(fmt::format("joint {} '{}': {}", i + 1, name, e.what()));
     }
   }
+  doubt_units(arm, all);
   return all;
 }
 

@@ -13,8 +13,8 @@
 /// touched, or across a gap in the log.
 ///
 /// (i) is solved by linear least squares over all windows; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2
-/// the residuals' variance, which holds if they are white noise. residuals.h says whether they are,
-/// what a sigma is if not, and which term is probably missing. What no term here can tell: a
+/// the residuals' variance, which holds if they are white noise. least_squares.h says whether they
+/// are, what a sigma is if not, and which term is probably missing. What no term here can tell: a
 /// loadcell's hysteresis looks like dry friction, and its gain like all of theta.
 #pragma once
 
@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "bench/calibrate/least_squares.h"
-#include "bench/calibrate/residuals.h"
 #include "bench/calibrate/windows.h"
 #include "mjcf/trace/trace.h"
 
@@ -55,6 +54,7 @@ struct Identification {
   std::vector<Suspect> missing;       ///< what may be missing; the likeliest first
   int windows = 0;                    ///< that were used
   int left_out = 0;                   ///< that were not
+  std::vector<std::string> doubts;    ///< why these numbers are not to be used; else none
 };
 
 /// @throws std::invalid_argument for a log of several joints, too few windows, or a motion that

@@ -20,10 +20,14 @@ struct NewRobotFile {
   std::vector<std::string> recordings;  ///< of which it was made, for the reader
 };
 
-/// The text of a file that will stand at `out`, from where the robot's file is named. Friction or
-/// inertia that came out negative is 0 there: `said` gets a line about each.
+/// The text of a file that will stand at `out`, from where the robot's file is named.
 /// @throws std::runtime_error as robot_file() does
-std::string robot_file_text(const NewRobotFile& robot, const std::string& out,
-                            std::vector<std::string>& said);
+std::string robot_file_text(const NewRobotFile& robot, const std::string& out);
+
+/// Writes the file to a folder of its own and reads it again: what its model leaves of the
+/// recordings becomes each joint's `after`. Where that is not what the fit promised, or where
+/// friction is more than the joint's drive can overcome, it adds a doubt.
+/// @throws std::runtime_error as load_mjcf() does
+void judge_by_file(NewRobotFile& robot, const std::vector<Trace>& logs, const Windows& windows);
 
 }  // namespace tauext

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/calibrate/arm_motion.h"
+#include "bench/calibrate/joint_fit.h"
 #include "bench/calibrate/least_squares.h"
 #include "mjcf/mujoco/layout.h"
 
@@ -174,6 +175,17 @@ Weighing weigh(const ArmTree& arm, const std::vector<Trace>& loaded,
           w.payload.mass;
   }
   return w;
+}
+
+std::string doubt(const Weighing& w) {
+  const Weight& p = w.payload;
+  if (p.mass >= -kSurely * p.mass_error) return "";
+  return fmt::format(
+      "the payload weighs {:.3g} +- {:.2g} kg, less than nothing: {}", p.mass, p.mass_error,
+      w.empty.windows > 0
+          ? "are the recordings with it behind --weigh, and those without it before?"
+          : "the arm's masses are too large, or the torques too small; recordings without a "
+            "payload, before --weigh, take that off");
 }
 
 }  // namespace tauext

@@ -46,4 +46,8 @@ struct Weighing {
 Weighing weigh(const ArmTree& arm, const std::vector<Trace>& loaded,
                const std::vector<Trace>& empty, const Windows& windows = {});
 
+/// Why a payload is not to be used, as it weighs less than nothing by more than an error of
+/// measurement; else "".
+std::string doubt(const Weighing& w);
+
 }  // namespace tauext
