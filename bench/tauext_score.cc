@@ -152,7 +152,8 @@ Recorded recorded(const Flags& f) {
                                                : fmt::format("{}_logs", f.logs.size());
   for (const std::string& path : f.logs) {
     all.logs.push_back(read_any_log(
-        path, {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(), true}));
+        path,
+        {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(), true}));
     RecordedLog& log = all.logs.back();
     if (r != nullptr) r->require_joints(log.trace, path);
     if (!f.ours.empty()) r->make_torques(log.trace);

@@ -23,11 +23,11 @@ inline constexpr double kGrace = 0.2;
 /// mark has stopped rebounds onto it. A collision is detected by the first mark from its begin
 /// until kGrace after its last contact; any mark outside these windows is a false alarm.
 struct DetectionScore {
-  int collisions = 0;                ///< that the truth has
-  int detected = 0;                  ///< of these
-  std::vector<double> delays;        ///< [s] of these
-  int false_alarms = 0;              ///< marks outside of them
-  double delay = 0;                  ///< [s] largest delay of a detected collision; NaN without one
+  int collisions = 0;          ///< that the truth has
+  int detected = 0;            ///< of these
+  std::vector<double> delays;  ///< [s] of these
+  int false_alarms = 0;        ///< marks outside of them
+  double delay = 0;            ///< [s] largest delay of a detected collision; NaN without one
   double watched = 0;  ///< [s] the steps by which a Clock goes on: what lies in a gap, nobody saw
   double false_alarms_per_hour = 0;  ///< [1/h] of this time
 };

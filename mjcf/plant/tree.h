@@ -67,7 +67,7 @@ struct ArmTree {
 
   int dof() const { return static_cast<int>(drho.cols()); }  ///< coordinates
   bool slides(int i) const;                                  ///< whether q_i is one of a slide
-  /// Of each coordinate its joint's name; empty where a coordinate is not a joint's position, or one has none.
+  /// Of each coordinate its joint's name; empty where one has none, or is no joint's position.
   std::vector<std::string> joint_names() const;
   /// A point by its name.
   /// @throws std::invalid_argument listing the known ones

@@ -33,7 +33,9 @@ std::optional<std::string> take_flag(std::vector<std::string>& args, const std::
 // "s" behind a number of seconds: Google Benchmark 1.7 refuses it, 1.8 warns for each row without
 template <class Run>
 const char* missing_unit(const std::string& text) {
-  constexpr bool kIs17 = requires(Run run) { run.error_occurred; };
+  constexpr bool kIs17 = requires(Run run) {
+    run.error_occurred;
+  };
   const bool lacks = !kIs17 && text.starts_with("--benchmark_min_time=") && text.back() >= '0' &&
                      text.back() <= '9';
   return lacks ? "s" : "";

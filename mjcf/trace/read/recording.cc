@@ -86,7 +86,10 @@ struct RecordingReader::Impl {
         map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
                                           : "tauext")),
-        rows(open_rows(path, {o.columns, o.topic, map.leaves_order_open() ? o.joints : std::vector<std::string>()}, map.csv())),
+        rows(open_rows(
+            path,
+            {o.columns, o.topic, map.leaves_order_open() ? o.joints : std::vector<std::string>()},
+            map.csv())),
         layout(layout_of(known(), rows->columns(), path)),
         timed(0, skipped),
         filter(map.velocity_filter()) {
@@ -106,7 +109,8 @@ struct RecordingReader::Impl {
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
     if (!is_bag(path)) return all;
     if (joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
-      skipped.notes.push_back("no joints' names to compare with: their order is that of the first message");
+      skipped.notes.push_back(
+          "no joints' names to compare with: their order is that of the first message");
     has_first = rows->next(raw, skipped);
     std::erase_if(all, [&](const auto& q) {
       const auto& columns = q.second.columns;

@@ -31,7 +31,7 @@ TEST(Reporter, ItsJsonIsValidWhateverTheCountersHold) {
   benchmark::RegisterBenchmark(
       "a/b/failed", [](benchmark::State& state) { state.SkipWithError("wrong \"answer\""); });
   benchmark::RunSpecifiedBenchmarks(&reporter, "a/b/failed");  // ends with Finalize()
-  const auto json = nlohmann::json::parse(reporter.json());  // throws on a bare NaN
+  const auto json = nlohmann::json::parse(reporter.json());    // throws on a bare NaN
   ASSERT_EQ(json["benchmarks"].size(), 2u);
   EXPECT_EQ(json["benchmarks"][0]["cpu_ns"], 3);
   EXPECT_FALSE(json["benchmarks"][0].contains("cv"));

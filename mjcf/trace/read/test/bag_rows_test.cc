@@ -111,26 +111,29 @@ TEST_F(Bag, TheRobotsJointsAreFoundByNameInEveryMessage) {
   const auto of = [](int at, const Names& names, const std::vector<double>& x) {
     return message(at, names).numbers(x).numbers(x).numbers(x).bytes();
   };
-  const std::string file = with({of(0, {"finger", "knuckle"}, {8, 9}),
-                                 of(1, {"elbow", "finger", "hip"}, {2, 9, 1}),
-                                 of(2, {"hip", "elbow"}, {1, 2})});
+  const std::string file =
+      with({of(0, {"finger", "knuckle"}, {8, 9}), of(1, {"elbow", "finger", "hip"}, {2, 9, 1}),
+            of(2, {"hip", "elbow"}, {1, 2})});
   BagRows rows(file, "", {"hip", "elbow"});
   SkippedRows skipped;
-  expect_rows(rows_of(rows, skipped),
-              {{5 + 1e-9, 1, 2, 1, 2, 1, 2}, {5 + 2e-9, 1, 2, 1, 2, 1, 2}});
+  expect_rows(rows_of(rows, skipped), {{5 + 1e-9, 1, 2, 1, 2, 1, 2}, {5 + 2e-9, 1, 2, 1, 2, 1, 2}});
   EXPECT_EQ(skipped.total(), 0);
   EXPECT_EQ(skipped.notes,
             (Names{"2 messages name other joints, which are left out: finger, knuckle"}));
 }
 
 TEST_F(Bag, AJointOfTheRobotThatNeverComesIsAnErrorWithBothLists) {
-  const std::string file = with({message(0, {"b", "a"}).numbers({1, 2}).numbers({}).numbers({}).bytes(),
-                                 message(1, {"grip"}).numbers({1}).numbers({}).numbers({}).bytes()});
-  EXPECT_EQ(error_of([&] { BagRows x(file, "", {"a", "elbow", "b"}); }),
-            file + ": the messages on topic /joint_states never name elbow; the robot has a, elbow, "
-                   "b, and they name a, b, grip. Where a joint has another name there, --columns "
-                   "FILE.toml says which it is: [q] columns = [\"position.NAME\", ..], and [qd] and "
-                   "[tau_instant] likewise");
+  const std::string file =
+      with({message(0, {"b", "a"}).numbers({1, 2}).numbers({}).numbers({}).bytes(),
+            message(1, {"grip"}).numbers({1}).numbers({}).numbers({}).bytes()});
+  EXPECT_EQ(error_of([&] {
+              BagRows x(file, "", {"a", "elbow", "b"});
+            }),
+            file +
+                ": the messages on topic /joint_states never name elbow; the robot has a, elbow, "
+                "b, and they name a, b, grip. Where a joint has another name there, --columns "
+                "FILE.toml says which it is: [q] columns = [\"position.NAME\", ..], and [qd] and "
+                "[tau_instant] likewise");
 }
 
 TEST_F(Bag, WhereNoStampIsGivenTheTimeOfRecordingIsTaken) {
