@@ -2,6 +2,7 @@
 #include "bench/calibrate/robot_file_writer.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,12 @@
 namespace tauext::test {
 namespace {
 
+// tests run side by side
+std::string in_a_place_of_its_own(const std::string& name) {
+  const std::string file = "tauext_" + std::to_string(::getpid()) + "_" + name;
+  return (std::filesystem::temp_directory_path() / file).string();
+}
+
 bool doubts(const CalibratedJoint& j, const std::string& why) {
   return std::any_of(j.doubts.begin(), j.doubts.end(), [&](const std::string& words) {
     return words.find(why) != std::string::npos;
@@ -26,9 +33,8 @@ bool doubts(const CalibratedJoint& j, const std::string& why) {
 
 // one without a name has that of the import
 TEST(RobotFile, NamesJointsAsTheImportDoes) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  const std::string arm = (folder / "tauext_nameless.xml").string(),
-                    path = (folder / "tauext_nameless.json").string();
+  const std::string arm = in_a_place_of_its_own("nameless.xml"),
+                    path = in_a_place_of_its_own("nameless.json");
   std::ofstream(arm) << "<mujoco><worldbody><body><joint axis='0 1 0'/><inertial pos='0 0 .3' "
                         "mass='2' diaginertia='.1 .1 .1'/></body></worldbody><actuator/></mujoco>";
   CalibratedJoint joint;
@@ -93,7 +99,7 @@ class Pendulum : public testing::Test {
     return robot.joints[0];
   }
 
-  std::string path_ = (std::filesystem::temp_directory_path() / "tauext_pendulum.urdf").string();
+  std::string path_ = in_a_place_of_its_own("pendulum.urdf");
 };
 
 TEST_F(Pendulum, TheTableIsThatOfTheFile) {
@@ -131,7 +137,7 @@ TEST_F(Pendulum, LessThanNoArmatureIsDoubted) {
 }
 
 TEST(RatedTorque, IsWhatTheFileSays) {
-  const std::string path = (std::filesystem::temp_directory_path() / "tauext_rated.xml").string();
+  const std::string path = in_a_place_of_its_own("rated.xml");
   const auto rated = [&](const std::string& joint, const std::string& actuators) {
     std::ofstream(path) << "<mujoco><default><general forcerange='-7 7'/><default class='c'><joint "
                            "actuatorfrcrange='-5 4'/><position forcerange='-6 6' gear='2'/>"
