@@ -147,7 +147,8 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
   add("<dynamics", " D='1' K='7000' mu_coulomb='0' mu_viscous='16'");
   add("<axis", " rpy='0 0 0'");
   add("<inertia", " iyx='0'");
-  const ArmTree arm = tree_of(load_mjcf(put(text, "arm.urdf")));
+  const std::string path = put(text, "arm.urdf");
+  const ArmTree arm = tree_of(load_mjcf(path));
   const ArmTree plain = tree_of(load_mjcf(put(urdf(), "plain.urdf")));
   ASSERT_EQ(arm.joints.size(), plain.joints.size());
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
@@ -155,7 +156,7 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
     EXPECT_EQ(arm.joints[i].inertia, plain.joints[i].inertia);
     EXPECT_EQ(arm.joints[i].axis, plain.joints[i].axis);
   }
-  const auto left_out = import_mjcf(path("arm.urdf")).dropped;
+  const auto left_out = import_mjcf(path).dropped;
   for (const char* name : {"dynamics.D", "dynamics.K", "dynamics.mu_coulomb", "dynamics.mu_viscous",
                            "axis.rpy", "inertia.iyx"})
     EXPECT_EQ(left_out.count(name), 1u) << name;
