@@ -146,7 +146,7 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
   };
   add("<dynamics", " D='1' K='7000' mu_coulomb='0' mu_viscous='16'");
   add("<axis", " rpy='0 0 0'");
-  add("<inertia", " iyx='0'");
+  add("<inertia ", "iyx='0' ");
   const std::string path = put(text, "arm.urdf");
   const ArmTree arm = tree_of(load_mjcf(path));
   const ArmTree plain = tree_of(load_mjcf(put(urdf(), "plain.urdf")));
