@@ -178,7 +178,7 @@ class Urdf {
  private:
   std::string link_of(const XMLElement& joint, const char* end) const {
     const XMLElement* const e = joint.FirstChildElement(end);
-    const std::string link = e == nullptr ? "" : text(*e, "link");
+    std::string link = e == nullptr ? "" : text(*e, "link");
     if (links_.count(link) == 0)
       fail(joint, "joint '{}': its {} '{}' is no link", text(joint, "name"), end, link);
     return link;
@@ -282,7 +282,7 @@ class Urdf {
 
   // that moves, and is another one
   std::string leader_of(const XMLElement& mimic, const std::string& follower) const {
-    const std::string leader = text(mimic, "joint");
+    std::string leader = text(mimic, "joint");
     for (const XMLElement* j : joints_) {
       if (leader != follower && text(*j, "name") == leader && text(*j, "type") != "fixed")
         return leader;

@@ -30,7 +30,7 @@ namespace detail {
 
 /// Their addresses in the loaded library.
 struct MujocoFunctions {
-#define TAUEXT_POINTER(name) decltype(&::name) name;
+#define TAUEXT_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses)
   TAUEXT_MUJOCO_FUNCTIONS(TAUEXT_POINTER)
   TAUEXT_MUJOCO_HOOKS(TAUEXT_POINTER)
 #undef TAUEXT_POINTER

@@ -30,7 +30,7 @@ class Drivetrain {
       : d_(d), duration_(duration) {
     if (d == Drives()) return;
     check(d, plant.dof(), usual_torque);
-    const Vector u = usual_torque;
+    const Vector u = usual_torque;  // NOLINT(performance-unnecessary-copy-initialization)
     K_ = d.stiffness * u;
     R_ = d.rotor * u;
     D_ = 2 * d.damping * (K_.array() * R_.array()).sqrt();
