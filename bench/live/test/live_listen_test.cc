@@ -23,10 +23,10 @@ namespace {
 using namespace tauext::test;  // NOLINT(google-build-using-namespace): samples to try with
 using nlohmann::json;
 
-// what PlotJuggler is told while this is there; a busy machine may lose some of it
-class Told {
+// takes what PlotJuggler gets; a busy machine may lose some of it
+class DatagramReceiver {
  public:
-  Told() {
+  DatagramReceiver() {
     sockaddr_in place{};
     place.sin_family = AF_INET;
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -40,9 +40,9 @@ class Told {
         all_.push_back(part.substr(0, static_cast<std::size_t>(n)));
     });
   }
-  ~Told() { ::close(fd_); }
-  Told(const Told&) = delete;
-  Told& operator=(const Told&) = delete;
+  ~DatagramReceiver() { ::close(fd_); }
+  DatagramReceiver(const DatagramReceiver&) = delete;
+  DatagramReceiver& operator=(const DatagramReceiver&) = delete;
 
   const std::string& at() const { return at_; }
   std::vector<json> all() {  // what came before is read first
@@ -60,7 +60,7 @@ class Told {
   std::thread reader_;
 };
 
-// a log of messages, and what is handed on of it and said
+// a log of messages, and what is handed on of it and printed
 class Listening : public testing::Test {
  protected:
   template <class Message>
@@ -79,17 +79,17 @@ class Listening : public testing::Test {
     std::ofstream(path, std::ios::binary) << log_.bytes();
     Options o;
     o.url = "file://" + path + "?speed=0";
-    Told told;
-    o.plotjuggler = told.at();
+    DatagramReceiver receiver;
+    o.plotjuggler = receiver.at();
     testing::internal::CaptureStdout();
     EXPECT_EQ(run_listen(o), kGood);
-    said_ = testing::internal::GetCapturedStdout();
-    handed_on_ = told.all();
+    printed_ = testing::internal::GetCapturedStdout();
+    handed_on_ = receiver.all();
   }
 
   LogBuffer log_;
   std::vector<json> handed_on_;
-  std::string said_;
+  std::string printed_;
 };
 
 TEST_F(Listening, ASecondSenderIsNotHandedOn) {
@@ -153,10 +153,11 @@ TEST_F(Listening, OfFiveThousandNamesAHundredOfAKindAreHandedOnAndTheNextIsNamed
     EXPECT_LE(names[kind].size(), 100u) << kind;
   }
   const std::string named = ": rejected, as are all names beyond the first 100\n";
-  EXPECT_NE(said_.find(named), std::string::npos);
-  EXPECT_EQ(said_.find(named), said_.rfind(named)) << "once";
+  EXPECT_NE(printed_.find(named), std::string::npos);
+  EXPECT_EQ(printed_.find(named), printed_.rfind(named)) << "once";
   const auto too_many = fmt::format("{} of more names than are shown", 4 * kNames - 300);
-  EXPECT_NE(said_.find(too_many), std::string::npos) << said_.substr(said_.rfind("rejected"));
+  EXPECT_NE(printed_.find(too_many), std::string::npos)
+      << printed_.substr(printed_.rfind("rejected"));
 }
 
 }  // namespace
