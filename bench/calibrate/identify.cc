@@ -140,8 +140,8 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
   add_residuals(log, terms, windows, A, f, id);
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Parameter& p = f.parameters[i];
-    if ((terms[i].name == "inertia" || terms[i].name == "coulomb") && p.theta < -3 * p.robust &&
-        p.theta * p.excitation < -0.01 * f.y)
+    if ((terms[i].name == "inertia" || terms[i].name == "coulomb") &&
+        p.theta < -kSurely * p.robust && p.theta * p.excitation < -kMatters * f.y)
       id.doubts.push_back(fmt::format(
           "{} is {:.3g} +- {:.2g} {}, and no joint has less than none: is the sign of its torque "
           "right, which `sign` in the map of columns turns, and are its units?",

@@ -154,7 +154,7 @@ Answer within_bounds(const Rows& r, const Names& names, bool currents, Calibrate
     const std::string found = fmt::format(
         "{} would be {:.3g} +- {:.2g} {}", term.name, a.theta[k], errors[k],
         find_known(kJointTerms, "term", term.name, [](const JointTerm& t) { return t.name; }).unit);
-    const bool matters = much[k] * term.excitation > 0.01 * joint.torque;
+    const bool matters = much[k] * term.excitation > kMatters * joint.torque;
     if (matters && much[k] > kSurely * errors[k] && !why_never_below_0(term.name).empty())
       joint.doubts.push_back(found + why_never_below_0(term.name));
     else

@@ -41,9 +41,6 @@ inline constexpr double kSeen = 0.2;
 /// fifth or so.
 inline constexpr double kMostScale = 1.6;
 
-/// Standard errors beyond which a value is no error of measurement.
-inline constexpr double kSurely = 3;
-
 /// A parameter of a joint.
 struct CalibratedTerm {
   std::string name;       ///< as in kJointTerms

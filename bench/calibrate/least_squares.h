@@ -10,6 +10,11 @@
 
 namespace tauext {
 
+/// Standard errors beyond which a value is no error of measurement.
+inline constexpr double kSurely = 3;
+/// [1] of the rms of what is fitted: a parameter that makes less of it does not matter.
+inline constexpr double kMatters = 0.01;
+
 /// A parameter and how well the motion shows it.
 struct Parameter {
   double theta = 0;       ///< in the term's unit

@@ -53,13 +53,11 @@ void BagRows::look_ahead() {
   std::vector<std::string> missing = joints_;
   std::set<std::string> named;
   bool any = false;
-  while (!(any && missing.empty() && use_stamps_) && messages_->next(message)) {
+  for (bool begin = true; !(any && missing.empty() && use_stamps_) && messages_->next(message);
+       begin = false) {
     const char* const why = read_message(message, state);
-    if (why != nullptr) {
-      if (number_++ == 0) first = why;
-      continue;
-    }
-    ++number_;
+    if (begin && why != nullptr) first = why;
+    if (why != nullptr) continue;
     if (joints_.empty()) joints_ = state.name;
     any = true;
     use_stamps_ = use_stamps_ || state.stamp != 0;
@@ -69,7 +67,6 @@ void BagRows::look_ahead() {
     }
   }
   messages_->rewind();
-  number_ = 0;
   if (any && missing.empty()) return;
   if (any) fail_missing(missing, named);
   throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}",
