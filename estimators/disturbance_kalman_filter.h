@@ -33,6 +33,8 @@
 /// suits one pose; what is tuned for a bandwidth takes Q_d from each pose's R.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "estimators/math/ldlt.h"

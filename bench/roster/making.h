@@ -3,6 +3,7 @@
 /// How a specification becomes an estimator or a detector.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -10,6 +10,7 @@
 /// One number for the whole arm, and blind where the arm rests.
 #pragma once
 
+#include <cmath>
 #include <tuple>
 #include <type_traits>
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "estimators/concepts.h"
+#include "estimators/math/lanes.h"
 
 namespace tauext {
 

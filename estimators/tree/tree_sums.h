@@ -3,6 +3,8 @@
 /// Which body of a tree is carried by which, and sums and poses along it.
 #pragma once
 
+#include <type_traits>
+
 #include "estimators/tree/spatial.h"
 
 namespace tauext::detail {

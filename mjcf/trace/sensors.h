@@ -3,6 +3,7 @@
 /// What the sensors make of the truth. All faults default to none.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <vector>

@@ -3,6 +3,7 @@
 /// How thresholds come from runs, wherever these come from.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
