@@ -166,8 +166,7 @@ std::string without_jargon(const std::string& message) {
 Model loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
   const bool urdf = is_urdf(path);
-  const Model m =
-      urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
+  Model m = urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
   if (m && options.changes_nothing() && has_motors(*m)) return m;
   const std::string first = one_line(error.data());
   try {

@@ -52,7 +52,7 @@ void set_forces(const Plant& plant, const VectorXd& way, ArmScale& scale) {
   const MatrixXd J = plant.end_effector_jacobian();
   const MatrixXd mobility = J * plant.inertia().partialPivLu().solve(J.transpose());  // [1/kg]
   const Eigen::SelfAdjointEigenSolver<MatrixXd> by_mobility(mobility);
-  const VectorXd gives = by_mobility.eigenvalues();
+  const VectorXd& gives = by_mobility.eigenvalues();
   const bool planar = !(gives[1] > 1e-3 * gives[2]);
   for (int i = 0; i < 2; ++i) {
     const Vector3d u = by_mobility.eigenvectors().col(planar ? 2 : 2 - i);

@@ -187,7 +187,7 @@ class MapReader {
   }
 
   std::string unit(const Quantity& q, const toml::node& value) const {
-    const std::string u = string(value, "unit");
+    std::string u = string(value, "unit");
     if (fmt::format(" {} ", q.units).find(fmt::format(" {} ", u)) != std::string::npos) return u;
     fail(value, fmt::format("[{}] cannot be in '{}'; it may be in: {}", q.name, u, q.units));
   }
