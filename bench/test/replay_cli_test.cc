@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tauext-replay.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -206,6 +208,16 @@ TEST_F(Programs, ReplayFindsTheJointsOfABagByName) {
   EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 1 + log.size());
   EXPECT_TRUE(estimates_of({2, 1, 0, 3, 4, 5}) == plain) << "by the alphabet";
   EXPECT_TRUE(estimates_of({5, 3, 1, 0, 4, 2}) == plain);
+
+  std::ofstream((folder_ / "q.toml").string())
+      << "preset = 'joint_state'\n[q]\ncolumns = ['position."
+      << fmt::format("{}']\n", fmt::join(names, "', 'position."));
+  const Outcome half =
+      run("tauext-replay log.db3" + arm + " --columns q.toml --estimator mo2 --out half.csv");
+  EXPECT_EQ(half.code, 2);
+  EXPECT_TRUE(half.says("[qd] matches 6 columns by") && half.says("a list of names puts them in"))
+      << half.text;
+  EXPECT_FALSE(exists("half.csv"));
 
   const Outcome other = run("tauext-replay log.db3 --robot " + kExamples +
                             "/arm7.xml --lock 'finger.*' --estimator mo2 --out other.csv");

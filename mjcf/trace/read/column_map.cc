@@ -68,6 +68,12 @@ int number_in(const std::smatch& match) {
   return 0;
 }
 
+bool of_joints(std::string_view quantity) {
+  return std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                      [&](const Quantity& q) { return q.name == quantity; })
+      ->of_joints;
+}
+
 // those of one number are in the order of the file, which somebody has to have said
 void require_order(const std::vector<std::pair<int, int>>& numbered, std::string_view quantity,
                    const std::string& expression, const std::string& path) {
@@ -95,7 +101,10 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
       numbered.emplace_back(number_in(match), i);
     }
     std::sort(numbered.begin(), numbered.end());
-    if (!w.of_preset && order_.empty()) require_order(numbered, quantity, w.expression, path);
+    // a preset leaves the order to others, unless q has one by now
+    const bool in_any_order =
+        !order_.empty() || (w.of_preset && (leaves_order_open() || !of_joints(quantity)));
+    if (!in_any_order) require_order(numbered, quantity, w.expression, path);
     for (const auto& [joint, column] : numbered) found.push_back(column);
   }
   for (const std::string& name : w.names) {
