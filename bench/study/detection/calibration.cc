@@ -14,11 +14,19 @@
 #include <utility>
 
 #include "bench/roster/robots.h"
+#include "bench/score/detection_metrics.h"
 #include "bench/study/detection/training.h"
 #include "bench/study/study_runs.h"
 
 namespace tauext::study {
 namespace {
+
+// [s] without gaps
+double watched(const Trace& t) {
+  metrics::DetectionCounter counter;
+  for (const double at : t.t) counter.take(at, false, false);
+  return counter.score().watched;
+}
 
 void require_free(const FreeRecording& r, const Robot& robot) {
   const Trace& t = r.trace;
@@ -26,7 +34,7 @@ void require_free(const FreeRecording& r, const Robot& robot) {
     throw std::invalid_argument(fmt::format("{}: {}", r.name, why));
   };
   robot.require_joints(t, r.name);
-  const double length = t.size() == 0 ? 0 : t.t.back() - t.t.front();
+  const double length = watched(t);
   if (length < 2 * kScoreFrom)
     fail(fmt::format("{:.3g} s long; {:g} s are needed, of which the first {:g} do not count",
                      length, 2 * kScoreFrom, kScoreFrom));
@@ -141,7 +149,7 @@ Thresholds calibrate_on(const Robot& r, const std::vector<FreeRecording>& record
   std::vector<std::string> names;
   for (const FreeRecording& x : recordings) {
     require_free(x, r);
-    seconds += x.trace.t.back() - x.trace.t.front() - kScoreFrom;
+    seconds += watched(x.trace) - kScoreFrom;
     names.push_back(x.name);
   }
   const auto show = [&](int i, const Look& look) {

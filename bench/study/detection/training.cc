@@ -13,6 +13,7 @@
 
 #include "bench/score/parallel.h"
 #include "bench/study/study_runs.h"
+#include "estimators/samples/clock.h"
 
 namespace tauext::study {
 namespace {
@@ -140,7 +141,18 @@ class Training {
     });
   }
 
-  static double begin_of(const Seen& s) { return s.traces.front().t.front() + kScoreFrom; }
+  // [s] when estimators that began there, after a stray row or a gap again, have run for kScoreFrom
+  static double begin_of(const Seen& s) {
+    Clock clock(kScoreFrom);
+    const std::vector<double>& t = s.traces.front().t;
+    double from = t.front();
+    for (const double at : t) {
+      const Status status = clock.accept(at);
+      if (status == Status::kStarted) from = at;
+      if (status == Status::kOk && at - from >= kScoreFrom) break;
+    }
+    return from + kScoreFrom;
+  }
 
   // from all runs but that one
   Eigen::VectorXd threshold_of(const std::string& detector, const Trained& trained,

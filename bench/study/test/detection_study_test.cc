@@ -235,6 +235,27 @@ TEST(Calibration, OnRecordingsTakesTheLargestAndTriesItOnTheOthers) {
             of(all));
 }
 
+TEST(Calibration, OnRecordingsAStrayFirstRowChangesNothing) {
+  CalibrationOptions o;
+  o.estimators = {"mo1", "mo2"};
+  o.detectors = {"threshold"};
+  std::vector<HeldOut> none;
+  const FreeRecording good = at_rest("a.csv", 1, 1);
+  const Thresholds of_good = calibrate_on(robot("wallmobot3"), {good}, o, none);
+  for (const double stray : {-36000., -1., 36000.}) {
+    FreeRecording r = good;
+    r.trace.t.front() += stray;
+    const Thresholds t = calibrate_on(robot("wallmobot3"), {r}, o, none);
+    EXPECT_EQ(t.trained_on, of_good.trained_on);
+    for (const auto& [e, by_detector] : of_good.sets.at(0).by_estimator) {
+      for (const auto& [d, trained] : by_detector)
+        EXPECT_TRUE(
+            t.sets.at(0).by_estimator.at(e).at(d).threshold.isApprox(trained.threshold, 1e-6))
+            << e << " " << d << " " << stray;
+    }
+  }
+}
+
 TEST(Calibration, OnRecordingsRefusesContactsAndWhatIsTooShort) {
   const auto error = [](FreeRecording recording, auto&& change) {
     change(recording.trace);
