@@ -40,20 +40,27 @@ class DatagramReceiver {
         all_.push_back(part.substr(0, static_cast<std::size_t>(n)));
     });
   }
-  ~DatagramReceiver() { ::close(fd_); }
+  ~DatagramReceiver() {
+    stop();
+    ::close(fd_);
+  }
   DatagramReceiver(const DatagramReceiver&) = delete;
   DatagramReceiver& operator=(const DatagramReceiver&) = delete;
 
   const std::string& at() const { return at_; }
   std::vector<json> all() {  // what came before is read first
-    ::shutdown(fd_, SHUT_RD);
-    reader_.join();
+    stop();
     std::vector<json> parsed;
     for (const std::string& text : all_) parsed.push_back(json::parse(text));
     return parsed;
   }
 
  private:
+  void stop() {
+    ::shutdown(fd_, SHUT_RD);
+    if (reader_.joinable()) reader_.join();
+  }
+
   int fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   std::string at_;
   std::vector<std::string> all_;
@@ -75,7 +82,7 @@ class Listening : public testing::Test {
     send("TAUEXT_ESTIMATE_ekf", e);
   }
   void listen() {
-    const std::string path = testing::TempDir() + "listen_test.lcm";
+    const std::string path = testing::TempDir() + fmt::format("listen_{}.lcm", ::getpid());
     std::ofstream(path, std::ios::binary) << log_.bytes();
     Options o;
     o.url = "file://" + path + "?speed=0";
