@@ -88,7 +88,8 @@ void drop_attribute(const XMLElement& e, const std::string& owner, std::string_v
                     std::string_view known, std::map<std::string, int>& dropped) {
   std::istringstream words{std::string(known)};
   for (std::string word; words >> word;) {
-    const bool stands_for_it = e.Attribute(word.c_str()) == nullptr && edits(name, word) <= 2;
+    const bool like_it = edits(name, word) <= 2 || name.starts_with(word);  // frictionloss, too
+    const bool stands_for_it = e.Attribute(word.c_str()) == nullptr && like_it;
     if (stands_for_it || name_of(e) == "origin")
       fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
            known.substr(0, known.size() - 1));

@@ -165,6 +165,7 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
   for (const auto& [right, wrong, words] : std::vector<std::array<const char*, 3>>{
            {"damping=", "dampping=", "joint 'shoulder': <dynamics> knows no 'dampping'; known: da"},
+           {"friction=", "frictionloss=", "<dynamics> knows no 'frictionloss'; known: da"},
            {"rpy=", "quat_xyzw=", "<origin> knows no 'quat_xyzw'; known: xyz rpy"},
            {"<dynamics", "<dynamcis",
             "this import knows no <dynamcis>; did you mean 'dynamics'? If"},
