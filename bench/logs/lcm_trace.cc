@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "lcmtypes/emitter.h"
+#include "lcmtypes/lcm_url.h"
 #include "mjcf/trace/input_file.h"
 
 namespace tauext {
