@@ -6,7 +6,8 @@
 
 #include <stdexcept>
 #ifdef TAUEXT_PICTURES
-#include <GL/osmesa.h>
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
 #include <png.h>
 
 #include <algorithm>
@@ -44,23 +45,43 @@ void check(const Model& robot, const Eigen::VectorXd& q, const View& view, int d
     find_known(cameras_of(robot), "camera", view.camera, [](const std::string& c) { return c; });
 }
 
-// OpenGL that draws into memory of ours, while it lives
+// OpenGL without a screen, while it lives: MuJoCo draws into a buffer of its own
 class Canvas {
  public:
-  Canvas(int width, int height)
-      : context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 8, nullptr)),
-        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4) {
-    if (context_ == nullptr ||
-        OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, width, height) == 0)
-      throw std::runtime_error("OSMesa gives no picture to draw in");
+  Canvas()
+      : display_(
+            eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)) {
+    constexpr EGLint kAny[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
+                               EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint configs = 0;
+    if (eglInitialize(display_, nullptr, nullptr) == EGL_FALSE) fail("eglInitialize");
+    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) fail("eglBindAPI");
+    if (eglChooseConfig(display_, kAny, &config, 1, &configs) == EGL_FALSE || configs == 0)
+      fail("eglChooseConfig");
+    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, nullptr);
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE)
+      fail("eglMakeCurrent");
   }
-  ~Canvas() { OSMesaDestroyContext(context_); }
+  ~Canvas() {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglTerminate(display_);
+  }
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
  private:
-  OSMesaContext context_;
-  std::vector<unsigned char> pixels_;
+  [[noreturn]] void fail(std::string_view call) {
+    const EGLint error = eglGetError();
+    eglTerminate(display_);
+    throw std::runtime_error(
+        fmt::format("EGL gives nothing to draw with: {} fails with {:#x}; Debian's libegl-mesa0 "
+                    "draws without a graphics card",
+                    call, error));
+  }
+
+  EGLDisplay display_;
+  EGLContext context_ = EGL_NO_CONTEXT;
 };
 
 // what MuJoCo draws with; a canvas has to be there
@@ -157,7 +178,7 @@ void write_picture(const Model& robot, const Eigen::VectorXd& q, const View& vie
   check(model, q, view, plant.dof());
   plant.set_state(q, Eigen::VectorXd::Zero(q.size()));
   const State d(mj_copyData(nullptr, model.get(), &plant.data()));
-  const Canvas canvas(view.width, view.height);
+  const Canvas canvas;
   const std::vector<unsigned char> png = png_of(Drawing(*model).draw(*d, view), view);
   AtomicFile file(path);
   file.write({reinterpret_cast<const char*>(png.data()), png.size()});
@@ -168,7 +189,7 @@ void write_picture(const Model& robot, const Eigen::VectorXd& q, const View& vie
 
 void write_picture(const Model&, const Eigen::VectorXd&, const View&, const std::string&) {
   throw std::runtime_error(
-      "pictures are left out of this build: install Debian's libosmesa6-dev and libpng-dev, and "
+      "pictures are left out of this build: install Debian's libegl-dev and libpng-dev, and "
       "build again");
 }
 
