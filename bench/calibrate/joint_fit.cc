@@ -67,8 +67,8 @@ Rows part(const Rows& r, int stretch, bool without) {
   std::vector<Index> chosen;
   for (Index i = 0; i < m; ++i)
     if ((i >= from && i < to) != without) chosen.push_back(i);
-  return {r.terms(chosen, Eigen::all), r.rigid(chosen), r.measured(chosen),
-          r.others(chosen, Eigen::all)};
+  return {r.terms(chosen, Eigen::indexing::all), r.rigid(chosen), r.measured(chosen),
+          r.others(chosen, Eigen::indexing::all)};
 }
 
 double rms(const VectorXd& v) {

@@ -112,7 +112,7 @@ Vec<4> spread_of(const MatrixXd& A, const VectorXd& y) {
     std::vector<Index> chosen;
     for (Index i = 0; i < y.size(); ++i)
       if (i / kWindows % kStretches != s) chosen.push_back(i);
-    theta.col(s) = payload_fit(A(chosen, Eigen::all), y(chosen)).theta();
+    theta.col(s) = payload_fit(A(chosen, Eigen::indexing::all), y(chosen)).theta();
   }
   return jackknife_errors(theta);
 }

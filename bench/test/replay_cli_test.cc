@@ -194,9 +194,9 @@ TEST_F(Programs, ReplayFindsTheJointsOfABagByName) {
                                           "wrist1",       "wrist2",        "wrist3"};
   const auto estimates_of = [&](const std::vector<int>& order) {
     Trace turned = log;
-    turned.q = log.q(order, Eigen::all);
-    turned.qd = log.qd(order, Eigen::all);
-    turned.tau = log.tau(order, Eigen::all);
+    turned.q = log.q(order, Eigen::indexing::all);
+    turned.qd = log.qd(order, Eigen::indexing::all);
+    turned.tau = log.tau(order, Eigen::indexing::all);
     std::vector<std::string> turned_names;
     for (const int j : order) turned_names.push_back(names[static_cast<std::size_t>(j)]);
     write_layout(turned, "joint_state", {}, turned_names, (folder_ / "log.db3").string());

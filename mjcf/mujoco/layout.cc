@@ -96,7 +96,7 @@ void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
         l.dof < m.nu ? fmt::format(", and '{}' is none", element_name(m, mjOBJ_ACTUATOR, l.dof))
                      : ""));
   }
-  l.S = moment.topRows(l.dof)(Eigen::all, l.arm);
+  l.S = moment.topRows(l.dof)(Eigen::indexing::all, l.arm);
   const Eigen::MatrixXd T = ties.T(l.arm, free);
   const Eigen::FullPivLU<Eigen::MatrixXd> q_to_free((l.S * T).transpose());
   if (q_to_free.rank() < l.dof) {

@@ -238,7 +238,7 @@ VectorXd Plant::tau_ext_of(const Vector3d& f, const BodyPoint& c) const {
 }
 
 MatrixXd Plant::end_effector_jacobian() const {
-  return jacobian(end_effector_)(Eigen::all, layout_.arm) * layout_.T;
+  return jacobian(end_effector_)(Eigen::indexing::all, layout_.arm) * layout_.T;
 }
 
 void Plant::step(double h) {

@@ -28,9 +28,9 @@ Trace select_samples(const Trace& trace, const std::vector<int>& samples) {
   of_vector(s.contact_force);
   for (auto* m : {&s.q, &s.qd, &s.tau, &s.tau_ext, &s.tau_ext_of_driver, &s.qdd, &s.friction,
                   &s.motor_q, &s.motor_qd}) {
-    if (m->cols() > 0) *m = Eigen::MatrixXd((*m)(Eigen::all, samples));
+    if (m->cols() > 0) *m = Eigen::MatrixXd((*m)(Eigen::indexing::all, samples));
   }
-  if (s.force.cols() > 0) s.force = Eigen::Matrix3Xd(trace.force(Eigen::all, samples));
+  if (s.force.cols() > 0) s.force = Eigen::Matrix3Xd(trace.force(Eigen::indexing::all, samples));
   const auto stop = std::lower_bound(samples.begin(), samples.end(), trace.stopped_at);
   if (trace.stopped_at >= 0) s.stopped_at = static_cast<int>(stop - samples.begin());
   return s;
