@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "bench/program/program.h"
+#include "bench/run/suite/reporter.h"
 #include "bench/run/suite/suite_run.h"
 
 namespace tauext {
@@ -30,14 +31,10 @@ std::optional<std::string> take_flag(std::vector<std::string>& args, const std::
   return value;
 }
 
-// "s" behind a number of seconds: Google Benchmark 1.7 refuses it, 1.8 warns for each row without
-template <class Run>
+// what is missing behind a number of seconds
 const char* missing_unit(const std::string& text) {
-  constexpr bool kIs17 = requires(Run run) {
-    run.error_occurred;
-  };
-  const bool lacks = !kIs17 && text.starts_with("--benchmark_min_time=") && text.back() >= '0' &&
-                     text.back() <= '9';
+  const bool lacks = !kBenchmark17<> && text.starts_with("--benchmark_min_time=") &&
+                     text.back() >= '0' && text.back() <= '9';
   return lacks ? "s" : "";
 }
 
@@ -54,7 +51,7 @@ BenchmarkFlags::BenchmarkFlags(int argc, char** argv) : texts_(argv, argv + argc
   const bool help = given("--help") || given("-h");
   if (!help && !given("--benchmark_min_time"))  // its own 0.5 s would be minutes
     texts_.insert(texts_.begin() + 1, "--benchmark_min_time=0.05");
-  for (std::string& text : texts_) text += missing_unit<benchmark::BenchmarkReporter::Run>(text);
+  for (std::string& text : texts_) text += missing_unit(text);
   list_tests_ = given("--benchmark_list_tests");
   for (std::string& text : texts_) pointers_.push_back(text.data());
   argc_ = static_cast<int>(pointers_.size());

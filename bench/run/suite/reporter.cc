@@ -10,10 +10,9 @@
 namespace tauext {
 namespace {
 
-// Google Benchmark 1.8 renamed it
 template <class Run>
 bool has_failed(const Run& run) {
-  if constexpr (requires { run.error_occurred; })
+  if constexpr (kBenchmark17<Run>)
     return run.error_occurred;
   else
     return static_cast<bool>(run.skipped);

@@ -14,6 +14,13 @@
 
 namespace tauext {
 
+/// Whether Google Benchmark is 1.7. What 1.8 calls a run's `skipped` is `error_occurred` there, and
+/// it refuses the "s" of --benchmark_min_time without which 1.8 warns once a row.
+template <class Run = benchmark::BenchmarkReporter::Run>
+inline constexpr bool kBenchmark17 = requires(Run run) {
+  run.error_occurred;
+};
+
 /// A display reporter that also builds the JSON of --benchmark_out. Google Benchmark writes a bare
 /// NaN, which is no JSON, for a counter without a value; here such a counter is left out.
 class Reporter : public benchmark::BenchmarkReporter {
