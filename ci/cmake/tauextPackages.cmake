@@ -28,17 +28,26 @@ function(tauext_package component name)
   install(FILES ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/deb/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
   install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
 endfunction()
-tauext_package(programs tauext DEPENDS libmujoco2.2.2 RECOMMENDS bash-completion SAYS
+# what no program links, so that dpkg-shlibdeps does not see it: MuJoCo, which is loaded, and the Python that the module is for
+get_target_property(mujoco MuJoCo::MuJoCo IMPORTED_LOCATION)
+file(REAL_PATH ${mujoco} mujoco)
+execute_process(COMMAND dpkg-query -S ${mujoco} OUTPUT_VARIABLE owner ERROR_QUIET)
+string(REGEX MATCH "^[^:]+" mujoco "${owner}")
+if(TARGET tauext_python)
+  execute_process(COMMAND ${Python_EXECUTABLE} -c "import sys; print('python3 (>= 3.%d);python3 (<< 3.%d)' % (sys.version_info[1], sys.version_info[1] + 1))"
+                  OUTPUT_VARIABLE python OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+endif()
+tauext_package(programs tauext DEPENDS ${mujoco} RECOMMENDS bash-completion SAYS
   "Estimators of external joint torque of robot arms, compared"
   "Scores and times estimators and collision detectors against the exact truth of"
   "a simulation, replays recordings, tunes, shows estimates live, and gates CI.")
 tauext_package(dev libtauext-dev DEPENDS libeigen3-dev
-  RECOMMENDS libbenchmark-dev libcli11-dev libfmt-dev libgtest-dev liblcm-dev libmujoco-dev libosmesa6-dev libpng-dev
+  RECOMMENDS libbenchmark-dev libcli11-dev libfmt-dev libgtest-dev liblcm-dev libmujoco-dev libegl-dev libpng-dev
              libreaderwriterqueue-dev libsqlite3-dev libtinyxml2-dev nlohmann-json3-dev zlib1g-dev SAYS
   "Estimators of external joint torque as C++ headers, and the suite as libraries"
   "find_package(tauext) gives the estimators, which need Eigen alone, and by"
   "components the suite for estimators of your own, which needs what is recommended.")
-tauext_package(python python3-tauext DEPENDS "python3 (>= 3.11)" "python3 (<< 3.12)" python3-numpy libmujoco2.2.2 RECOMMENDS python3-matplotlib SAYS
+tauext_package(python python3-tauext DEPENDS ${python} python3-numpy ${mujoco} RECOMMENDS python3-matplotlib SAYS
   "Estimators of external joint torque of robot arms from Python"
   "import tauext: scenarios as NumPy arrays, estimators and detectors by name,"
   "scores, and estimators of your own in Python.")
