@@ -75,7 +75,7 @@ class Canvas {
     const EGLint error = eglGetError();
     eglTerminate(display_);
     throw std::runtime_error(
-        fmt::format("EGL gives nothing to draw with: {} fails with {:#x}; Debian's libegl-mesa0 "
+        fmt::format("EGL gives nothing to draw with: {} fails with {:#x}; Debian's libgl1-mesa-dri "
                     "draws without a graphics card",
                     call, error));
   }
