@@ -12,6 +12,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "estimators/math/lanes.h"
 #include "estimators/types.h"
 
 namespace tauext {

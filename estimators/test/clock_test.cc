@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// clock.h asks all() of its numbers, and does not name its header yet
-// clang-format off
-#include "estimators/math/lanes.h"
 #include "estimators/samples/clock.h"
-// clang-format on
 
 #include <gtest/gtest.h>
 
