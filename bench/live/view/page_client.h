@@ -45,10 +45,12 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   }
 
   /// Answers its request, which asks for a WebSocket.
-  void accept(const Request& request) {
-    ws_.async_accept(request, [self = shared_from_this()](error_code e) {
+  /// @param opened is called once it gets all that is sent
+  void accept(const Request& request, std::function<void()> opened) {
+    ws_.async_accept(request, [self = shared_from_this(), opened](error_code e) {
       if (e) return self->close();
       self->open_ = true;
+      opened();
       self->read();
     });
   }

@@ -195,12 +195,14 @@ class PageServer::Server {
 
   void open(beast::tcp_stream socket, const Request& request) {
     socket.expires_never();
-    const auto viewer =
-        std::make_shared<Viewer>(std::move(socket), kMostWaiting,
-                                 [this](const std::shared_ptr<Viewer>& v) { viewers_.erase(v); });
+    const auto viewer = std::make_shared<Viewer>(std::move(socket), kMostWaiting,
+                                                 [this](const std::shared_ptr<Viewer>& v) {
+                                                   viewers_.erase(v);
+                                                   if (finishing_ && viewers_.empty())
+                                                     context_.stop();
+                                                 });
     viewers_.insert(viewer);
-    watched_ = true;
-    viewer->accept(request);
+    viewer->accept(request, [this] { watched_ = true; });
   }
 
   void tick() {
@@ -223,11 +225,12 @@ class PageServer::Server {
     const auto all = viewers_;  // of which one may go
     for (const auto& v : all) v->send(frame);
   }
-  void finish() {
+  void finish() {  // a page that is busy gets the end, too; one that takes nothing is left
     acceptor_.close();
     send();
+    finishing_ = true;
     for (const auto& v : std::set(viewers_)) v->finish();
-    timer_.expires_after(viewers_.empty() ? 0ms : 500ms);  // which ends tick()
+    timer_.expires_after(viewers_.empty() ? 0s : 3s);  // which ends tick()
     timer_.async_wait([this](error_code) { context_.stop(); });
   }
 
@@ -243,6 +246,7 @@ class PageServer::Server {
   std::set<std::shared_ptr<Viewer>> viewers_;
   int visits_ = 0;
   std::atomic<bool> watched_ = false;
+  bool finishing_ = false;
   std::mutex mutex_;
   std::string pending_;  // messages since the last frame
   std::thread thread_;   // last: it uses the others

@@ -260,8 +260,8 @@ function connect() {
   socket.binaryType = 'arraybuffer';
   socket.onmessage = ({data}) => take_frame(data);
   socket.onopen = () => { seen.text = 'connected'; };
-  socket.onclose = () => {
-    seen.text = 'the stream is over; asked for again every 2 s';
+  socket.onclose = ({code}) => {
+    if (seen.text === 'connected') seen.text = `the stream ${code === 1000 ? 'is over' : 'broke off'}; asked for again every 2 s`;
     setTimeout(connect, 2000);
   };
 }
