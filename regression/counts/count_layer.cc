@@ -29,9 +29,16 @@ std::string other_keys(const std::string& folder, const Key& key) {
 void compare_with_committed(const CountOptions& o, InstructionReport& r) {
   const std::optional<Counts> committed = committed_counts(o.baselines, r.head->key);
   if (!committed) {
-    r.no_baseline =
-        fmt::format("no baseline for this key: {} is not there{}",
-                    counts_path(o.baselines, r.head->key), other_keys(o.baselines, r.head->key));
+    const Key& key = r.head->key;
+    const std::string others = other_keys(o.baselines, key);
+    if (r.base && r.other_key.empty() && !others.empty()) {  // those of another machine
+      r.only_base = fmt::format(
+          "no baseline for {} with glibc {}; counts are compared between base and head alone{}",
+          key.at("compiler"), key.at("glibc"), others);
+    } else {
+      r.no_baseline = fmt::format("no baseline for this key: {} is not there{}",
+                                  counts_path(o.baselines, key), others);
+    }
     return;
   }
   const std::regex wanted(o.kernels);

@@ -230,7 +230,10 @@ void add_summary(const InstructionReport& r, std::vector<std::string>& lines) {
                     std::count_if(changes.begin(), changes.end(), too_many), 100 * kCountLimit));
   };
   if (r.base && r.other_key.empty()) add("base", r.beside_base);
-  if (r.no_baseline.empty()) add("the committed", r.beside_committed);
+  if (!r.only_base.empty())
+    lines.push_back("instructions  " + r.only_base);
+  else if (r.no_baseline.empty())
+    add("the committed", r.beside_committed);
 }
 
 }  // namespace

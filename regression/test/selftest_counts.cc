@@ -26,14 +26,20 @@ TEST_F(Instructions, WithoutABaseNoCheckPasses) {
   EXPECT_TRUE(says("no base, so ") && !says("passed")) << text_;
 }
 
-TEST_F(Instructions, WithoutABaselineOfThisKeyTheyAreNotCompared) {
-  EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
+TEST_F(Instructions, WithABaselineOfAnotherMachineTheyAreComparedWithBaseAlone) {
+  EXPECT_EQ(count("base"), kUpdateNeeded) << "there is none at all: " << text_;
   const std::string path = make_counts();
   std::string other = read_whole(path);
   other.replace(other.find("# glibc: "), 9, "# glibc: 1");
   fs::remove(path);
   write(baselines() + "/instructions-00000000.tsv", other);
-  EXPECT_EQ(count("base"), kUpdateNeeded) << text_;
+  EXPECT_EQ(count("base"), kGood) << text_;
+  EXPECT_TRUE(says("counts are compared between base and head alone") && says("glibc: '1"))
+      << text_;
+  EXPECT_FALSE(says("beside the committed")) << text_;
+  EXPECT_EQ(count("instructions"), kSlower) << text_;
+  EXPECT_EQ(run({"count", "--head", plugin("base"), "--baselines", baselines()}), kUpdateNeeded)
+      << "and without a base with nothing: " << text_;
   EXPECT_TRUE(says("no baseline for this key") && says("glibc: '1")) << text_;
   write(path, other);
   EXPECT_EQ(count("base"), kCouldNotRun) << "its name is not its key's: " << text_;
