@@ -23,8 +23,9 @@ State initial_state(const mjModel& m) {
 }
 
 Eigen::MatrixXd mass_matrix(const mjModel& m, const mjData& d) {
-  Eigen::MatrixXd M(m.nv, m.nv);  // symmetric: its order in memory does not matter
-  mj_fullM(&m, M.data(), d.qM);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(m.nv, m.nv);
+  Eigen::MatrixXd M(m.nv, m.nv);
+  for (int i = 0; i < m.nv; ++i) mj_mulM(&m, &d, M.col(i).data(), one.col(i).data());
   return M;
 }
 

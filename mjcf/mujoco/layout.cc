@@ -17,7 +17,6 @@ namespace tauext {
 namespace {
 
 using Eigen::Vector3d;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 bool is_motor(const mjModel& m, int i) {
   return m.actuator_dyntype[i] == mjDYN_NONE && m.actuator_gaintype[i] == mjGAIN_FIXED &&
@@ -75,9 +74,10 @@ Ties rigid_ties(const mjModel& m) {
 // the joint coordinates, from the actuators at the head of the list
 void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
   while (l.dof < m.nu && is_coordinate(m, l.dof)) ++l.dof;
-  const Eigen::Map<const RowMajor> moment(d.actuator_moment, m.nu, m.nv);
+  Eigen::MatrixXd moment(l.dof, m.nv);
+  for (int i = 0; i < l.dof; ++i) moment.row(i) = levers(m, d, i);
   const Ties ties = rigid_ties(m);
-  const Eigen::MatrixXd by_free = moment.topRows(l.dof) * ties.T;
+  const Eigen::MatrixXd by_free = moment * ties.T;
   std::vector<Eigen::Index> free;  // of ties.free, those that motors move
   for (Eigen::Index k = 0; k < by_free.cols(); ++k) {
     if (by_free.col(k).isZero(0)) continue;
@@ -96,7 +96,7 @@ void find_coordinates(const mjModel& m, const mjData& d, Layout& l) {
         l.dof < m.nu ? fmt::format(", and '{}' is none", element_name(m, mjOBJ_ACTUATOR, l.dof))
                      : ""));
   }
-  l.S = moment.topRows(l.dof)(Eigen::indexing::all, l.arm);
+  l.S = moment(Eigen::indexing::all, l.arm);
   const Eigen::MatrixXd T = ties.T(l.arm, free);
   const Eigen::FullPivLU<Eigen::MatrixXd> q_to_free((l.S * T).transpose());
   if (q_to_free.rank() < l.dof) {

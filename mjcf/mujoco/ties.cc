@@ -48,7 +48,7 @@ void check(const mjModel& m, int e) {
 std::vector<int> followers(const mjModel& m) {
   std::vector<int> by(static_cast<std::size_t>(m.nv), -1);
   for (int e = 0; has_ties(m) && e < m.neq; ++e) {
-    if (!m.eq_active[e]) continue;
+    if (!is_active(m, e)) continue;
     check(m, e);
     int& own = by[static_cast<std::size_t>(m.jnt_dofadr[m.eq_obj1id[e]])];
     if (own >= 0) refuse_joint(m, m.eq_obj1id[e], "follows two others");
@@ -62,7 +62,10 @@ std::vector<int> followers(const mjModel& m) {
 bool has_ties(const mjModel& m) {
   const int flags = m.opt.disableflags;
   if ((flags & mjDSBL_EQUALITY) != 0 && (flags & kSimulated) == 0) return false;
-  return std::any_of(m.eq_active, m.eq_active + m.neq, [](mjtByte active) { return active != 0; });
+  for (int e = 0; e < m.neq; ++e) {
+    if (is_active(m, e)) return true;
+  }
+  return false;
 }
 
 bool has_rigid_ties(const mjModel& m) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -35,7 +36,7 @@ std::string element(const mjModel& m, mjtObj type, std::string_view kind, int id
 struct Numbers {
   mjtObj type;
   const char* kind;
-  int elements;
+  std::int64_t elements;
   const char* attribute;
   const mjtNum* values;
   int width;  // numbers of an element
@@ -85,7 +86,7 @@ void check_physical(const mjModel& m) {
   // a step must not take minutes
   check_option("iterations", m.opt.iterations, 0, 1000);
   check_option("noslip_iterations", m.opt.noslip_iterations, 0, 1000);
-  check_option("mpr_iterations", m.opt.mpr_iterations, 0, 1000);
+  check_option("mpr_iterations", collision_iterations(m), 0, 1000);
   for (const Numbers& n : std::to_array<Numbers>({
            {kBody, "body", m.nbody, "mass", m.body_mass, 1, 0, kMuch},
            {kBody, "body", m.nbody, "diaginertia", m.body_inertia, 3, 0, 1e9},
@@ -167,7 +168,7 @@ Model loaded(const std::string& path, const ImportOptions& options) {
   std::array<char, 1000> error{};
   const bool urdf = is_urdf(path);
   Model m = urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
-  if (m && options.changes_nothing() && has_motors(*m)) return m;
+  if (m && options.changes_nothing() && has_motors(*m) && !moves_as_newer(*m)) return m;
   const std::string first = one_line(error.data());
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});
@@ -209,9 +210,8 @@ Model load_files(const std::vector<std::pair<std::string, std::string_view>>& fi
   });
   mj_defaultVFS(vfs.get());
   for (const auto& [name, text] : files) {
-    if (mj_makeEmptyFileVFS(vfs.get(), name.c_str(), static_cast<int>(text.size())) != 0)
+    if (!add_file(*vfs, name, text))
       throw std::runtime_error(fmt::format("{}: MuJoCo's file table is full", name));
-    std::copy(text.begin(), text.end(), static_cast<char*>(vfs->filedata[vfs->nfile - 1]));
   }
   const std::string& main = files.front().first;
   std::array<char, 1000> error{"MuJoCo cannot read its own binary form"};

@@ -187,8 +187,8 @@ VectorXd Plant::tau_ext() const {
            type == mjCNSTR_CONTACT_ELLIPTIC;
   });
   if (layout_.tether >= 0) {
-    const VectorXd pull = data_->actuator_force[layout_.tether] *
-                          view(data_->actuator_moment + layout_.tether * model_->nv, model_->nv);
+    const VectorXd pull =
+        data_->actuator_force[layout_.tether] * levers(*model_, *data_, layout_.tether);
     sum += of_arm(pull.data());
   }
   return tau_ext_ - sum;

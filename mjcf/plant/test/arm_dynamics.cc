@@ -53,8 +53,8 @@ struct ArmDynamics::Workspace {
 
   void inertia(const double* q, double* B) {
     move_to(q, nullptr);
-    mj_crb(model.get(), data.get());
-    mj_fullM(model.get(), M.data(), data->qM);
+    mj_fwdPosition(model.get(), data.get());
+    M = mass_matrix(*model, *data);
     half.noalias() = M * drho;
     MatrixXd::Map(B, dof(), dof()).noalias() = drho.transpose() * half;
   }
