@@ -34,6 +34,8 @@ from ._core import Detections, Estimates, Run
 __all__ = ["Arm", "CONTACTS", "Detections", "Estimates", "Estimator", "Robot", "Run", "Terms", "estimator",
            "metrics", "read_log", "read_results", "robots"]
 
+__version__ = _core.build().split(",")[0].removeprefix("tauext ")
+
 #: What the numbers of Detections.contact mean.
 CONTACTS = ("none", "intentional", "collision", "clamping")
 

@@ -250,3 +250,17 @@ print(arm.estimate("mo2", run).tau_ext.shape, run.joints + "1")
     said = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, user], env=env,
                           capture_output=True, text=True).stdout
     assert 'Unsupported operand types for + ("int" and "str")' in said and "Found 1 error in 1 file" in said, said
+
+
+def test_the_module_says_what_is_there(arm):
+    def said(*robot):
+        return subprocess.run([sys.executable, "-m", "tauext", *robot], capture_output=True, text=True)
+
+    program = subprocess.run([f"{BIN}/tauext-bench", "--version"], capture_output=True, text=True, check=True).stdout
+    assert program.split()[1].rstrip(",") == tauext.__version__
+    lines = said().stdout.splitlines()
+    assert lines[0].startswith(f"tauext {tauext.__version__}, ") and "MuJoCo" in lines[0]
+    assert lines[2] == f"estimators: {', '.join(arm.estimators())}"
+    assert {line.split()[0] for line in lines[5:]} == set(arm.scenarios())
+    other = said("nothing_like_it")
+    assert other.returncode == 2 and "nothing_like_it" in other.stderr and not other.stdout
