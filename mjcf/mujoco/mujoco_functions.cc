@@ -9,10 +9,16 @@
 namespace tauext::detail {
 namespace {
 
-// where the linker looks, else where it was when this was built
+// where the linker looks, else where it was when this was built; a library that exports a tinyxml2
+// of its own shall not take ours for it
 void* library() {
-  if (void* const found = ::dlopen(TAUEXT_MUJOCO_NAME, RTLD_NOW)) return found;
-  if (void* const found = ::dlopen(TAUEXT_MUJOCO_PATH, RTLD_NOW)) return found;
+#ifdef TAUEXT_SANITIZED  // which refuses that
+  constexpr int kBinding = RTLD_NOW;
+#else
+  constexpr int kBinding = RTLD_NOW | RTLD_DEEPBIND;
+#endif
+  if (void* const found = ::dlopen(TAUEXT_MUJOCO_NAME, kBinding)) return found;
+  if (void* const found = ::dlopen(TAUEXT_MUJOCO_PATH, kBinding)) return found;
   throw std::runtime_error(
       fmt::format("MuJoCo, which simulates and reads robots' files, cannot be loaded: {}; install "
                   "MuJoCo " TAUEXT_MUJOCO_VERSION

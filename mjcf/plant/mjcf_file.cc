@@ -153,14 +153,16 @@ bool has_motors(const mjModel& m) {
 
 // mjMINVAL is no word of a user's
 std::string without_jargon(const std::string& message) {
-  constexpr std::string_view kName = "Object name = ";
-  const std::size_t name = message.find(kName);
-  if (message.find("mjMINVAL") == message.npos || name == message.npos) return message;
-  const std::size_t from = name + kName.size();
-  return fmt::format(
-      "body '{}' moves, and mass or inertia of it is not above 0; give it an "
-      "<inertial> with both",
-      message.substr(from, message.find(", id", from) - from));
+  if (message.find("mjMINVAL") == message.npos) return message;
+  for (const std::string_view before : {"Object name = ", "Element name '"}) {  // MuJoCo 2, 3
+    const std::size_t name = message.find(before), from = name + before.size();
+    if (name == message.npos) continue;
+    return fmt::format(
+        "body '{}' moves, and mass or inertia of it is not above 0; give it an "
+        "<inertial> with both",
+        message.substr(from, message.find(before.back() == '\'' ? "', id" : ", id", from) - from));
+  }
+  return message;
 }
 
 // the file as it is, or, if it has to be, imported
@@ -173,8 +175,11 @@ Model loaded(const std::string& path, const ImportOptions& options) {
   try {
     return load_files({{"robot.xml", import_mjcf(path, options).xml}});
   } catch (const std::runtime_error& e) {
-    constexpr std::string_view kUnreadable = "problem reading attribute";
-    if (std::string_view(e.what()).find(kUnreadable) != std::string_view::npos) refuse_commas(path);
+    for (const char* unreadable : {"problem reading attribute", "bad format in attribute"}) {
+      if (std::string_view(e.what()).find(unreadable) == std::string_view::npos) continue;
+      refuse_commas(path);
+      refuse_nan(path);
+    }
     // the same in the words that name the file's own line; those of the imported text help nobody
     if (!m && !urdf && without_line(first) == without_line(e.what()))
       throw std::runtime_error(first);

@@ -136,9 +136,8 @@ void expect_mujocos_jacobians(const Model& model, unsigned seed) {
     if (m.body_jntnum[b] == 0) continue;
     const int joint = m.body_jntadr[b] + m.body_jntnum[b] - 1;
     const Vec<3> point = random.vector<3>(0.3), anchor = Vec<3>::Map(m.jnt_pos + 3 * joint);
-    Vec<3> at;  // in the world
-    mju_rotVecMat(at.data(), point.data(), d->xmat + 9 * b);
-    at += Vec<3>::Map(d->xpos + 3 * b);
+    const Vec<3> at =  // in the world; MuJoCo's matrices are row by row
+        Vec<3>::Map(d->xpos + 3 * b) + Mat<3>::Map(d->xmat + 9 * b).transpose() * point;
     Eigen::Matrix<double, 3, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor> linear, angular;
     mj_jac(&m, d.get(), linear.data(), angular.data(), at.data(), b);
     const Eigen::Matrix<double, 6, N> J = tree.jacobian(q, joint, point - anchor);

@@ -40,6 +40,7 @@ std::string urdf(const std::string& more = "") {
 }
 
 TEST_F(OfUrdf, IsTheArmThatMuJoCosOwnReaderMakes) {
+  if (mjVERSION_HEADER >= 300) GTEST_SKIP() << "MuJoCo 3 does not turn inertias by <origin rpy>";
   const std::string path = put(urdf(), "arm.urdf");
   const TreeModel<3> tree = tree_model<3>(load_mjcf(path));
   char why[1000];
