@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """python3 -m tauext [ROBOT]: what is there: the version, its robots, and what runs on one of them (wallmobot3 unless named)."""
+import signal
 import sys
 
 import tauext
@@ -7,6 +8,7 @@ from tauext import _core
 
 
 def main() -> int:
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # whoever reads may stop
     if len(sys.argv) > 2 or sys.argv[1:2] in (["-h"], ["--help"]):
         print(__doc__)
         return 0 if len(sys.argv) == 2 else 2
