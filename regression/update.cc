@@ -3,11 +3,13 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <regex>
 #include <set>
@@ -83,25 +85,33 @@ Changes update_counts(const UpdateOptions& o, Files& files) {
   return changes;
 }
 
-// the new text, with the old lines of entries that do not match
+// the new text, with the old lines of entries that do not match, and the contacts of both
 std::string merged(const std::string& before, const std::string& now, const std::string& entries) {
   const std::regex wanted(entries);
   const auto is_metric = [](const std::string& line) {
     return !line.starts_with("#") && !line.starts_with("entry\t");
   };
-  std::string head;
-  std::set<std::string> lines;
+  std::set<std::string> lines, contacts;
+  const auto met = [&contacts](const std::string& line) {
+    constexpr std::string_view kContacts = "# contacts:";
+    if (!line.starts_with(kContacts)) return false;
+    std::istringstream words(line.substr(kContacts.size()));
+    contacts.insert(std::istream_iterator<std::string>(words), {});
+    return true;
+  };
   std::istringstream old_lines(before), new_lines(now);
+  for (std::string line; std::getline(old_lines, line);) {
+    if (met(line) || !is_metric(line)) continue;
+    if (!std::regex_search(line.substr(0, line.find('\t')), wanted)) lines.insert(line);
+  }
+  std::string head;
   for (std::string line; std::getline(new_lines, line);) {
     if (is_metric(line)) {
       lines.insert(line);
+    } else if (met(line)) {
+      head += fmt::format("# contacts: {}\n", fmt::join(contacts, " "));
     } else if (line != "# end") {
       head += line + "\n";
-    }
-  }
-  for (std::string line; std::getline(old_lines, line);) {
-    if (is_metric(line) && !std::regex_search(line.substr(0, line.find('\t')), wanted)) {
-      lines.insert(line);
     }
   }
   for (const std::string& line : lines) head += line + "\n";

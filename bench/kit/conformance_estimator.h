@@ -52,7 +52,7 @@ class EstimatorClaims {
   void ends_up_at_a_step() const {
     SCOPED_TRACE("ends up at a step");
     const auto load = [](double t) -> Vec<N> { return Vec<N>::Constant(t < 1 ? 0 : 50); };
-    const auto samples = simulated::simulate<M>(simulated::grid(12, 1e-3), load, {}, arm_);
+    const auto samples = simulated_arm::simulate<M>(simulated_arm::grid(12, 1e-3), load, {}, arm_);
     const Vec<N> last = run(samples).back().tau_ext;
     EXPECT_LT((last - Vec<N>::Constant(50)).cwiseAbs().maxCoeff(), 0.1) << last.transpose();
   }
@@ -61,7 +61,7 @@ class EstimatorClaims {
   void starts_in_motion_without_a_spike() const {
     SCOPED_TRACE("starts in motion without a spike");
     double worst = 0, sum = 0;
-    const Samples samples = simulate(simulated::grid(12, 1e-3), 0, {.amplitude = 0.3, .w = 2});
+    const Samples samples = simulate(simulated_arm::grid(12, 1e-3), 0, {.amplitude = 0.3, .w = 2});
     for (const auto& x : run(samples)) {
       worst = std::max(worst, x.tau_ext.cwiseAbs().maxCoeff());
       sum += x.tau_ext.cwiseAbs2().maxCoeff();
@@ -74,9 +74,9 @@ class EstimatorClaims {
   /// step.
   void answers_alike_at_every_sample_time() const {
     SCOPED_TRACE("answers alike at every sample time");
-    const Vec<N> reference = half_way(simulated::grid(0.8, 1e-3));
+    const Vec<N> reference = half_way(simulated_arm::grid(0.8, 1e-3));
     for (const double Ts : {0.25e-3, 0.5e-3, 2e-3}) {
-      EXPECT_LT((half_way(simulated::grid(0.8, Ts)) - reference).norm(), 0.02 * 50)
+      EXPECT_LT((half_way(simulated_arm::grid(0.8, Ts)) - reference).norm(), 0.02 * 50)
           << "Ts = " << Ts << " s";
     }
   }
@@ -85,9 +85,9 @@ class EstimatorClaims {
   void answers_alike_with_jittered_time_stamps() const {
     SCOPED_TRACE("answers alike with jittered time stamps");
     std::mt19937_64 generator(4);
-    std::vector<double> times = simulated::grid(0.8, 1e-3);
+    std::vector<double> times = simulated_arm::grid(0.8, 1e-3);
     for (double& t : times) t += 0.6e-3 * (uniform(generator) - 0.5);
-    const Vec<N> reference = half_way(simulated::grid(0.8, 1e-3));
+    const Vec<N> reference = half_way(simulated_arm::grid(0.8, 1e-3));
     EXPECT_LT((half_way(times) - reference).norm(), 0.02 * 50);
   }
 
@@ -242,12 +242,12 @@ class EstimatorClaims {
   [[gnu::noinline]] E made() const { return make_(); }
 
   Samples simulate(const std::vector<double>& times, double load,
-                   const simulated::Motion& motion = {}) const {
-    return simulated::simulate<M>(times, simulated::constant<N>(load), motion, arm_);
+                   const simulated_arm::Motion& motion = {}) const {
+    return simulated_arm::simulate<M>(times, simulated_arm::constant<N>(load), motion, arm_);
   }
 
   Samples steady(double seconds, double load) const {
-    return simulate(simulated::grid(seconds, 1e-3), load);
+    return simulate(simulated_arm::grid(seconds, 1e-3), load);
   }
 
   std::vector<Estimate<N>> run(const Samples& samples) const {
@@ -260,7 +260,7 @@ class EstimatorClaims {
   // 0.3 s after a step of 50 N m, where an estimator is still under way
   Vec<N> half_way(const std::vector<double>& times) const {
     const auto load = [](double t) -> Vec<N> { return Vec<N>::Constant(t < 0.5 ? 0 : 50); };
-    return run(simulated::simulate<M>(times, load, {}, arm_)).back().tau_ext;
+    return run(simulated_arm::simulate<M>(times, load, {}, arm_)).back().tau_ext;
   }
 
   M arm_;

@@ -84,8 +84,9 @@ class FaultClaims {
   static constexpr std::size_t kFault = 1500;
 
   static Samples readings(const M& arm, const Vec<N>& load) {
-    Samples all = simulated::simulate<M>(
-        simulated::grid(2.5, 1e-3), [&](double) { return load; }, {.amplitude = 0.3, .w = 2}, arm);
+    Samples all = simulated_arm::simulate<M>(
+        simulated_arm::grid(2.5, 1e-3), [&](double) { return load; }, {.amplitude = 0.3, .w = 2},
+        arm);
     std::mt19937_64 generator(9);
     // twelve uniform numbers, whose sum has the variance 1, in every library the same
     const auto noise = [&generator] {

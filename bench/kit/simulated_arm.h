@@ -13,7 +13,7 @@
 #include "estimators/math/ldlt.h"
 #include "estimators/wallmobot3.h"
 
-namespace tauext::simulated {
+namespace tauext::simulated_arm {
 
 /// q_ref = amplitude sin(w t) on every joint.
 struct Motion {
@@ -70,4 +70,4 @@ std::function<Vec<N>(double)> constant(double load) {
   return [=](double) { return Vec<N>::Constant(load); };
 }
 
-}  // namespace tauext::simulated
+}  // namespace tauext::simulated_arm

@@ -136,9 +136,9 @@ StudyRuns runs_of_any(const Robot& r) {
 }
 
 // made when it is first asked for
-const StudyRuns& of_any(const std::string& name) {
+const StudyRuns& of_any(std::string_view name) {
   static std::mutex mutex;
-  static std::map<std::string, StudyRuns> all;
+  static std::map<std::string, StudyRuns, std::less<>> all;
   const std::lock_guard alone(mutex);
   const auto found = all.find(name);
   return found != all.end() ? found->second
@@ -146,7 +146,7 @@ const StudyRuns& of_any(const std::string& name) {
 }
 
 // the runs of a robot for which has(runs) holds; of the first one for ""
-const StudyRuns& find(const char* study, const std::string& name, bool (*has)(const StudyRuns&)) {
+const StudyRuns& find(const char* study, std::string_view name, bool (*has)(const StudyRuns&)) {
   static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
   if (!name.empty()) robot(name);  // an unknown one is no robot without runs
   std::vector<std::string> with;
@@ -160,7 +160,7 @@ const StudyRuns& find(const char* study, const std::string& name, bool (*has)(co
   }
   if (!own && has(of_any(name))) return of_any(name);
   for (const std::string_view other : kRobotsByMjcf) {
-    if (!has(of_any(std::string(other)))) continue;
+    if (!has(of_any(other))) continue;
     with.emplace_back(other);
     files = ", and for robots from files";
   }
@@ -207,11 +207,11 @@ PlantKey plant_of(const Condition& c) {
   return {c.panel, c.degradation.model_error, c.degradation.drives, c.motions};
 }
 
-const StudyRuns& touched_runs(const std::string& robot) {
+const StudyRuns& touched_runs(std::string_view robot) {
   return find("detection", robot, [](const StudyRuns& r) { return bool(r.touched); });
 }
 
-const StudyRuns& drawn_runs(const std::string& robot) {
+const StudyRuns& drawn_runs(std::string_view robot) {
   return find("reliability", robot, [](const StudyRuns& r) { return bool(r.blow); });
 }
 

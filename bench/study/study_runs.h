@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/roster/robot.h"
@@ -83,11 +84,11 @@ struct StudyRuns {
 /// The runs of a robot for the detection study; "" stands for the first robot that has some.
 /// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those
 /// with
-const StudyRuns& touched_runs(const std::string& robot);
+const StudyRuns& touched_runs(std::string_view robot);
 
 /// The runs of a robot for the reliability study; "" stands for the first robot that has some.
 /// @throws std::invalid_argument as touched_runs does
-const StudyRuns& drawn_runs(const std::string& robot);
+const StudyRuns& drawn_runs(std::string_view robot);
 
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Condition& condition(const StudyRuns& runs, const std::string& name);

@@ -7,7 +7,7 @@
 #include "bench/kit/simulated_arm.h"
 
 namespace tauext::test {
-using namespace simulated;
+using namespace simulated_arm;
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

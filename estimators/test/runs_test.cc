@@ -38,9 +38,9 @@ SamplesOfRuns<M::kDof, W> different(const M& arm, double seconds) {
   std::normal_distribution<double> noise;
   for (int i = 0; i < W; ++i) {
     auto& mine = all[static_cast<std::size_t>(i)];
-    mine = simulated::simulate<M>(simulated::grid(seconds, i % 2 ? 1e-3 : 2e-3),
-                                  simulated::constant<M::kDof>(3. * i - 5),
-                                  {.amplitude = 0.1 + 0.02 * i, .w = 1. + 0.3 * i}, arm);
+    mine = simulated_arm::simulate<M>(simulated_arm::grid(seconds, i % 2 ? 1e-3 : 2e-3),
+                                      simulated_arm::constant<M::kDof>(3. * i - 5),
+                                      {.amplitude = 0.1 + 0.02 * i, .w = 1. + 0.3 * i}, arm);
     for (auto& y : mine) {
       for (double& x : y.q) x += 1e-5 * noise(random);
       for (double& x : y.qd) x += 1e-3 * noise(random);

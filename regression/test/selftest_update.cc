@@ -75,7 +75,7 @@ TEST_F(Update, SaysWhetherAKernelIsSlowerOrMetricsAreLessAccurate) {
 
 TEST_F(Update, OfSomeEntriesLeavesTheOthers) {
   run_child({"env", "SUBJECT=", kBin + "/subject_bench", "--golden", golden(),
-             "--benchmark_filter=testbed1/(hold|swing)/subject$"});
+             "--benchmark_filter=testbed1/(hold|collision)/subject$"});
   once_ = read_whole(golden());
   run_child({"env", "SUBJECT=gain=1.001", kBin + "/subject_bench", "--golden",
              baselines() + "/next.tsv", "--benchmark_filter=testbed1/hold/subject$"});
@@ -87,7 +87,8 @@ TEST_F(Update, OfSomeEntriesLeavesTheOthers) {
   const auto noise = [](const Golden& g, const char* entry) {
     return g.lines.at({entry, "noise_Nm"}).values;
   };
-  EXPECT_EQ(noise(now, "testbed1/swing/subject"), noise(before, "testbed1/swing/subject"));
+  EXPECT_EQ(noise(now, "testbed1/collision/subject"), noise(before, "testbed1/collision/subject"));
+  EXPECT_EQ(now.header.at("contacts"), "testbed1/collision");
   EXPECT_NE(noise(now, "testbed1/hold/subject"), noise(before, "testbed1/hold/subject"));
 }
 
