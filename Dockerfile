@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # docker build -t tauext . && docker run --rm tauext tauext-bench --benchmark_filter=wallmobot3/step/
+# Without a hash: what Debian mends counts for more here than the same image twice.
 FROM debian:13 AS build
 COPY . /tauext
 WORKDIR /tauext

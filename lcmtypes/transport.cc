@@ -14,8 +14,8 @@
 #include <stdexcept>
 
 #ifdef TAUEXT_SANITIZED
-// LCM 1.3.1 locks by GLib's g_static_rec_mutex_lock(), and frees none of what that allocates. Before
-// GLib 2.76 that came from a pool, which LeakSanitizer does not look into.
+// LCM 1.3.1 locks by GLib's g_static_rec_mutex_lock(), and frees none of what that allocates.
+// Before GLib 2.76 that came from a pool, which LeakSanitizer does not look into.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libglib-2.0.so";
 }

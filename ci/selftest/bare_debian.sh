@@ -2,6 +2,7 @@
 # shellcheck shell=bash
 # To be sourced by root, who needs mmdebstrap: a bare Debian of a release in $root, which goes when the script ends.
 [ "$(id -u)" = 0 ] || { echo "${0##*/}: skipped: not root"; exit 77; }
+unshare --mount --net true 2>/dev/null || { echo "${0##*/}: skipped: mounts are forbidden here"; exit 77; }
 command -v mmdebstrap >/dev/null || { echo "${0##*/}: no mmdebstrap; ci/install_deps installs it" >&2; exit 2; }
 root=$(mktemp -d)
 trap 'umount -R "$root/proc" "$root/dev" 2>/dev/null || true; rm -rf --one-file-system "$root"' EXIT

@@ -55,7 +55,7 @@ inline constexpr Kept kKept[] = {
      "inertiafromgeom inertiagrouprange autolimits assetdir meshdir "},
     {"option",
      " timestep impratio gravity wind density viscosity solver iterations tolerance "
-     "noslip_iterations mpr_iterations "},
+     "noslip_iterations "},
     {"default", " class "},
     {"worldbody", " "},
     {"body", " name childclass pos quat axisangle xyaxes zaxis euler "},
@@ -105,7 +105,8 @@ inline constexpr Kept kLeftOut[] = {
      "saveinertial exactmeshinertia convexhull convexmesh "},
     {"option",
      " integrator cone jacobian tolerance apirate magnetic o_margin o_solref o_solimp o_friction "
-     "noslip_tolerance mpr_tolerance ccd_iterations ccd_tolerance ls_iterations ls_tolerance "
+     "noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance ls_iterations "
+     "ls_tolerance "
      "sdf_iterations sdf_initpoints actuatorgroupdisable sleep_tolerance collision "},
     {"body", " gravcomp user mocap sleep "},
     {"joint", " group user actuatorfrcrange actuatorfrclimited actuatorgravcomp "},

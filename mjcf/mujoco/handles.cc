@@ -23,9 +23,9 @@ State initial_state(const mjModel& m) {
 }
 
 Eigen::MatrixXd mass_matrix(const mjModel& m, const mjData& d) {
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(m.nv, m.nv);
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(m.nv, m.nv);
   Eigen::MatrixXd M(m.nv, m.nv);
-  for (int i = 0; i < m.nv; ++i) mj_mulM(&m, &d, M.col(i).data(), one.col(i).data());
+  for (int i = 0; i < m.nv; ++i) mj_mulM(&m, &d, M.col(i).data(), identity.col(i).data());
   return M;
 }
 

@@ -19,12 +19,12 @@ void* library() {
 #endif
   if (void* const found = ::dlopen(TAUEXT_MUJOCO_NAME, kBinding)) return found;
   if (void* const found = ::dlopen(TAUEXT_MUJOCO_PATH, kBinding)) return found;
-  throw std::runtime_error(
-      fmt::format("MuJoCo, which simulates and reads robots' files, cannot be loaded: {}; install "
-                  "MuJoCo " TAUEXT_MUJOCO_VERSION
-                  " (Debian: libmujoco2.2.2), or set LD_LIBRARY_PATH to the "
-                  "folder of " TAUEXT_MUJOCO_NAME,
-                  ::dlerror()));
+  throw std::runtime_error(fmt::format(
+      "MuJoCo, which simulates and reads robots' files, cannot be loaded: {}; install "
+      "MuJoCo " TAUEXT_MUJOCO_VERSION " (Debian and Ubuntu: libmujoco" TAUEXT_MUJOCO_VERSION
+      "), or set LD_LIBRARY_PATH to the "
+      "folder of " TAUEXT_MUJOCO_NAME,
+      ::dlerror()));
 }
 
 template <class Pointer>

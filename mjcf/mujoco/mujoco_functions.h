@@ -100,13 +100,18 @@ inline bool is_active(const mjModel& m, int equality) {
 #endif
 }
 
-/// How often MuJoCo goes on to look where convex shapes touch, at most.
-inline int collision_iterations(const mjModel& m) {
+/// How often MuJoCo goes on to look where convex shapes touch, at most; and the option's name.
+inline std::pair<const char*, int> collision_iterations(const mjModel& m) {
 #if mjVERSION_HEADER < 323
-  return m.opt.mpr_iterations;
+  return {"mpr_iterations", m.opt.mpr_iterations};
 #else
-  return m.opt.ccd_iterations;
+  return {"ccd_iterations", m.opt.ccd_iterations};
 #endif
+}
+
+/// Whether one of these is not 0.
+inline bool any(const auto* of, int count) {
+  return std::any_of(of, of + count, [](auto x) { return x != 0; });
 }
 
 /// Whether it has what 2.2.2 does not read in a file, and what changes how the arm moves.
@@ -114,9 +119,6 @@ inline bool moves_as_newer([[maybe_unused]] const mjModel& m) {
 #if mjVERSION_HEADER < 300
   return false;
 #else
-  const auto any = [](const auto* values, int count) {
-    return std::any_of(values, values + count, [](auto x) { return x != 0; });
-  };
   return m.opt.integrator > mjINT_IMPLICIT || any(m.body_gravcomp, m.nbody) ||
          any(m.jnt_actfrclimited, m.njnt);
 #endif

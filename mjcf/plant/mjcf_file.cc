@@ -86,7 +86,8 @@ void check_physical(const mjModel& m) {
   // a step must not take minutes
   check_option("iterations", m.opt.iterations, 0, 1000);
   check_option("noslip_iterations", m.opt.noslip_iterations, 0, 1000);
-  check_option("mpr_iterations", collision_iterations(m), 0, 1000);
+  const auto [name, most] = collision_iterations(m);
+  check_option(name, most, 0, 1000);
   for (const Numbers& n : std::to_array<Numbers>({
            {kBody, "body", m.nbody, "mass", m.body_mass, 1, 0, kMuch},
            {kBody, "body", m.nbody, "diaginertia", m.body_inertia, 3, 0, 1e9},

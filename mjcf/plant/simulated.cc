@@ -50,10 +50,6 @@ bool may_touch(const mjModel& m) {
   return m.npair > 0;
 }
 
-bool any(const auto* of, int count) {
-  return std::any_of(of, of + count, [](auto x) { return x != 0; });
-}
-
 constexpr double kExactTolerance = 1e-15;  // of the solver, for rounding to be all that is left
 
 bool needs_mujoco(const mjModel& m) {

@@ -13,31 +13,38 @@
 namespace tauext::gate {
 namespace {
 
-// every key that the folder has, and in what it differs
-std::string other_keys(const std::string& folder, const Key& key) {
-  std::string text;
+// of a folder
+struct OtherKeys {
+  std::string text;           // every key that it has, and in what it differs
+  bool same_machine = false;  // one is of this machine, and differs in what we chose
+};
+
+OtherKeys other_keys(const std::string& folder, const Key& key) {
+  OtherKeys others;
   std::error_code missing;  // a folder that is not there holds no other key
   for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("instructions-")) continue;
-    text +=
-        fmt::format("\n    {} has {}", name, key_difference(read_counts(entry.path()).key, key));
+    const Key other = read_counts(entry.path()).key;
+    others.text += fmt::format("\n    {} has {}", name, key_difference(other, key));
+    const auto same = [&](const char* what) { return other.at(what) == key.at(what); };
+    others.same_machine |= same("arch") && same("compiler") && same("glibc") && same("libm");
   }
-  return text;
+  return others;
 }
 
 void compare_with_committed(const CountOptions& o, InstructionReport& r) {
   const std::optional<Counts> committed = committed_counts(o.baselines, r.head->key);
   if (!committed) {
     const Key& key = r.head->key;
-    const std::string others = other_keys(o.baselines, key);
-    if (r.base && r.other_key.empty() && !others.empty()) {  // those of another machine
+    const OtherKeys others = other_keys(o.baselines, key);
+    if (r.base && r.other_key.empty() && !others.text.empty() && !others.same_machine) {
       r.only_base = fmt::format(
           "no baseline for {} with glibc {}; counts are compared between base and head alone{}",
-          key.at("compiler"), key.at("glibc"), others);
+          key.at("compiler"), key.at("glibc"), others.text);
     } else {
       r.no_baseline = fmt::format("no baseline for this key: {} is not there{}",
-                                  counts_path(o.baselines, key), others);
+                                  counts_path(o.baselines, key), others.text);
     }
     return;
   }

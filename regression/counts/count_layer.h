@@ -24,8 +24,8 @@ struct CountOptions {
 struct InstructionReport {
   int kernels = 0;
   std::vector<CountChange> beside_base, beside_committed;
-  std::string no_baseline;  ///< that nothing says what head may count; "" if something does
-  std::string only_base;    ///< why base alone says it, and no committed file; "" if one does
+  std::string no_baseline;  ///< why committed counts are needed and not there; "" if none are
+  std::string only_base;    ///< why head is compared with base alone; "" if it is not
   std::vector<std::string> added, gone;  ///< beside the committed
   std::string other_key;                 ///< why base cannot be compared with head; "" if it can
   std::optional<Counts> base, head;      ///< as counted

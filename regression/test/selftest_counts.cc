@@ -29,10 +29,15 @@ TEST_F(Instructions, WithoutABaseNoCheckPasses) {
 TEST_F(Instructions, WithABaselineOfAnotherMachineTheyAreComparedWithBaseAlone) {
   EXPECT_EQ(count("base"), kUpdateNeeded) << "there is none at all: " << text_;
   const std::string path = make_counts();
-  std::string other = read_whole(path);
-  other.replace(other.find("# glibc: "), 9, "# glibc: 1");
+  const auto with = [whole = read_whole(path)](const std::string& key) {
+    std::string text = whole;
+    return text.replace(text.find(key), key.size(), key + "1");
+  };
+  const std::string file = baselines() + "/instructions-00000000.tsv", other = with("# glibc: ");
   fs::remove(path);
-  write(baselines() + "/instructions-00000000.tsv", other);
+  write(file, with("# flags: "));
+  EXPECT_EQ(count("base"), kUpdateNeeded) << "those of this machine are out of date: " << text_;
+  write(file, other);
   EXPECT_EQ(count("base"), kGood) << text_;
   EXPECT_TRUE(says("counts are compared between base and head alone") && says("glibc: '1"))
       << text_;

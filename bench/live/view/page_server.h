@@ -29,13 +29,13 @@ class PageServer {
   /// @param title what it shows, like wallmobot3/contact
   /// @throws std::runtime_error if nothing can listen there, with the remedy
   PageServer(int port, const std::string& title);
-  /// Sends what is left, for up to half a second.
+  /// Sends what is left, for up to 3 s.
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
 
   const std::string& url() const;  ///< of the page
-  bool is_watched() const;         ///< whether a page has ever asked for the stream
+  bool is_watched() const;         ///< whether a page has ever got the stream
   /// Sends a message to all pages. From any thread; waits for none of them.
   void put(std::string_view channel, Bytes message);
 

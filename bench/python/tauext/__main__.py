@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""python3 -m tauext [ROBOT]: what is there: the version, its robots, and what runs on one of them (wallmobot3 unless named)."""
+"""python3 -m tauext [ROBOT] prints the version, the robots, and what runs on one of them (wallmobot3 unless named)."""
 import signal
 import sys
 
