@@ -29,17 +29,11 @@ std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,
                                     std::map<std::string, int>& changed) {
   std::set<std::string> locked;
   if (lock.empty()) return locked;
-  std::regex which;
-  try {
-    which = std::regex(lock);
-  } catch (const std::regex_error& e) {
-    throw std::runtime_error(fmt::format("--lock '{}': {}", printable_name(lock), e.what()));
-  }
   std::vector<std::string> names;
   each(root, [&](XMLElement& e) {
     if (name_of(e) != "joint" || parent_name(e) != "body") return true;
     names.push_back(text(e, "name"));
-    if (!std::regex_match(names.back(), which)) return true;
+    if (!is_locked(names.back(), lock)) return true;
     locked.insert(names.back());
     return drop(e, stays_in_range(e) ? "joint locked" : "joint locked outside its range", changed);
   });
@@ -75,6 +69,15 @@ bool is_idle(const XMLElement& e, const std::set<std::string>& locked, Carriers&
 }
 
 }  // namespace
+
+bool is_locked(const std::string& joint, const std::string& regex) {
+  if (regex.empty()) return false;
+  try {
+    return std::regex_match(joint, std::regex(regex));
+  } catch (const std::regex_error& e) {
+    throw std::runtime_error(fmt::format("--lock '{}': {}", printable_name(regex), e.what()));
+  }
+}
 
 void lock_joints(XMLElement& mujoco, const std::string& regex, std::map<std::string, int>& dropped,
                  std::map<std::string, int>& changed) {

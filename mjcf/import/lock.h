@@ -12,6 +12,10 @@ class XMLElement;
 
 namespace tauext::detail {
 
+/// Whether the whole name of a joint matches; none does if the expression is empty.
+/// @throws std::runtime_error for one that is none
+bool is_locked(const std::string& joint, const std::string& regex);
+
 /// Takes the joints away whose whole name matches, so that their bodies stand as at 0; then
 /// equalities and tendons that have nothing left to tie.
 /// @param regex ECMAScript's; none if it is empty

@@ -55,7 +55,8 @@ class Import {
   ImportedText run() {
     if (name_of(load(doc_, path_)) == "robot") {
       XMLDocument mjcf;
-      detail::urdf_to_mjcf(*doc_.RootElement(), mjcf, out_.dropped);
+      detail::urdf_to_mjcf(*doc_.RootElement(), mjcf,
+                           {options_.lock, options_.balance, out_.dropped, out_.changed});
       mjcf.DeepCopy(&doc_);
     }
     XMLElement& root = *doc_.RootElement();
@@ -91,6 +92,8 @@ class Import {
     if (doc.Error() || doc.RootElement() == nullptr)
       throw std::runtime_error(one_line(
           fmt::format("{}line {}: no XML ({})", where, doc.ErrorLineNum(), detail::error_of(doc))));
+    if (const XMLElement* const second = doc.RootElement()->NextSiblingElement())
+      fail(*second, "{}a second <{}> behind the first", where, name_of(*second));
     return *doc.RootElement();
   }
 

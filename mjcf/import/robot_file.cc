@@ -102,6 +102,7 @@ RobotFile robot_file(const std::string& path, const ImportOptions& options) {
     throw std::invalid_argument(
         fmt::format("{}: has a \"lock\" of its own, so --lock cannot be another one", path));
   if (lock.empty()) lock = options.lock;
+  robot.options.balance = options.balance;
   return robot;
 }
 

@@ -132,20 +132,23 @@ inline constexpr std::string_view kLeftOutElements =
 inline constexpr std::string_view kUnknown[] = {"frame", "replicate", "attach", "composite",
                                                 "flexcomp"};
 
-/// The same of URDF, within its links and joints.
-inline constexpr Kept kUrdf[] = {
-    {"link", " name type "},
-    {"inertial", " "},
-    {"origin", " xyz rpy "},
-    {"mass", " value "},
-    {"inertia", " ixx ixy ixz iyy iyz izz "},
-    {"joint", " name type "},
-    {"parent", " link "},
-    {"child", " link "},
-    {"axis", " xyz "},
-    {"limit", " lower upper effort velocity acceleration jerk "},
-    {"dynamics", " damping friction armature "},  // armature: ours
-    {"mimic", " joint multiplier offset "},
+/// The same of URDF, and where it stands.
+struct KeptOfUrdf : Kept {
+  std::string_view within;  ///< elements, as in Kept::attributes
+};
+inline constexpr KeptOfUrdf kUrdf[] = {
+    {{"link", " name type "}, " robot "},
+    {{"inertial", " "}, " link "},
+    {{"origin", " xyz rpy "}, " inertial joint "},
+    {{"mass", " value "}, " inertial "},
+    {{"inertia", " ixx ixy ixz iyy iyz izz "}, " inertial "},
+    {{"joint", " name type "}, " robot "},
+    {{"parent", " link "}, " joint "},
+    {{"child", " link "}, " joint "},
+    {{"axis", " xyz "}, " joint "},
+    {{"limit", " lower upper effort velocity acceleration jerk "}, " joint "},
+    {{"dynamics", " damping friction armature "}, " joint "},  // armature: ours
+    {{"mimic", " joint multiplier offset "}, " joint "},
 };
 /// Elements of these that are left out, as are those of a namespace; any other one is an error.
 inline constexpr std::string_view kUrdfLeftOut =

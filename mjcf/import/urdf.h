@@ -13,10 +13,19 @@ class XMLElement;
 
 namespace tauext::detail {
 
+/// How it is read, and what is counted on the way; as in ImportOptions and ImportedText.
+struct UrdfReading {
+  const std::string& lock;
+  bool balance;
+  std::map<std::string, int>&dropped, &changed;
+};
+
 /// Links, masses and joints with their limits, damping and friction; a mimic joint is an equality.
-/// Shapes are left out, with all that is for drawing and for other programs. The root link stands.
-/// @throws std::runtime_error naming line, link or joint, and what is wrong with it
+/// Links that are fixed to each other are one mass, and only their sum has to be that of a body;
+/// what misses that by few digits is mended, or by more, if `balance` says so. Shapes are
+/// left out, with all that is for drawing and for other programs. The root link stands.
+/// @throws std::runtime_error naming each line, link or joint, and what is wrong with it
 void urdf_to_mjcf(const tinyxml2::XMLElement& robot, tinyxml2::XMLDocument& mjcf,
-                  std::map<std::string, int>& dropped);
+                  const UrdfReading& how);
 
 }  // namespace tauext::detail

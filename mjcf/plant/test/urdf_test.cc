@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other people's URDF (mjcf/import/), beside MuJoCo's own reader.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -41,7 +43,12 @@ std::string urdf(const std::string& more = "") {
 
 TEST_F(OfUrdf, IsTheArmThatMuJoCosOwnReaderMakes) {
   if (mjVERSION_HEADER >= 300) GTEST_SKIP() << "MuJoCo 3 does not turn inertias by <origin rpy>";
-  const std::string path = put(urdf(), "arm.urdf");
+  const std::string flange =
+      "<link name='flange'><inertial><origin xyz='.02 0 .03' rpy='.5 .1 0'/><mass value='.7'/>"
+      "<inertia ixx='.003' ixy='.0002' ixz='0' iyy='.002' iyz='0' izz='.004'/></inertial></link>"
+      "<joint name='bolts' type='fixed'><parent link='lower'/><child link='flange'/><origin "
+      "xyz='0 .05 .1' rpy='.3 -.7 .2'/></joint>";
+  const std::string path = put(urdf(flange), "arm.urdf");
   const TreeModel<3> tree = tree_model<3>(load_mjcf(path));
   char why[1000];
   const Model own(mj_loadXML(path.c_str(), nullptr, why, sizeof why),
@@ -127,7 +134,8 @@ TEST_F(OfUrdf, SaysWhatIsWrong) {
   has(error(limited("revolute", "lower='-170' upper='170'")),
       "joint 'y' goes from -170 to 170 rad: give radians");
   has(error(limited("revolute", "lower='-1' upper='1'")),
-      "body 'c' moves, and mass or inertia of it is not above 0");
+      "links that move and have no mass (give them an <inertial>, or --lock their joints): 'c' "
+      "(line");
 }
 
 TEST_F(OfUrdf, MayDescribeControllersAndSensorsBesideTheArm) {
@@ -148,6 +156,8 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
   add("<dynamics", " D='1' K='7000' mu_coulomb='0' mu_viscous='16'");
   add("<axis", " rpy='0 0 0'");
   add("<inertia ", "iyx='0' ");
+  add("<link name='lower'>", "<gravity>1</gravity>");
+  add("velocity='1'/>", "<anchor xyz='0 0 0'/>");
   const std::string path = put(text, "arm.urdf");
   const ArmTree arm = tree_of(load_mjcf(path));
   const ArmTree plain = tree_of(load_mjcf(put(urdf(), "plain.urdf")));
@@ -159,8 +169,97 @@ TEST_F(OfUrdf, AttributesThatNobodyKnowsAreLeftOutAndNamed) {
   }
   const auto left_out = import_mjcf(path).dropped;
   for (const char* name : {"dynamics.D", "dynamics.K", "dynamics.mu_coulomb", "dynamics.mu_viscous",
-                           "axis.rpy", "inertia.iyx"})
+                           "axis.rpy", "inertia.iyx", "gravity", "anchor"})
     EXPECT_EQ(left_out.count(name), 1u) << name;
+}
+
+std::string inertial(const char* mass, const char* x, const char* y, const char* z) {
+  return fmt::format("<inertial><mass value='{}'/><inertia ixx='{}' iyy='{}' izz='{}'/></inertial>",
+                     mass, x, y, z);
+}
+std::string fixed_to(const char* parent, const char* link, const std::string& inertial) {
+  return fmt::format(
+      "<link name='{0}'>{1}</link><joint name='{0}_bolts' type='fixed'><parent link='{2}'/><child "
+      "link='{0}'/><origin xyz='0 0 .25'/></joint>",
+      link, inertial, parent);
+}
+
+TEST_F(OfUrdf, PartsThatAreFixedToEachOtherAreJudgedByTheirSum) {
+  const auto arm = [&](const std::string& more) {
+    return tree_of(load_mjcf(put(urdf(more), "arm.urdf")));
+  };
+  const ArmTree plain = arm("");
+  const ArmTree same = arm(fixed_to("tool", "frame", inertial("0", "0", "0", "0")) +
+                           fixed_to("base", "stand", inertial("9", ".112", ".0065", ".0057")));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(same.joints[i].mass, plain.joints[i].mass);
+    EXPECT_LT((same.joints[i].inertia - plain.joints[i].inertia).norm(), 1e-12);
+  }
+  // a point of 0.3 kg, 0.25 m above 0.5 kg; Steiner's terms are those of the reduced mass
+  const TreeJoint tool = arm(fixed_to("tool", "point", inertial(".3", "0", "0", "0"))).joints[2];
+  EXPECT_NEAR(tool.mass, 0.8, 1e-12);
+  EXPECT_LT((Eigen::Vector3d::Map(&tool.center[0]) - Eigen::Vector3d(0, 0, .25 * .3 / .8)).norm(),
+            1e-12);
+  const double more = .5 * .3 / .8 * .25 * .25;
+  EXPECT_LT((tool.inertia - plain.joints[2].inertia -
+             Eigen::Vector3d(more, more, 0).asDiagonal().toDenseMatrix())
+                .norm(),
+            1e-9);
+  // what is locked is fixed
+  const std::string finger =
+      "<link name='f'>" + inertial("1e-9", "0", "0", "0") +
+      "</link><joint name='grip' type='prismatic'><parent link='tool'/><child link='f'/></joint>";
+  EXPECT_EQ(tree_of(load_mjcf(put(urdf(finger), "arm.urdf"), {.lock = "grip"})).dof(), 3);
+  EXPECT_NE(error_of([&] { arm(finger); }).find("'f' (line 1) 0, 0 and 0"), std::string::npos);
+}
+
+TEST_F(OfUrdf, InertiasThatNoBodyHasAreMendedIfLittleIsMissingOrIfAsked) {
+  const auto of = [&](const char* largest, bool balance) {
+    std::string text = urdf();
+    text.replace(text.find("ixx='.02'"), 9, fmt::format("ixx='{}'", largest));
+    return import_mjcf(put(text, "arm.urdf"), {.balance = balance});
+  };
+  EXPECT_TRUE(of(".0299", false).changed.empty());
+  EXPECT_EQ(of(".03001", false).changed.begin()->first, "inertia of 'lower' by 0.011 %");
+  EXPECT_NE(error_of([&] { of(".0301", false); }).find("'lower' (line 1) 0.01, 0.02 and 0.0301"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { of(".04", false); }).find("'lower' (line 1) 0.01, 0.02"),
+            std::string::npos);
+  // a third of what is missing from each: .04 = .02 + .01 + .01
+  EXPECT_EQ(of(".04", true).changed.begin()->first, "inertia of 'lower' by 9.1 %");
+  std::string point = urdf();
+  for (const char* moment : {"ixx='.02'", "iyy='.02'", "izz='.01'"})
+    point.replace(point.find(moment, point.find("'lower'")) + 5, 3, "0.0");
+  const double r = std::cbrt(2 / 4189.);
+  EXPECT_LT((tree_of(load_mjcf(put(point, "arm.urdf"), {.balance = true})).joints[1].inertia -
+             .8 * r * r * Mat<3>::Identity())
+                .norm(),
+            1e-9);
+}
+
+TEST_F(OfUrdf, SaysAllThatIsWrongAtOnce) {
+  std::string text = urdf();
+  const auto change = [&](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  change("ixx='.02'", "ixx='.09'");
+  change("ixx='.002'", "ixx='.09'");
+  change("damping=", "dampping=");
+  change("'continuous'", "'floating'");
+  change("<link name='base'/>", "<link name='base'/><link name='base'/>");
+  const std::string error = error_of([&] { import_mjcf(put(text, "arm.urdf")); });
+  for (const char* part : {"there are two links 'base'", "2 links have", "'lower' (line 1) 0",
+                           "'tool' (line 1) 0", "no 'dampping'", "joint 'elbow' is floating"})
+    EXPECT_NE(error.find(part), std::string::npos) << part << ": " << error;
+  EXPECT_EQ(error.find("'upper'"), std::string::npos) << error;
+}
+
+TEST_F(OfUrdf, LimitsMayBeInfiniteAndAFileOfMacrosIsNamed) {
+  std::string text = urdf();
+  text.replace(text.find("lower='-2' upper='2'"), 20, "lower='-inf' upper='INF'");
+  EXPECT_EQ(import_mjcf(put(text, "arm.urdf")).dropped.at("joint without a range"), 1);
+  EXPECT_EQ(error_of([&] { import_mjcf(put("<robot name='x'></robot>", "arm.urdf")); }),
+            "line 1: there is no link in it; is it a file of macros (xacro)?");
 }
 
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
@@ -170,12 +269,25 @@ TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
            {"rpy=", "quat_xyzw=", "<origin> knows no 'quat_xyzw'; known: xyz rpy"},
            {"<dynamics", "<dynamcis",
             "this import knows no <dynamcis>; did you mean 'dynamics'? If"},
-           {"<visual>", "<visula/><visual>", "link 'upper': this import knows no <visula>"},
+           {"<axis xyz='0 1 0'/>", "<AXIS xyz='0 1 0'/>", "did you mean 'axis'?"},
+           {"<axis xyz='0 1 0'", "<axis value='0 1 0'", "<axis> knows no 'value'; known: xyz"},
+           {"<dynamics damping='.5' friction='.3'/>", "<xacro:motor/>", "run it through xacro"},
+           {"'upper'", "'${side}_upper'", "this is no URDF yet"},
+           {"<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'><limit upper='1'/></axis>",
+            "<limit> stands within <axis>, and belongs into joint"},
+           {"<link name='base'/>",
+            "<link name='base'/><group><link name='x'><inertial/></link></group>",
+            "link 'x' stands within <group>, and belongs into <robot>"},
+           {"velocity='1'", "velocity='1,5'", "velocity of <limit> is '1,5', and must be a number"},
+           {"lower='-2' upper='2'", "lower='3000' upper='2000'", "no way to go from 3000 to 2000"},
+           {"</robot>", "</robot><robot/>", "a second <robot> behind the first"},
+           {"<limit", "<limits", "joint 'shoulder': this import knows no <limits>; did you mean"},
            {"<dynamics", "<dynamics/><dynamics", "joint 'shoulder': a second <dynamics>"},
            {"damping='.5'", "damping='-1'", "its damping is -1, and must be 0 or more"},
            {"value='4'", "value='2,6'", "mass> is '2,6', and must be a number, with a point"},
            {"value='4'", "value='-4'", "link 'upper': its mass is -4 kg"},
-           {"ixx='.02'", "ixx='.09'", "link 'lower': its principal moments"},
+           {"ixx='.02'", "ixx='.09'",
+            "a link has principal moments of inertia [kg m^2] that no body has"},
            {"xyz='1 0 1'", "xyz='0 0 0'", "joint 'elbow': its axis has no direction"},
            {"'elbow'", "'shoulder'", "there are two joints 'shoulder'"},
            {"<joint name='elbow'", "<jiont name='elbow'",
