@@ -8,6 +8,7 @@ root=$(mktemp -d)
 trap 'umount -R "$root" 2>/dev/null || true; rm -rf --one-file-system "$root"' EXIT
 bare_debian() {  # a mirror that is kept as it was on one day has lists that are out of date
   mmdebstrap --quiet --variant=minbase --aptopt='Acquire::Check-Valid-Until "false"' --include=ca-certificates,git "$1" "$root"
+  [ -e "$root/etc/hosts" ] || echo '127.0.0.1 localhost' >"$root/etc/hosts"  # as an installer writes
   mount --bind "$root" "$root"
   mount -t proc proc "$root/proc"
   mount --rbind --make-rslave /dev "$root/dev"
