@@ -223,7 +223,7 @@ class Urdf {
   }
 
  private:
-  // all that is wrong is said at once
+  // every error of a file in one message
   template <class Try>
   void attempt(Try&& what) {
     try {
@@ -365,12 +365,6 @@ class Urdf {
     set(out, "fullinertia", {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)});
   }
 
-  static void check_range(const XMLElement& joint, double lower, double upper) {
-    if (text(joint, "type") == "revolute" && std::max(-lower, upper) > 20)
-      fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous",
-           text(joint, "name"), lower, upper);
-  }
-
   void add_joint(const XMLElement& joint, XMLElement& body) {
     const std::string type = text(joint, "type"), name = text(joint, "name");
     const bool slide = type == "prismatic";
@@ -393,7 +387,9 @@ class Urdf {
            name, lower, upper);
     const bool has_range = says_range && std::max(-lower, upper) < 1000;  // beyond: none is meant
     if (has_range) {
-      check_range(joint, lower, upper);
+      if (type == "revolute" && std::max(-lower, upper) > 20)
+        fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous", name,
+             lower, upper);
       set(out, "range", {lower, upper});
     } else if (type != "continuous") {
       ++how_.dropped["joint without a range"];

@@ -237,7 +237,7 @@ TEST_F(OfUrdf, InertiasThatNoBodyHasAreMendedIfLittleIsMissingOrIfAsked) {
             1e-9);
 }
 
-TEST_F(OfUrdf, SaysAllThatIsWrongAtOnce) {
+TEST_F(OfUrdf, EveryErrorIsInOneMessage) {
   std::string text = urdf();
   const auto change = [&](const std::string& what, const std::string& by) {
     text.replace(text.find(what), what.size(), by);
