@@ -81,7 +81,8 @@ class PanTompkins {
 
     const Vec<N, Scalar> energy = slope(newest_).cwiseAbs2();
     for (int i = 0; i < N; ++i) {  // (ii)
-      const MaskOf<Scalar> is_new = (energy[i] >= held_[i]) | (t - held_at_[i] > p_.hold);
+      const MaskOf<Scalar> is_higher = energy[i] >= held_[i], is_over = t - held_at_[i] > p_.hold;
+      const MaskOf<Scalar> is_new = is_higher | is_over;
       if constexpr (std::is_same_v<Scalar, double>) {
         if (!is_new) continue;  // for one run the processor predicts this branch
       }

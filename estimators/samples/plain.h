@@ -51,9 +51,10 @@ class Rules {
   /// Whether joint j is inside its limits.
   [[gnu::always_inline]] Truth inside(const Sample& y, int j) const noexcept {
     using std::abs;
-    const Scalar qd = abs(y.qd[j]), tau = abs(y.tau[j]);
-    return (y.q[j] >= limits_.q_least[j]) & (y.q[j] <= limits_.q_most[j]) & (qd <= limits_.qd[j]) &
-           (tau <= limits_.tau[j]);
+    // names, as in all that follow: with calls, clang takes & of two bools for a mistake
+    const Truth least = y.q[j] >= limits_.q_least[j], most = y.q[j] <= limits_.q_most[j];
+    const Truth slow = abs(y.qd[j]) <= limits_.qd[j], weak = abs(y.tau[j]) <= limits_.tau[j];
+    return least & most & slow & weak;
   }
 
   /// Whether all joints of all arms are so at b, h [s] after a.
@@ -89,7 +90,6 @@ class Rules {
  private:
   [[gnu::always_inline]] Truth plain(const Sample& a, const Sample& b, const Scalar& h,
                                      int j) const noexcept {
-    // names: with calls, clang takes & of two bools for a mistake
     const Truth is_inside = inside(b, j), goes_on = continuous(a, b, h, j);
     const Truth is_calm = calm(a, b, h, j), is_smooth = smooth(a.tau[j], b.tau[j], j);
     const Truth moves = !stands(a, b, h, j);
@@ -99,9 +99,9 @@ class Rules {
   [[gnu::always_inline]] static Truth stands(const Sample& a, const Sample& b, const Scalar& h,
                                              int j) noexcept {
     using std::abs;
-    const Truth same = b.q[j] == a.q[j];
-    return ((b.qd[j] == a.qd[j]) & ((!same) | (b.qd[j] != Scalar(0)))) |
-           (same & (h * abs(b.qd[j]) > kStillMotion));
+    const Truth same = b.q[j] == a.q[j], same_speed = b.qd[j] == a.qd[j];
+    const Truth moves = b.qd[j] != Scalar(0), moves_far = h * abs(b.qd[j]) > kStillMotion;
+    return (same_speed & ((!same) | moves)) | (same & moves_far);
   }
 
   ArmLimits<N> limits_;

@@ -38,8 +38,9 @@ class Stillness {
   /// Whether joint j says at b, h [s] after a, that it moves, and stands still.
   [[gnu::always_inline]] static bool still(const Measurement<P>& a, const Measurement<P>& b,
                                            double h, int j) noexcept {
-    return (b.q[j] == a.q[j]) & (b.qd[j] != 0) &
-           ((b.qd[j] == a.qd[j]) | (h * std::abs(b.qd[j]) > kStillMotion));
+    const bool same = b.q[j] == a.q[j], same_speed = b.qd[j] == a.qd[j];
+    const bool moves = b.qd[j] != 0, moves_far = h * std::abs(b.qd[j]) > kStillMotion;
+    return same & moves & (same_speed | moves_far);
   }
 
   /// Whether joints stood still at the last sample.
@@ -105,8 +106,9 @@ class StillSpeed {
   /// Whether joint j repeats its qd at b, h [s] after a, and moves.
   [[gnu::always_inline]] static bool still(const Measurement<P>& a, const Measurement<P>& b,
                                            double h, int j) noexcept {
-    return (b.qd[j] == a.qd[j]) & (b.q[j] != a.q[j]) &
-           ((b.qd[j] != 0) | (std::abs(b.q[j] - a.q[j]) > h * kSlow));
+    const bool same_speed = b.qd[j] == a.qd[j], moved = b.q[j] != a.q[j];
+    const bool moves = b.qd[j] != 0, moved_far = std::abs(b.q[j] - a.q[j]) > h * kSlow;
+    return same_speed & moved & (moves | moved_far);
   }
 
   /// Whether a joint's speed stood still at the last sample.
