@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -40,6 +41,40 @@ void remove_unfinished_files_on_signals() {
   }
 }
 
+// what CLI11 2.5 and later make of a text: paragraphs
+template <class Formatter>
+void leave_paragraphs_alone(Formatter& f) {
+  if constexpr (requires { f.enable_footer_formatting(false); }) {
+    f.enable_description_formatting(false), f.enable_footer_formatting(false);
+    f.right_column_width(1000), f.long_option_alignment_ratio(0);
+  }
+}
+
+// help without blanks at line ends and more than one empty line at once, which newer CLI11 has
+class Help : public CLI::Formatter {
+ public:
+  explicit Help(const CLI::Formatter& as_it_is) : CLI::Formatter(as_it_is) {
+    leave_paragraphs_alone(*this);
+  }
+
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+    std::string all;
+    for (const char c : text) {
+      while (c == '\n' && all.ends_with(' ')) all.pop_back();
+      if (c != '\n' || !all.ends_with("\n\n")) all += c;
+    }
+    return all;
+  }
+};
+
+void set_help(CLI::App& app) {
+  if (const auto now = std::dynamic_pointer_cast<CLI::Formatter>(app.get_formatter()))
+    app.formatter(std::make_shared<Help>(*now));
+  for (CLI::App* const sub : app.get_subcommands({})) set_help(*sub);
+}
+
 // false if help or the version was asked for, which is then printed
 bool parse(CLI::App& app, int argc, char** argv) {
   // what help hides, CLI11 does not name in an error either
@@ -68,6 +103,7 @@ void keep_freed_memory() {
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   remove_unfinished_files_on_signals();
+  set_help(app);
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), TAUEXT_VERSION));
   try {
     const int code = parse(app, argc, argv) ? body() : kGood;

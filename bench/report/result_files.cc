@@ -51,9 +51,11 @@ void validate(const Json& j, const Json& of_kind, const std::string& name) {
   if (valijson::Validator().validate(schema, target, &results)) return;
   std::string where, why;
   for (const valijson::ValidationResults::Error& e : results) {  // the deepest one says most
-    std::string here;  // of "<root>", "[benchmarks]", "[2]"
-    for (std::size_t i = 1; i < e.context.size(); ++i)
-      here.append("/").append(e.context[i], 1, e.context[i].size() - 2);
+    std::string here;                                     // of "<root>", "[benchmarks]", "[2]"
+    for (std::size_t i = 1; i < e.context.size(); ++i) {  // [key], or ["key"] since valijson 1.1
+      const std::size_t quote = e.context[i].starts_with("[\"") ? 1 : 0;
+      here.append("/").append(e.context[i], 1 + quote, e.context[i].size() - 2 - 2 * quote);
+    }
     if (why.empty() || here.size() > where.size()) where = here, why = e.description;
   }
   std::string value = j.at(Json::json_pointer(where)).dump();

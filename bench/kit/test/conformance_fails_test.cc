@@ -33,6 +33,7 @@ struct Allocates : Mo1 {
   Allocates() : Mo1(WallMoBot3()) {}
   Estimate<3> update(const Measurement<3>& y) noexcept {
     const auto copy = std::make_unique<std::vector<double>>(y.q.begin(), y.q.end());
+    asm volatile("" : : "r"(copy->data()) : "memory");  // g++ 16 takes it out otherwise
     return Mo1::update(copy->empty() ? Measurement<3>() : y);
   }
 };
