@@ -43,7 +43,7 @@ tauext_package(programs tauext DEPENDS ${mujoco} libgl1-mesa-dri RECOMMENDS bash
   "a simulation, replays recordings, tunes, shows estimates live, and gates CI.")
 tauext_package(dev libtauext-dev DEPENDS libeigen3-dev
   RECOMMENDS libbenchmark-dev libcli11-dev libfmt-dev libgtest-dev liblcm-dev libmujoco-dev libegl-dev libpng-dev
-             libreaderwriterqueue-dev libsqlite3-dev libtinyxml2-dev nlohmann-json3-dev zlib1g-dev SAYS
+             libarchive-dev libreaderwriterqueue-dev libsqlite3-dev libtinyxml2-dev nlohmann-json3-dev zlib1g-dev SAYS
   "Estimators of external joint torque as C++ headers, and the suite as libraries"
   "find_package(tauext) gives the estimators, which need Eigen alone, and by"
   "components the suite for estimators of your own, which needs what is recommended.")

@@ -32,6 +32,7 @@ struct Trace {
   std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
   bool torque_at_instants = false;    ///< tau was read at t and does not hold (samples/options.h)
   bool tau_is_current = false;        ///< tau is in A, and make_torques() has to be asked
+  bool tau_without_gravity = false;  ///< g(q) is to be added: add_gravity() (mjcf/plant/any_tree.h)
   /// [N m] what the robot's own controller estimated, as a driver's log has it; no columns if
   /// unknown. Never written to a CSV.
   Eigen::MatrixXd tau_ext_of_driver;

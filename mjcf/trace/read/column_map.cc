@@ -137,7 +137,7 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
                              const std::string& path) const {
   if (order_.empty()) return;
   MappedQuantity ordered;
-  ordered.has_gain = m.has_gain;
+  ordered.has_gain = m.has_gain, ordered.held = m.held;
   for (const int j : order_) {
     if (std::count(order_.begin(), order_.end(), j) > 1)
       throw std::runtime_error(
@@ -156,6 +156,18 @@ bool ColumnMap::leaves_order_open() const {
   return q != wanted_.end() && q->second.of_preset && order_.empty();
 }
 
+std::string ColumnMap::choose_torque(MappedColumns& found) const {
+  const auto current = found.find("current");
+  if (current == found.end() || !wanted_.find("current")->second.of_preset) return "";
+  for (const std::string_view name : kTorques) {
+    if (name == "current" || found.find(name) == found.end()) continue;
+    found.erase(current);
+    return fmt::format(
+        "tau is read from [{}] of the preset; a map with [current] reads the currents", name);
+  }
+  return "";
+}
+
 std::vector<std::string> ColumnMap::missing_in(const MappedColumns& found) const {
   std::vector<std::string> all;
   for (const auto& [name, w] : wanted_) {
@@ -170,7 +182,7 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
   MappedColumns all;
   for (const Quantity& q : kQuantities) {
     const auto wanted = wanted_.find(q.name);
-    if (wanted == wanted_.end()) continue;
+    if (wanted == wanted_.end() || (rate_ > 0 && q.name == "t")) continue;
     const Wanted& w = wanted->second;
     MappedQuantity m{find(q.name, w, columns, path), {}};
     if (m.columns.empty() && (q.name == "t" || q.name == "q"))
@@ -180,7 +192,7 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
           printable_name(fmt::format("{}", fmt::join(columns, ", ")), 200)));
     if (m.columns.empty()) continue;
     const std::size_t count = m.columns.size();
-    m.has_gain = !w.gain.empty();
+    m.has_gain = !w.gain.empty(), m.held = w.held;
     require_one_or_each(w.units, count, "unit", q.name, path);
     require_one_or_each(w.gain, count, "gain", q.name, path);
     require_one_or_each(w.sign, count, "sign", q.name, path);

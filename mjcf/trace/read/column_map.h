@@ -6,11 +6,12 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "mjcf/trace/read/csv_rows.h"
+#include "mjcf/trace/read/text/csv_rows.h"
 
 namespace tauext {
 
@@ -32,17 +33,25 @@ inline constexpr Quantity kQuantities[] = {
     {"tau_instant", "Nm Nmm N", true, "the same, read at t; instead of tau"},
     {"current", "A mA", true,
      "of the drives; `gain` [N m/A], or that of a robot file, makes it tau_instant"},
+    {"tau_without_gravity", "Nm Nmm N", true,
+     "tau_instant less what holds the arm, which the robot's model adds"},
     {"tau_ext", "Nm Nmm N", true, "true external torque, sign of equation (3)"},
     {"driver", "Nm Nmm N", true, "the robot maker's own estimate of it, the same sign"},
     {"force", "N", false, "of a sensor: on the end effector, x, y and z of the world"},
     {"contact", "1", false, "label: not 0 while a collision acts"},
 };
 
+/// Those of which a recording has one: what stands for tau.
+inline constexpr std::string_view kTorques[] = {"tau", "tau_instant", "current",
+                                                "tau_without_gravity"};
+
 /// Columns of a source that make a quantity: number i of it is `gain[i]` times column `columns[i]`.
 struct MappedQuantity {
   std::vector<int> columns;  ///< from 0
   std::vector<double> gain;  ///< to SI units and the sign of equation (3)
   bool has_gain = false;     ///< whether the map says one
+  std::optional<bool>
+      held;  ///< whether it is a torque that holds until the next sample, if it says
 };
 
 /// Those of a recording, by their names.
@@ -52,9 +61,11 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 ///
 /// A table of TOML for each quantity that there is: `columns`, a regular expression for their whole
 /// names (joints in the order of the number in it), a list of names, or a list of numbers from 1;
-/// `unit`, `gain` and `sign`, one for all or one for each of these columns. Above the tables:
-/// `preset`, a map to begin with, `separator`, `header` (false: no line of names), `order` (which
-/// joint of the recording each joint of the robot is, from 1), `velocity_filter` [rad/s].
+/// `unit`, `gain` and `sign`, one for all or one for each of these columns; `held` of a torque
+/// (kTorques), true for `tau` unless it is said. A torque takes the place of the preset's, and its
+/// columns where it has none. Above the tables: `preset`, a map to begin with, `separator`,
+/// `header` (false: no line of names), `order` (which joint of the recording each joint of the
+/// robot is, from 1), `rate` [Hz] instead of [t], `velocity_filter` [rad/s].
 class ColumnMap {
  public:
   /// Which columns of a source make which quantity; those that it does not have are missing.
@@ -65,10 +76,15 @@ class ColumnMap {
   /// among those found.
   std::vector<std::string> missing_in(const MappedColumns& found) const;
 
+  /// Where a preset finds currents beside a torque, leaves the torque, and says so; else "".
+  std::string choose_torque(MappedColumns& found) const;
+
   /// Whether it says nothing of which joint is which: its q is a preset's, and it has no `order`.
   bool leaves_order_open() const;
 
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written
+  /// [Hz] at which rows follow each other, where they have no time; 0: they have one.
+  double rate() const { return rate_; }
   /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
   double velocity_filter() const { return velocity_filter_; }
 
@@ -82,7 +98,8 @@ class ColumnMap {
     std::vector<int> numbers;        // from 1
     std::vector<std::string> units;  // one, or one of each
     std::vector<double> gain, sign;  // likewise
-    bool of_preset = false;          // whose sources need not have it
+    std::optional<bool> held;
+    bool of_preset = false;  // whose sources need not have it
   };
 
   std::vector<int> find(std::string_view quantity, const Wanted& w,
@@ -92,7 +109,7 @@ class ColumnMap {
   std::map<std::string, Wanted, std::less<>> wanted_;
   std::vector<int> order_;
   CsvFormat csv_;
-  double velocity_filter_ = 100;
+  double rate_ = 0, velocity_filter_ = 100;
 };
 
 }  // namespace tauext

@@ -19,7 +19,9 @@ namespace tauext::detail {
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 #include "mjcf/trace/input_file.h"
@@ -57,6 +59,8 @@ class MapReader {
         read_option(key.str(), value);
       }
     }
+    if (map_.rate_ > 0 && all.contains("t"))
+      fail(all, "it has a `rate` and a [t], and only one of them can say the time");
   }
 
   void read(const detail::ColumnPreset& p) {
@@ -145,9 +149,12 @@ class MapReader {
     } else if (key == "velocity_filter") {
       map_.velocity_filter_ = number(value, key);
       if (!(map_.velocity_filter_ > 0)) fail(value, "velocity_filter must be positive [rad/s]");
+    } else if (key == "rate") {
+      map_.rate_ = number(value, key);
+      if (!(map_.rate_ > 0)) fail(value, "rate must be positive [Hz]");
     } else {
       fail(value, unknown("key", key,
-                          {"preset", "separator", "header", "order", "velocity_filter",
+                          {"preset", "separator", "header", "order", "rate", "velocity_filter",
                            "and tables of quantities"})
                       .what());
     }
@@ -162,9 +169,31 @@ class MapReader {
       fail(table, unknown("quantity", name, names).what());
     }
     ColumnMap::Wanted& w = map_.wanted_[std::string(name)];
+    if (is_torque(name)) replace_torque(name, w);
+    written_.emplace(name);
     for (const auto& [key, value] : table) read_key(*known, key.str(), value, w);
     if (w.expression.empty() && w.names.empty() && w.numbers.empty())
       fail(table, fmt::format("[{}] names no columns", name));
+  }
+
+  static bool is_torque(std::string_view name) {
+    return std::find(std::begin(kTorques), std::end(kTorques), name) != std::end(kTorques);
+  }
+
+  // those of the preset, which lend their columns
+  void replace_torque(std::string_view name, ColumnMap::Wanted& w) {
+    const bool has_columns = !w.expression.empty();
+    for (const std::string_view other : kTorques) {
+      const auto at = map_.wanted_.find(other);
+      if (other == name || at == map_.wanted_.end() || !at->second.of_preset ||
+          written_.count(other))
+        continue;
+      if (!has_columns && other != "current") {  // amperes are no N m
+        w.expression += (w.expression.empty() ? "" : "|") + at->second.expression;
+        w.of_preset = true;
+      }
+      map_.wanted_.erase(at);
+    }
   }
 
   void read_key(const Quantity& q, std::string_view key, const toml::node& value,
@@ -181,8 +210,12 @@ class MapReader {
         if (s != 1 && s != -1) fail(n, "sign must be 1 or -1");
         return s;
       });
+    } else if (key == "held" && is_torque(q.name)) {
+      w.held = value.value_exact<bool>();
+      if (!w.held) fail(value, "held must be true or false");
     } else {
-      fail(value, unknown("key", key, {"columns", "unit", "gain", "sign"}).what());
+      fail(value,
+           unknown("key", key, {"columns", "unit", "gain", "sign", "held (of a torque)"}).what());
     }
   }
 
@@ -215,6 +248,7 @@ class MapReader {
 
   ColumnMap& map_;
   std::string name_;
+  std::set<std::string, std::less<>> written_;  // quantities of the map itself
 };
 
 #else

@@ -49,7 +49,8 @@ columns = '(?:state\.)?tau_ext_hat_filtered\[(\d)\]'
 columns = 'contact'
 )";
 
-/// The robot measures no torque: whoever uses it says the gain of each drive.
+/// The robot measures no torque. Where it does not report its currents as torques, whoever uses it
+/// says the gain of each drive.
 inline constexpr std::string_view kUrRtde = R"(
 [t]
 columns = "timestamp"
@@ -57,6 +58,8 @@ columns = "timestamp"
 columns = 'actual_q_(\d)'
 [qd]
 columns = 'actual_qd_(\d)'
+[tau_instant]
+columns = 'actual_current_as_torque_(\d)'
 [current]
 columns = 'actual_current_(\d)'
 [contact]
@@ -87,7 +90,7 @@ inline constexpr NamedQuantity kJointState[] = {{"t", "t"},
 inline constexpr ColumnPreset kColumnPresets[] = {
     {"tauext", "CSV, .npy and .npz of tauext", kTauext, ""},
     {"libfranka", "franka::logToCSV of libfranka (Panda, FR3), old and new", {}, kLibfranka},
-    {"ur_rtde", "Universal Robots' RTDE (record.py, ur_rtde); wants [current] gain", {}, kUrRtde},
+    {"ur_rtde", "Universal Robots' RTDE (record.py, ur_rtde); [current] wants a gain", {}, kUrRtde},
     {"kuka_fri", "KUKA's FRI as pyfri writes it, and exports of LBRState", {}, kKukaFri},
     {"joint_state", "sensor_msgs/JointState of ROS 2 bags (.db3)", kJointState, ""},
 };

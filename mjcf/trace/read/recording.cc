@@ -5,33 +5,98 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/column_map_file.h"
-#include "mjcf/trace/read/csv_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/sample_layout.h"
+#include "mjcf/trace/read/text/csv_rows.h"
+#include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {
 namespace {
 
 using Eigen::VectorXd;
 
-// the first bytes of a file, which tell its format
+// the first bytes of a file, which tell its format; none if it cannot be read
 std::string magic_of(const std::string& path) {
-  std::string bytes(16, '\0');
+  std::string bytes;
   if (const auto file = std::unique_ptr<std::FILE, int (*)(std::FILE*)>(
-          std::fopen(path.c_str(), "rbe"), std::fclose))
+          std::fopen(path.c_str(), "rbe"), std::fclose)) {
+    bytes.resize(512);
     bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  }
   return bytes;
 }
 
+// a format that is not read, and what makes one that is of a file {0}
+struct UnsupportedFormat {
+  std::string_view magic, name, remedy;
+};
+constexpr UnsupportedFormat kUnsupported[] = {
+    {"#ROSBAG", "a bag of ROS 1", "rosbags-convert --src {0} --dst new_bag (pip install rosbags)"},
+    {"\x89HDF", "HDF5, as MATLAB's v7.3 is",
+     "in Python, f = h5py.File('{0}') and numpy.savez('run.npz', t=f['t'], q=f['q'], ..)"},
+    {"MATLAB 5.0", "MATLAB's .mat",
+     "in Python, scipy.io.loadmat('{0}') and numpy.savez('run.npz', t=.., q=.., ..)"},
+    {"PAR1", "Parquet", "in Python, pandas.read_parquet('{0}').to_csv('run.csv', index=False)"},
+    {"%PDF", "a PDF", "export a table as CSV"},
+    {"\xD0\xCF\x11\xE0", "a workbook of old Excel", "save the sheet as CSV"},
+};
+
+void refuse_unsupported(const std::string& path, const std::string& begin) {
+  const auto fail = [&](std::string_view name, std::string_view remedy) {
+    throw std::runtime_error(fmt::format("{}: is {}, which is not read: {}", path, name,
+                                         fmt::format(fmt::runtime(remedy), path)));
+  };
+  for (const UnsupportedFormat& f : kUnsupported)
+    if (begin.starts_with(f.magic)) fail(f.name, f.remedy);
+  const bool zip = begin.starts_with("PK\x03\x04");
+  if (zip &&
+      (begin.find("[Content_Types].xml") != begin.npos || begin.find("_rels/") != begin.npos))
+    fail("a workbook of Excel", "save the sheet as CSV");
+}
+
+// a text of numbers has no other letters below the blank
+void refuse_binary(const std::string& path, const std::string& begin) {
+  const auto odd = [](char c) {
+    return c >= 0 && c < ' ' && std::string_view("\t\n\v\f\r").find(c) == std::string_view::npos;
+  };
+  if (std::none_of(begin.begin(), begin.end(), odd)) return;
+  throw std::runtime_error(
+      path +
+      ": unknown format of recording; known: CSV, also as .gz, .xz, .zst, .bz2 "
+      "or .lz4, .npy, .npz, .db3 and .mcap (ROS 2) or LCM");
+}
+
+// of a bag's folder the file in it
+std::string file_in(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (!fs::is_directory(path)) return path;
+  std::vector<std::string> parts;
+  for (const fs::directory_entry& e : fs::directory_iterator(path))
+    if (e.path().extension() == ".db3" || e.path().extension() == ".mcap")
+      parts.push_back(e.path().string());
+  if (parts.size() == 1) return parts[0];
+  if (parts.empty()) return path;
+  throw std::runtime_error(
+      fmt::format("{}: has {} parts of a bag: name them one by one", path, parts.size()));
+}
+
+bool begins_as_bag(std::string_view begin) {
+  return begin.starts_with("SQLite format 3") || begin.starts_with("\x89MCAP0\r\n");
+}
+bool begins_as_arrays(std::string_view begin) {
+  return begin.starts_with("\x93NUMPY") || begin.starts_with("PK\x03\x04");
+}
 bool is_bag(const std::string& path) {
-  return magic_of(path).starts_with("SQLite format 3");
+  return begins_as_bag(magic_of(path));
 }
 
 }  // namespace
@@ -43,9 +108,19 @@ std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOpt
     throw std::invalid_argument(
         fmt::format("{}: has no channel '{}', as LCM logs have, and no topic, as ROS 2 bags have",
                     path, options.topic));
-  const std::string magic = magic_of(path);
-  if (magic.starts_with("\x93NUMPY") || magic.starts_with("PK\x03\x04"))
-    return std::make_unique<NpyRows>(path);
+  const std::string begin = magic_of(path);
+  refuse_unsupported(path, begin);
+  if (begins_as_arrays(begin)) return std::make_unique<NpyRows>(path);
+  if (is_compressed(begin)) {
+    std::string inside(512, '\0');
+    inside.resize(UnpackedFile(path).read(inside.data(), inside.size()));
+    if (begins_as_bag(inside) || begins_as_arrays(inside))
+      throw std::runtime_error(path + ": only text is read from compressed files: unpack it first");
+    refuse_unsupported(path, inside);
+    refuse_binary(path, inside);
+  } else {
+    refuse_binary(path, begin);
+  }
   return std::make_unique<CsvRows>(path, csv);
 }
 
@@ -81,7 +156,7 @@ class VelocityFilter {
 
 struct RecordingReader::Impl {
   Impl(const std::string& file, const RecordingOptions& o)
-      : path(file),
+      : path(file_in(file)),
         joints(o.joints),
         map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
@@ -90,11 +165,11 @@ struct RecordingReader::Impl {
             path,
             {o.columns, o.topic, map.leaves_order_open() ? o.joints : std::vector<std::string>()},
             map.csv())),
-        layout(layout_of(known(), rows->columns(), path)),
+        layout(layout_of(known(), rows->columns(), path, map.rate() == 0)),
         timed(0, skipped),
         filter(map.velocity_filter()) {
     rows->read_only(layout.columns());
-    contents = {layout.dof,          layout.instants,    layout.currents,
+    contents = {layout.dof,          layout.instants,    layout.currents,    layout.without_gravity,
                 layout.tau_ext >= 0, layout.driver >= 0, layout.contact >= 0};
     if (layout.qd < 0) {
       skipped.notes.push_back(fmt::format(
@@ -103,29 +178,31 @@ struct RecordingReader::Impl {
     }
   }
 
-  // what the map finds; in a bag, whose messages may leave fields empty, what the first one has
+  // what the map finds
   MappedColumns known() {
     MappedColumns all = map.mapped(rows->columns(), path);
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
-    if (!is_bag(path)) return all;
-    if (joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
+    if (std::string note = map.choose_torque(all); !note.empty())
+      skipped.notes.push_back(std::move(note));
+    if (is_bag(path) && joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
       skipped.notes.push_back(
           "no joints' names to compare with: their order is that of the first message");
-    has_first = rows->next(raw, skipped);
-    std::erase_if(all, [&](const auto& q) {
-      const auto& columns = q.second.columns;
-      return std::all_of(columns.begin(), columns.end(),
-                         [&](int c) { return std::isnan(raw[static_cast<std::size_t>(c)]); });
-    });
     return all;
+  }
+
+  bool read_row() {
+    const std::int64_t before = skipped.total();
+    const bool any = rows->next(raw, skipped);
+    row_count += skipped.total() - before + 1;
+    return any;
   }
 
   // false if the source is at its end
   bool take_row() {
-    if (!std::exchange(has_first, false) && !rows->next(raw, skipped)) return false;
+    if (!read_row()) return false;
     std::vector<double> values = timed.spare();
     values.resize(static_cast<std::size_t>(layout.size));
-    values[0] = 0;
+    values[0] = map.rate() == 0 ? 0 : static_cast<double>(row_count - 1) / map.rate();
     for (const auto& [c, gain] : layout.t) values[0] += gain * raw[static_cast<std::size_t>(c)];
     for (std::size_t i = 0; i < layout.rest.size(); ++i) {
       const auto& [c, gain] = layout.rest[i];
@@ -167,7 +244,8 @@ struct RecordingReader::Impl {
   RecordingContents contents;
   SkippedRows skipped;
   std::vector<double> raw, row;
-  bool has_first = false, ended = false;
+  bool ended = false;
+  std::int64_t row_count = 0;  // with those that could not be read
   ColumnMap map;
   std::unique_ptr<RowSource> rows;
   SampleLayout layout;
@@ -227,6 +305,7 @@ Trace trace_of(SampleSource& source) {
   if (!force.empty()) trace.force = Eigen::Matrix3Xd::Map(force.data(), 3, trace.size());
   trace.torque_at_instants = has.torque_at_instants;
   trace.tau_is_current = has.tau_is_current;
+  trace.tau_without_gravity = has.without_gravity;
   return trace;
 }
 

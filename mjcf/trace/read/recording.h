@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "mjcf/trace/read/csv_rows.h"
 #include "mjcf/trace/read/regularity.h"
+#include "mjcf/trace/read/text/csv_rows.h"
 #include "mjcf/trace/timed_rows.h"
 #include "mjcf/trace/trace.h"
 
@@ -44,6 +44,7 @@ struct RecordingContents {
   int dof = 0;                      ///< joints
   bool torque_at_instants = false;  ///< samples/options.h
   bool tau_is_current = false;      ///< Trace::tau_is_current
+  bool without_gravity = false;     ///< Trace::tau_without_gravity
   bool has_truth = false;           ///< whether it knows tau_ext
   bool has_driver = false;          ///< whether it knows the maker's estimate
   bool has_contact = false;         ///< whether it has labels

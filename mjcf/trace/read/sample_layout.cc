@@ -27,10 +27,10 @@ class LayoutMaker {
               const std::string& path)
       : mapped_(mapped), columns_(columns), path_(path) {}
 
-  SampleLayout operator()() {
+  SampleLayout operator()(bool has_t) {
     const MappedQuantity* const t = find("t");
-    if (t == nullptr) fail_missing(path_, "the time", columns_);
-    for (std::size_t i = 0; i < t->columns.size(); ++i)
+    if (t == nullptr && has_t) fail_missing(path_, "the time", columns_);
+    for (std::size_t i = 0; t != nullptr && i < t->columns.size(); ++i)
       l_.t.emplace_back(t->columns[i], t->gain[i]);
     const MappedQuantity* const q = find("q");
     if (q == nullptr) fail_missing(path_, "q", columns_);
@@ -59,8 +59,8 @@ class LayoutMaker {
     return at;
   }
 
-  int add(const char* name) { return add(name, l_.dof); }
-  int add(const char* name, int count) {
+  int add(std::string_view name) { return add(name, l_.dof); }
+  int add(std::string_view name, int count) {
     const MappedQuantity* const m = find(name);
     if (m == nullptr) return -1;
     if (static_cast<int>(m->columns.size()) == count) return append(*m);
@@ -72,14 +72,15 @@ class LayoutMaker {
 
   int add_torque() {
     int at = -1;
-    for (const char* name : {"tau", "tau_instant", "current"}) {
+    for (const std::string_view name : kTorques) {
       if (find(name) == nullptr) continue;
       if (at >= 0)
         throw std::runtime_error(fmt::format(
             "{}: has {}, and another torque, too: the map must choose one of them", path_, name));
       at = add(name);
-      l_.instants = std::string_view(name) != "tau";
-      l_.currents = std::string_view(name) == "current" && !find(name)->has_gain;
+      l_.instants = !find(name)->held.value_or(name == "tau");
+      l_.currents = name == "current" && !find(name)->has_gain;
+      l_.without_gravity = name == "tau_without_gravity";
     }
     if (at < 0) fail_missing(path_, "tau", columns_);
     return at;
@@ -101,8 +102,8 @@ std::vector<int> SampleLayout::columns() const {
 }
 
 SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,
-                       const std::string& path) {
-  return LayoutMaker(mapped, columns, path)();
+                       const std::string& path, bool has_t) {
+  return LayoutMaker(mapped, columns, path)(has_t);
 }
 
 }  // namespace tauext

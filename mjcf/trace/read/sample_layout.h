@@ -19,14 +19,16 @@ struct SampleLayout {
   int size = 1;                              ///< numbers
   bool instants = false;                     ///< tau was read at t
   bool currents = false;                     ///< tau is in A: of drives whose gains are not known
-  std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up
+  bool without_gravity = false;              ///< Trace::tau_without_gravity
+  std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up; may be none
   std::vector<std::pair<int, double>> rest;  ///< column and gain of each of the others
 
   std::vector<int> columns() const;  ///< that matter
 };
 
+/// @param has_t whether there must be a time
 /// @throws std::runtime_error naming the path and what is missing, or does not fit
 SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,
-                       const std::string& path);
+                       const std::string& path, bool has_t = true);
 
 }  // namespace tauext

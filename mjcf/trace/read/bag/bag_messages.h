@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The messages of one topic in a bag of the storage sqlite3, in the order in which they were
-/// recorded.
+/// The messages of one topic in a bag, in the order in which they were recorded.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tauext {
 
@@ -18,29 +17,37 @@ struct BagMessage {
   std::int64_t size = 0;   ///< [bytes] even so
 };
 
+/// A topic of a bag.
+struct BagTopic {
+  std::string name, type, format;  ///< of its messages the type, and how they are serialized
+};
+
 /// Those of a topic of sensor_msgs/msg/JointState.
 class BagMessages {
  public:
   /// How long a message may be.
   static constexpr std::int64_t kMost = 1 << 20;  // [bytes]
 
-  /// @param topic "": the only one of that type
-  /// @throws std::runtime_error as BagRows does
-  BagMessages(const std::string& path, const std::string& topic);
-  ~BagMessages();
+  virtual ~BagMessages() = default;
 
   /// @returns false at the end
   /// @throws std::runtime_error naming the path, where the file is damaged
-  bool next(BagMessage& message);
+  virtual bool next(BagMessage& message) = 0;
   /// The first one is the next again.
-  void rewind();
+  virtual void rewind() = 0;
+  /// At the end what a reader should know; else "".
+  virtual std::string note() const { return ""; }
   const std::string& path() const { return path_; }
   const std::string& topic() const { return topic_; }
 
+ protected:
+  /// Chooses it among these. "": the only one of that type.
+  /// @throws std::runtime_error naming the path, and the topics that there are
+  void set_topic(const std::string& path, const std::vector<BagTopic>& topics,
+                 const std::string& wanted);
+
  private:
-  struct Database;
   std::string path_, topic_;
-  std::unique_ptr<Database> database_;
 };
 
 }  // namespace tauext

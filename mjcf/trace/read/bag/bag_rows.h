@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Recordings of ROS 2: bags of the storage sqlite3, that is .db3 files.
+/// Recordings of ROS 2: bags of the storages sqlite3 and mcap, that is .db3 and .mcap files.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <set>
@@ -21,9 +22,11 @@ struct JointState;
 /// The first column is "t" [s], the stamp of the header or, where that is 0 throughout, the time at
 /// which the message was recorded. Then follow "position.NAME" [rad], "velocity.NAME" [rad/s] and
 /// "effort.NAME" [N m], of each joint of the robot in its order or, where nobody says what these
-/// are, of each that the first good message names and in its order. Messages may have another
-/// order; what one does not have is NaN. A message without any of these joints is no row; where
-/// messages name other joints, a note names them once, at the end.
+/// are, of each that the first good message names and in its order. Where the messages have the
+/// robot's names with one text before all of them, or without one that the robot's begin with,
+/// these are its joints; a note says so. Messages may have another order; what one does not have is
+/// NaN, and a quantity that none has of these joints has no columns. A message without any of these
+/// joints is no row; where messages name other joints, a note names them once, at the end.
 ///
 /// The file is not believed: it is opened to be read alone, nothing is written beside it, a message
 /// may have 1 MB and 64 joints. Messages that are longer, cut off, or no CDR are skipped, and are
@@ -47,6 +50,8 @@ class BagRows : public RowSource {
 
  private:
   void look_ahead();
+  void look_for_quantities();
+  bool find_by_prefix(const std::set<std::string>& named);
   [[noreturn]] void fail_missing(const std::vector<std::string>& missing,
                                  const std::set<std::string>& named) const;
   bool fill(std::vector<double>& row, const JointState& state);
@@ -54,6 +59,9 @@ class BagRows : public RowSource {
 
   std::unique_ptr<BagMessages> messages_;
   std::vector<std::string> joints_, columns_;
+  std::vector<std::string> called_;  // these joints, in the messages
+  std::string note_;                 // of how they were found
+  std::array<bool, 3> has_{};        // position, velocity and effort of these joints
   bool use_stamps_ = false;
   long number_ = 0, with_strangers_ = 0;
   std::set<std::string> strangers_;  // joints that are not ours, the first few

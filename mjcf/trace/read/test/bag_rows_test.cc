@@ -136,13 +136,56 @@ TEST_F(Bag, AJointOfTheRobotThatNeverComesIsAnErrorWithBothLists) {
                 "[tau_instant] likewise");
 }
 
+// as drivers begin: without efforts, then with NaN; a gripper's own never come
+TEST_F(Bag, WhatIsThereIsDecidedByAllMessages) {
+  const Names names{"a", "grip"};
+  const std::string file =
+      with({message(0, names).numbers({1, 2}).numbers({}).numbers({}).bytes(),
+            message(1, names).numbers({1, 2}).numbers({}).numbers({NAN, 3}).bytes(),
+            message(2, names).numbers({1, 2}).numbers({}).numbers({4, NAN}).bytes()});
+  BagRows rows(file, "", {"a"});
+  EXPECT_EQ(rows.columns(), (Names{"t", "position.a", "effort.a"}));
+  SkippedRows skipped;
+  expect_rows(rows_of(rows, skipped), {{5, 1, NAN}, {5 + 1e-9, 1, NAN}, {5 + 2e-9, 1, 4}});
+}
+
+// one text before all names, in the messages or in the robot's file
+TEST_F(Bag, TheRobotsJointsAreFoundBehindAPrefix) {
+  const std::string file = with({message(0, {"ur/b_joint", "ur/a", "grip"})
+                                     .numbers({1, 2, 3})
+                                     .numbers({})
+                                     .numbers({})
+                                     .bytes()});
+  BagRows rows(file, "", {"a", "b_joint"});
+  EXPECT_EQ(rows.columns()[1], "position.a");
+  SkippedRows skipped;
+  expect_rows(rows_of(rows, skipped), {{5, 2, 1}});
+  EXPECT_EQ(skipped.notes[0], "its joints' names have the prefix 'ur/'");
+  const std::string bare =
+      with({message(0, {"b", "a"}).numbers({1, 2}).numbers({}).numbers({}).bytes()});
+  expect_rows(rows_of(BagRows(bare, "", {"left_arm_a", "left_arm_b"})), {{5, 2, 1}});
+  const std::string two = with({message(0, {"l_a", "l_b", "r_a", "r_b"})
+                                    .numbers({1, 2, 3, 4})
+                                    .numbers({})
+                                    .numbers({})
+                                    .bytes()});
+  EXPECT_NE(error_of([&] {
+              BagRows x(two, "", {"a", "b"});
+            }).find("their names have the prefix 'l_', or they have the prefix 'r_'"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              BagRows x(two, "", {"a", "c"});
+            }).find("never name a, c"),
+            std::string::npos);
+}
+
 TEST_F(Bag, WhereNoStampIsGivenTheTimeOfRecordingIsTaken) {
   const auto unstamped = [](double q) {
     return SomeMessage().stamp(0, 0).text("").texts({"a"}).numbers({q}).numbers({}).numbers({});
   };
   const std::string one = unstamped(1).bytes(), two = unstamped(2).bytes();
-  expect_rows(rows_of(BagRows(with({one, two}))), {{0.5, 1, NAN, NAN}, {1, 2, NAN, NAN}});
-  expect_rows(rows_of(BagRows(with({one, one_joint(0, 3)}))), {{0, 1, NAN, NAN}, {5, 3, NAN, NAN}});
+  expect_rows(rows_of(BagRows(with({one, two}))), {{0.5, 1}, {1, 2}});
+  expect_rows(rows_of(BagRows(with({one, one_joint(0, 3)}))), {{0, 1}, {5, 3}});
 }
 
 TEST_F(Bag, MessagesComeInTheOrderInWhichTheyWereRecorded) {
@@ -220,23 +263,43 @@ TEST_F(Bag, ErrorsNameTheRemedy) {
       "topic /a is serialized as 'fory', and not as 'cdr': write it anew by ros2 bag convert");
   EXPECT_EQ(error_of_opening(with({})),
             "no message on topic /joint_states can be read; of the first: there is none");
-  const std::string mcap = put("\x89MCAP0\r\n and more", "x.mcap");
-  EXPECT_EQ(
-      error_of_opening(mcap),
-      "is a bag of the storage mcap, which is not read: write it anew by ros2 bag convert -i " +
-          mcap +
-          " -o o.yaml, where o.yaml has output_bags: [{uri: new_bag, storage_id: sqlite3, "
-          "all: true}]");
-  const std::string zstd = put("\x28\xB5\x2F\xFD and more", "x.db3.zstd");
-  EXPECT_EQ(error_of_opening(zstd), "is compressed: unpack it by zstd -d " + zstd);
-  EXPECT_EQ(error_of_opening(put("t,q1\n", "x.csv")), "begins as no bag of ROS 2 does (.db3)");
-  EXPECT_EQ(error_of_opening(folder_.string()), "is a folder: name the .db3 file in it");
+  EXPECT_EQ(error_of_opening(put("t,q1\n", "x.csv")),
+            "begins as no bag of ROS 2 does (.db3, .mcap)");
+  EXPECT_EQ(error_of_opening(folder_.string()), "is a folder: name the bag's file in it");
   EXPECT_EQ(error_of_opening(path("none")), "No such file or directory");
   const std::string file = with({kAll}), wal = put("x", "x.db3-wal");
   EXPECT_EQ(error_of_opening(file),
             fmt::format("was not closed, and {} holds a part of it: bring them together by sqlite3 "
                         "{} 'PRAGMA quick_check'",
                         wal, file));
+}
+
+// made by a program of its own, by mcap.dev/spec, zstd and lz4
+TEST_F(Bag, OfTheStorageMcapIsRead) {
+  const Rows want = {{100, 2, 1, 0.25, 0.5, 20, 10},
+                     {101, 3, 1, 0.25, 0.5, 20, 10},
+                     {102, 2, 2, 0.25, 0.5, 20, 20},
+                     {103, 3, 2, 0.25, 0.5, 20, 20}};
+  for (const std::string kind : {"plain", "zstd", "lz4"}) {
+    const std::string bytes = get(fixture("chunks_" + kind + ".mcap"));
+    expect_rows(rows_of(BagRows(put(bytes, "x.mcap"), "", {"a", "b"})), want);
+    // without its summary, and within the second chunk
+    for (const std::size_t size : {bytes.size() - 8, bytes.size() - 400}) {
+      BagRows cut(put(bytes.substr(0, size), "cut.mcap"), "", {"a", "b"});
+      SkippedRows skipped;
+      const Rows rows = rows_of(cut, skipped);
+      expect_rows(rows, Rows(want.begin(), want.begin() + static_cast<long>(rows.size())));
+      EXPECT_EQ(rows.size(), size == bytes.size() - 8 ? 4U : 2U) << kind;
+      if (rows.size() < 4) {
+        EXPECT_EQ(skipped.notes.back(), "it ends too early: read up to its last whole record");
+      }
+    }
+  }
+  std::string wrong = get(fixture("chunks_plain.mcap"));
+  wrong[wrong.find("/chatter") + 60] ^= 1;
+  EXPECT_NE(error_of_opening(put(wrong, "wrong.mcap")).find("checksum"), std::string::npos);
+  const int readable = beginnings_that_can_be_read<BagRows>(get(fixture("chunks_zstd.mcap")));
+  EXPECT_GT(readable, 100);
 }
 
 TEST_F(Bag, ADatabaseThatComputesIsNone) {

@@ -130,6 +130,40 @@ TEST_F(Columns, OfRtdeWantTheGainsOfTheDrives) {
   EXPECT_EQ(regularity_.repeats, 3);
 }
 
+// a torque of the map stands in the place of the preset's, with its columns unless it has others
+TEST_F(Columns, ATorqueSaysWhatItIsAndWhenItActed) {
+  const std::string csv = "t,q1,qd1,tau1\n0,1,2,3\n0.001,1,2,4\n";
+  const Trace plain = read(csv, "tauext");
+  EXPECT_FALSE(plain.torque_at_instants || plain.tau_without_gravity);
+  const Trace without = read_by(csv, "preset = 'tauext'\n[tau_without_gravity]\nsign = -1\n");
+  EXPECT_TRUE(without.torque_at_instants && without.tau_without_gravity);
+  EXPECT_EQ(without.tau(0, 1), -4);
+  const Trace held =
+      read_by(csv,
+              "preset = 'tauext'\n[tau_without_gravity]\nheld = true\ncolumns = ['qd1']\n[qd]\n"
+              "columns = ['tau1']\n");
+  EXPECT_TRUE(!held.torque_at_instants && held.tau_without_gravity);
+  EXPECT_EQ(held.tau(0, 0), 2);
+  EXPECT_TRUE(read_by(csv, "preset = 'tauext'\n[tau]\nheld = false\n").torque_at_instants);
+  const Trace currents = read_by(csv, "preset = 'tauext'\n[current]\ngain = 10\nunit = 'mA'\n");
+  EXPECT_FALSE(currents.tau_is_current);
+  EXPECT_NEAR(currents.tau(0, 0), 0.03, 1e-15);
+  expect_says(error_of([&] { read_by(csv, "preset = 'tauext'\n[q]\nheld = true\n"); }),
+              "unknown key 'held'");
+  expect_says(error_of([&] { read_by(csv, "preset = 'tauext'\n[tau]\nheld = 1\n"); }),
+              "held must be true or false");
+}
+
+// the time of a row that is left out goes by
+TEST_F(Columns, RowsWithoutATimeFollowAtARate) {
+  const std::string csv = "q1,qd1,tau1\n1,2,3\nx,2,4\n1,2,5\n";
+  const Trace t = read_by(csv, "preset = 'tauext'\nrate = 125\n");
+  EXPECT_EQ(t.t, (std::vector<double>{0, 2 / 125.}));
+  expect_says(error_of([&] { read_by(csv, "rate = 125\n[t]\ncolumns = ['q1']\n"); }),
+              "a `rate` and a [t]");
+  expect_says(error_of([&] { read_by(csv, "preset = 'tauext'\nrate = 0\n"); }), "positive [Hz]");
+}
+
 // pyfri's collect_data: no velocity, and external torque as KUKA has it
 TEST_F(Columns, OfFriMakeAVelocityAndTurnTheExternalTorque) {
   std::string head = "index,time,record_time_nsec,tsec,tnsec", rows;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/csv_rows.h"
+#include "mjcf/trace/read/text/csv_rows.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -12,7 +11,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -63,11 +61,7 @@ char separator_of(std::string_view line) {
 }  // namespace
 
 CsvRows::CsvRows(const std::string& path, const CsvFormat& format)
-    : path_(path), format_(format), file_(nullptr, std::fclose), buffer_(kChunk + kLongest + 1) {
-  claim_input(path);
-  file_.reset(std::fopen(path.c_str(), "rbe"));
-  if (!file_) throw std::runtime_error(fmt::format("{}: {}", path, std::strerror(errno)));
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+    : path_(path), format_(format), file_(path), buffer_(kChunk + kLongest + 1) {
   read_header();
   wanted_.assign(columns_.size(), true);
 }
@@ -79,10 +73,7 @@ bool CsvRows::refill() {
             buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
   end_ -= begin_;
   begin_ = 0;
-  errno = 0;
-  const std::size_t got = std::fread(buffer_.data() + end_, 1, kChunk, file_.get());
-  if (std::ferror(file_.get()) != 0)
-    throw std::runtime_error(fmt::format("{}: {}", path_, std::strerror(errno)));
+  const std::size_t got = file_.read(buffer_.data() + end_, kChunk);
   end_ += got;
   at_end_ = got == 0;
   return !at_end_;

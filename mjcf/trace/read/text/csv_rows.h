@@ -4,13 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mjcf/trace/read/row_source.h"
+#include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {
 
@@ -22,8 +21,9 @@ struct CsvFormat {
   bool finite = true;      ///< a row with NaN or infinity cannot be read
 };
 
-/// The rows of such a file. Lines may end in CR and LF, and have up to 64 kB; empty ones, and those
-/// that begin with #, are no rows. A column of a name that an earlier one has gets `#2` behind it.
+/// The rows of such a file, which may be compressed. Lines may end in CR and LF, and have up to
+/// 64 kB; empty ones, and those that begin with #, are no rows. A column of a name that an earlier
+/// one has gets `#2` behind it.
 class CsvRows final : public RowSource {
  public:
   /// @throws std::runtime_error naming the path and the reason: unreadable, empty, no names
@@ -43,7 +43,7 @@ class CsvRows final : public RowSource {
 
   std::string path_;
   CsvFormat format_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  UnpackedFile file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;        // of what is left in it
   bool at_end_ = false, cut_off_ = false;  // of the file; the last line has no end

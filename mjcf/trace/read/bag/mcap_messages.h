@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The messages of one topic in a bag of the storage mcap (mcap.dev/spec), in its order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "mjcf/trace/read/bag/bag_messages.h"
+#include "mjcf/trace/read/numpy/byte_file.h"
+
+namespace tauext {
+
+/// Those of a topic of sensor_msgs/msg/JointState. Chunks may be compressed by zstd or lz4, and
+/// have up to 256 MB; a file that ends too early is read up to its last whole record.
+class McapMessages final : public BagMessages {
+ public:
+  /// @throws std::runtime_error as BagRows does
+  McapMessages(const std::string& path, const std::string& topic);
+
+  bool next(BagMessage& message) override;
+  void rewind() override;
+  std::string note() const override;
+
+ private:
+  struct Record {
+    std::uint8_t kind = 0;
+    std::string_view bytes;  // until the next one is read
+    std::uint64_t size = 0;  // [bytes] even so
+  };
+  struct Channel {
+    std::uint16_t schema = 0;
+    std::string topic, encoding;
+  };
+
+  bool next_record(Record& record);
+  bool next_in_chunk(Record& record);
+  void open_chunk(std::uint64_t size);
+  void read_summary();
+  void learn(const Record& record);
+
+  ByteFile file_;
+  std::uint64_t at_ = 0, end_ = 0;  // in the file: the next record; where they end
+  bool cut_off_ = false;
+  std::string record_, chunk_;
+  std::size_t chunk_at_ = 0;
+  std::map<std::uint16_t, std::string> schemas_;  // names of types
+  std::map<std::uint16_t, Channel> channels_;
+  std::set<std::uint16_t> wanted_;  // channels of the topic
+};
+
+}  // namespace tauext

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/text/unpacked_file.h"
+
+#include <fmt/format.h>
+#ifdef TAUEXT_ARCHIVE
+#include <archive.h>
+#include <archive_entry.h>
+#endif
+#ifdef TAUEXT_ZLIB
+#include <zlib.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+#include "mjcf/trace/input_file.h"
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+constexpr std::string_view kGzip = "\x1f\x8b";
+constexpr std::string_view kMagic[] = {kGzip, std::string_view("\xfd\x37zXZ\0", 6),
+                                       "\x28\xb5\x2f\xfd", "BZh", "\x04\x22\x4d\x18"};
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) {
+  throw std::runtime_error(fmt::format("{}: {}", path, why));
+}
+
+using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+Stream opened(const std::string& path) {
+  claim_input(path);
+  Stream file(std::fopen(path.c_str(), "rbe"), std::fclose);
+  if (!file) fail(path, std::strerror(errno));
+  std::setvbuf(file.get(), nullptr, _IONBF, 0);
+  return file;
+}
+
+}  // namespace
+
+bool is_compressed(std::string_view begin) {
+  return std::any_of(std::begin(kMagic), std::end(kMagic),
+                     [&](std::string_view magic) { return begin.starts_with(magic); });
+}
+
+namespace detail {
+
+#ifdef TAUEXT_ARCHIVE
+
+class Unpacker {
+ public:
+  explicit Unpacker(const std::string& path) : Unpacker(path, nullptr) {}
+  // of these bytes, which must outlive it; nullptr: the file's
+  Unpacker(const std::string& path, const std::string_view* bytes)
+      : path_(path), archive_(archive_read_new(), archive_read_free) {
+    if (!archive_) throw std::bad_alloc();
+    for (auto* knows : {archive_read_support_filter_xz, archive_read_support_filter_zstd,
+                        archive_read_support_filter_bzip2, archive_read_support_filter_lz4,
+                        archive_read_support_format_raw, archive_read_support_format_empty})
+      require(knows(archive_.get()));
+    require(bytes == nullptr
+                ? archive_read_open_filename(archive_.get(), path.c_str(), 1 << 16)
+                : archive_read_open_memory(archive_.get(), bytes->data(), bytes->size()));
+    archive_entry* entry = nullptr;
+    require(archive_read_next_header(archive_.get(), &entry));
+  }
+
+  std::size_t read(char* to, std::size_t most) {
+    const la_ssize_t got = archive_read_data(archive_.get(), to, most);
+    if (got < 0) require(static_cast<int>(got));
+    return static_cast<std::size_t>(got);
+  }
+
+ private:
+  // a warning, too: a filter that would have to run another program
+  void require(int code) const {
+    if (code == ARCHIVE_OK) return;
+    const char* const why = archive_error_string(archive_.get());
+    fail(path_,
+         one_line(fmt::format("cannot be unpacked: {}", why == nullptr ? "it is damaged" : why)));
+  }
+
+  std::string path_;
+  std::unique_ptr<archive, int (*)(archive*)> archive_;
+};
+
+#else
+
+class Unpacker {
+ public:
+  explicit Unpacker(const std::string& path, const std::string_view* = nullptr) {
+    fail(path,
+         "is compressed, and what unpacks it is left out of this build: install Debian's "
+         "libarchive-dev, and build again");
+  }
+  std::size_t read(char*, std::size_t) { return 0; }
+};
+
+#endif
+
+#ifdef TAUEXT_ZLIB
+
+// gzip, of which libarchive does not compare the checksum
+class Gunzipper {
+ public:
+  explicit Gunzipper(const std::string& path)
+      : path_(path), file_(::gzopen(path.c_str(), "rbe"), ::gzclose) {
+    if (!file_) fail(path, std::strerror(errno));
+  }
+
+  std::size_t read(char* to, std::size_t most) {
+    const int got = ::gzread(file_.get(), to, static_cast<unsigned>(std::min(most, kMost)));
+    int code = Z_OK;
+    const char* const why = ::gzerror(file_.get(), &code);
+    if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
+      fail(path_, one_line(fmt::format("cannot be unpacked: {}", why)));
+    return static_cast<std::size_t>(got);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 1 << 30;  // [bytes] at once
+
+  std::string path_;
+  std::unique_ptr<gzFile_s, int (*)(gzFile)> file_;
+};
+
+#else
+
+class Gunzipper {
+ public:
+  explicit Gunzipper(const std::string& path) {
+    fail(path,
+         "is compressed, and what unpacks it is left out of this build: install Debian's "
+         "zlib1g-dev, and build again");
+  }
+  std::size_t read(char*, std::size_t) { return 0; }
+};
+
+#endif
+
+}  // namespace detail
+
+std::string unpacked(std::string_view bytes, std::size_t size, const std::string& path) {
+  detail::Unpacker from(path, &bytes);
+  std::string all(size + 1, '\0');
+  std::size_t got = 0;
+  for (std::size_t some = 1; some > 0 && got < all.size(); got += some)
+    some = from.read(all.data() + got, all.size() - got);
+  all.resize(got);
+  return all;
+}
+
+struct UnpackedFile::Source {
+  explicit Source(const std::string& p) : path(p), file(opened(p)) {
+    std::array<char, 8> begin{};
+    const std::size_t size = std::fread(begin.data(), 1, begin.size(), file.get());
+    const std::string_view bytes(begin.data(), size);
+    if (bytes.starts_with(kGzip)) {
+      gzip.emplace(path);
+    } else if (is_compressed(bytes)) {
+      packed.emplace(path);
+    } else {
+      first.assign(begin.data(), size);  // a pipe has no way back
+    }
+  }
+
+  std::size_t read(char* to, std::size_t most) {
+    if (gzip) return gzip->read(to, most);
+    if (packed) return packed->read(to, most);
+    if (!first.empty()) {
+      const std::size_t some = first.copy(to, most);
+      first.erase(0, some);
+      return some;
+    }
+    errno = 0;
+    const std::size_t got = std::fread(to, 1, most, file.get());
+    if (std::ferror(file.get()) != 0) fail(path, std::strerror(errno));
+    return got;
+  }
+
+  std::string path, first;
+  Stream file;
+  std::optional<detail::Gunzipper> gzip;
+  std::optional<detail::Unpacker> packed;
+};
+
+UnpackedFile::UnpackedFile(const std::string& path) : source_(std::make_unique<Source>(path)) {}
+UnpackedFile::~UnpackedFile() = default;
+
+std::size_t UnpackedFile::read(char* to, std::size_t most) {
+  return source_->read(to, most);
+}
+
+}  // namespace tauext
