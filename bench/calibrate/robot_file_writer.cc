@@ -148,7 +148,7 @@ void judge_by_file(NewRobotFile& robot, const std::vector<Trace>& logs, const Wi
     CalibratedJoint& j = robot.joints[static_cast<std::size_t>(i)];
     j.after = left_over(logs, motions, i, j.gain == 0 ? 1 : j.gain, windows);
     doubt_what_is_left(j);
-    doubt_friction(j, arm.rated[i]);
+    doubt_friction(j, arm.rated_torque[i]);
   }
 }
 

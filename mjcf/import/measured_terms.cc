@@ -9,6 +9,7 @@
 #include <locale>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "mjcf/import/xml.h"
@@ -49,12 +50,18 @@ void set(XMLElement& e, const char* attribute, const std::optional<double>& valu
   if (value) e.SetAttribute(attribute, exact(*value).c_str());
 }
 
-void remove_numeric(XMLElement& root, std::string_view name) {
+// its first two numbers; 0 where there are none
+std::pair<double, double> remove_numeric(XMLElement& root, std::string_view name) {
+  std::pair<double, double> numbers;
   each(root, [&](XMLElement& e) {
     if (name_of(e) != "numeric" || text(e, "name") != name) return true;
+    std::istringstream in(text(e, "data"));
+    in.imbue(std::locale::classic());
+    in >> numbers.first >> numbers.second;
     e.Parent()->DeleteChild(&e);
     return false;
   });
+  return numbers;
 }
 
 void put_payload(XMLElement& root, const Payload& p) {
@@ -121,6 +128,10 @@ void put_measured(XMLElement& mujoco, const MeasuredTerms& terms) {
     set(joint, "armature", t.armature);
     set(joint, "frictionloss", t.coulomb);
     set(joint, "damping", t.viscous);
+    if (t.effort || t.velocity) {
+      const auto [torque, speed] = remove_numeric(mujoco, std::string(kRated) + name);
+      put_rated(mujoco, name, t.effort.value_or(torque), t.velocity.value_or(speed));
+    }
     if (!t.offset && !t.viscous_skew && !t.gain) continue;
     const std::string place = std::string(kMeasured) + name;
     remove_numeric(mujoco, place);
@@ -134,15 +145,17 @@ void put_measured(XMLElement& mujoco, const MeasuredTerms& terms) {
   if (terms.payload) put_payload(mujoco, *terms.payload);
 }
 
-void put_rated_torque(XMLElement& mujoco, const std::string& joint, double rated) {
-  if (!(rated > 0) || !std::isfinite(rated)) return;
+void put_rated(XMLElement& mujoco, const std::string& joint, double torque, double speed) {
+  const auto known = [](double x) { return x > 0 && std::isfinite(x) ? x : 0; };
+  torque = known(torque), speed = known(speed);
+  if (torque == 0 && speed == 0) return;
   XMLElement* const number =
       mujoco.InsertNewChildElement("custom")->InsertNewChildElement("numeric");
   number->SetAttribute("name", (std::string(kRated) + joint).c_str());
-  number->SetAttribute("data", exact(rated).c_str());
+  number->SetAttribute("data", (exact(torque) + " " + exact(speed)).c_str());
 }
 
-void keep_rated_torques(XMLElement& mujoco) {
+void keep_rated(XMLElement& mujoco) {
   std::map<std::string, double> rated;
   each(mujoco, [&](XMLElement& e) {
     if (parent_name(e) != "actuator" || e.Attribute("joint") == nullptr) return true;
@@ -160,7 +173,7 @@ void keep_rated_torques(XMLElement& mujoco) {
   for (auto& [name, joint] : named(mujoco, "joint"))
     if (const double range = most(with_defaults(mujoco, *joint, "actuatorfrcrange")); range > 0)
       rated[name] = range;
-  for (const auto& [name, torque] : rated) put_rated_torque(mujoco, name, torque);
+  for (const auto& [name, torque] : rated) put_rated(mujoco, name, torque, 0);
 }
 
 }  // namespace tauext::detail

@@ -22,6 +22,8 @@ struct MeasuredJoint {
   std::optional<double> viscous_skew;  ///< [N m s/rad] more of it where qd > 0, less where qd < 0
   std::optional<double> offset;        ///< [N m] that tau is always too large by
   std::optional<double> gain;          ///< [N m/A] of the drive
+  std::optional<double> effort;        ///< [N m] what the drive can do at most
+  std::optional<double> velocity;      ///< [rad/s] likewise
 };
 
 /// A weight that was mounted.
@@ -47,16 +49,17 @@ inline constexpr std::string_view kMeasured = "tauext:";
 /// @throws std::runtime_error for a joint or a body that it does not have, listing those there are
 void put_measured(tinyxml2::XMLElement& mujoco, const MeasuredTerms& terms);
 
-/// Before the name of a joint: the <numeric> with its rated torque [N m] or [N].
+/// Before the name of a joint: the <numeric> with its rated torque [N m] or [N], and speed [rad/s]
+/// or [m/s].
 inline constexpr std::string_view kRated = "tauext:rated:";
 
-/// Puts a joint's rated torque into MJCF; nothing, unless it is above 0 and finite: files have 0
-/// where nobody knows it.
-void put_rated_torque(tinyxml2::XMLElement& mujoco, const std::string& joint, double rated);
+/// Puts what a joint's drive can do into MJCF. A number that is not positive and finite counts as
+/// unknown: files have 0 there.
+void put_rated(tinyxml2::XMLElement& mujoco, const std::string& joint, double torque, double speed);
 
 /// The same of each joint that has an `actuatorfrcrange`, or else an actuator with a `forcerange`,
 /// or else a motor with a `ctrlrange`, by itself or by its class.
-void keep_rated_torques(tinyxml2::XMLElement& mujoco);
+void keep_rated(tinyxml2::XMLElement& mujoco);
 
 }  // namespace detail
 }  // namespace tauext

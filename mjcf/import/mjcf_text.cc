@@ -64,7 +64,7 @@ class Import {
     include(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     find_bodies_with_mass(root);
-    detail::keep_rated_torques(root);
+    detail::keep_rated(root);
     keep(root);
     detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
     set_compiler(root);

@@ -15,7 +15,8 @@ namespace {
 
 using Json = JsonObject::Json;
 
-constexpr double kMuch = 1e6;  // [kg, N m, ..]
+constexpr double kMuch = 1e6;     // [kg, N m, ..]
+constexpr double kLittle = 1e-6;  // [N m, rad/s] no drive does less
 
 // a number, or one for each direction: their mean, and half of their difference
 std::optional<std::pair<double, double>> both_ways(const JsonObject& o, const char* key) {
@@ -33,9 +34,9 @@ std::optional<double> number(const JsonObject& o, const char* key, double least)
 }
 
 MeasuredJoint joint_of(const Json& json, const std::string& where) {
-  const JsonObject o(
-      json, where,
-      {"armature", "coulomb", "viscous", "offset", "gain", "standard_errors", "about"});
+  const JsonObject o(json, where,
+                     {"armature", "coulomb", "viscous", "offset", "gain", "effort", "velocity",
+                      "standard_errors", "about"});
   MeasuredJoint j;
   j.armature = number(o, "armature", 0);
   j.offset = number(o, "offset", -kMuch);
@@ -50,6 +51,8 @@ MeasuredJoint joint_of(const Json& json, const std::string& where) {
   j.gain = number(o, "gain", -kMuch);
   if (j.gain && *j.gain == 0)
     throw std::invalid_argument(where + ": \"gain\" is 0: a current would do nothing");
+  j.effort = number(o, "effort", kLittle);
+  j.velocity = number(o, "velocity", kLittle);
   return j;
 }
 

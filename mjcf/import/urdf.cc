@@ -379,7 +379,6 @@ class Urdf {
     set(out, "axis", {axis[0], axis[1], axis[2]});
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = bound(limit, "lower"), upper = bound(limit, "upper");
-    bound(limit, "velocity");
     const bool says_range = type != "continuous" && (lower != 0 || upper != 0);
     if (says_range && !(lower < upper))
       fail(joint,
@@ -402,7 +401,7 @@ class Urdf {
     set(out, "damping", {number(dynamics, "damping", 0)});
     set(out, "frictionloss", {number(dynamics, "friction", 0)});
     set(out, "armature", {number(dynamics, "armature", 0)});  // URDF itself has no word for it
-    put_rated_torque(mujoco_, name, bound(limit, "effort"));
+    put_rated(mujoco_, name, bound(limit, "effort"), bound(limit, "velocity"));
     if (const XMLElement* const mimic = joint.FirstChildElement("mimic")) {
       XMLElement& tie = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
       tie.SetAttribute("joint1", name.c_str());

@@ -10,29 +10,44 @@
 
 namespace tauext {
 
+namespace {
+
+// the numbers of custom's numeric of a joint; what is missing is 0
+class Numeric {
+ public:
+  Numeric(const mjModel& m, const char* prefix, int joint)
+      : m_(m),
+        id_(mj_name2id(&m, mjOBJ_NUMERIC, (prefix + element_name(m, mjOBJ_JOINT, joint)).c_str())) {
+  }
+
+  double operator[](int i) const {
+    return id_ < 0 || i >= m_.numeric_size[id_] ? 0. : m_.numeric_data[m_.numeric_adr[id_] + i];
+  }
+
+ private:
+  const mjModel& m_;
+  int id_;
+};
+
+}  // namespace
+
 Measured measured(const mjModel& m, int joint) {
-  const std::string name = "tauext:" + element_name(m, mjOBJ_JOINT, joint);
-  const int id = mj_name2id(&m, mjOBJ_NUMERIC, name.c_str());
-  const auto number = [&](int i) {
-    return id < 0 || i >= m.numeric_size[id] ? 0. : m.numeric_data[m.numeric_adr[id] + i];
-  };
-  return {number(0), number(1), number(2)};
+  const Numeric numbers(m, "tauext:", joint);
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
-double rated_torque(const mjModel& m, int joint) {
-  const std::string name = "tauext:rated:" + element_name(m, mjOBJ_JOINT, joint);
-  const int id = mj_name2id(&m, mjOBJ_NUMERIC, name.c_str());
-  if (id >= 0) return m.numeric_data[m.numeric_adr[id]];
-  double rated = 0;
+Rated rated_of(const mjModel& m, int joint) {
+  const Numeric numbers(m, "tauext:rated:", joint);
+  Rated rated{numbers[0], numbers[1]};
+  if (rated.torque > 0) return rated;
   for (int i = 0; i < m.nu; ++i) {
     if (m.actuator_trntype[i] != mjTRN_JOINT || m.actuator_trnid[2 * i] != joint) continue;
     double most = std::numeric_limits<double>::infinity();
-    const auto within = [&](bool limited, const mjtNum* range) {
-      if (limited) most = std::min(most, std::max(-range[0], range[1]));
-    };
-    within(m.actuator_ctrllimited[i], m.actuator_ctrlrange + 2 * i);
-    within(m.actuator_forcelimited[i], m.actuator_forcerange + 2 * i);
-    if (std::isfinite(most)) rated = std::max(rated, std::abs(m.actuator_gear[6 * i]) * most);
+    // simulated() switches the limits off, and leaves the ranges
+    for (const mjtNum* range : {m.actuator_ctrlrange + 2 * i, m.actuator_forcerange + 2 * i})
+      if (range[0] < range[1]) most = std::min(most, std::max(-range[0], range[1]));
+    if (std::isfinite(most))
+      rated.torque = std::max(rated.torque, std::abs(m.actuator_gear[6 * i]) * most);
   }
   return rated;
 }

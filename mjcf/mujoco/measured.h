@@ -18,8 +18,14 @@ struct Measured {
 /// @param joint its number, from 0
 Measured measured(const mjModel& m, int joint);
 
-/// [N m] or [N] what the drive of a joint can do at most: `custom`'s `numeric` called
-/// `tauext:rated:JOINT`, or else the ranges of its motors; 0 where the file does not say.
-double rated_torque(const mjModel& m, int joint);
+/// What the drive of a joint can do at most; 0 where the file does not say.
+struct Rated {
+  double torque = 0;  ///< [N m] or [N]
+  double speed = 0;   ///< [rad/s] or [m/s]
+};
+
+/// Both numbers of `custom`'s `numeric` called `tauext:rated:JOINT`; where the torque is 0 there,
+/// that of the ranges of its motors.
+Rated rated_of(const mjModel& m, int joint);
 
 }  // namespace tauext

@@ -45,4 +45,21 @@ LinearMotion<kMostCoordinates> Tied::motion(const TiedTree& arm, const VecN& q, 
 }
 
 }  // namespace detail
+
+std::function<Eigen::VectorXd(const Eigen::VectorXd&)> gravity_of(const ArmTree& arm) {
+  return [model = detail::tied_tree(arm), n = arm.dof()](const Eigen::VectorXd& q) {
+    detail::Tied::VecN all = detail::Tied::VecN::Zero();
+    all.head(n) = q;
+    return Eigen::VectorXd(model->gravity(all).head(n));
+  };
+}
+
+void add_gravity(Trace& trace, const ArmTree& arm) {
+  if (!trace.tau_without_gravity) return;
+  detail::require_size(arm, trace.dof());
+  const auto gravity = gravity_of(arm);
+  for (int k = 0; k < trace.size(); ++k) trace.tau.col(k) += gravity(trace.q.col(k));
+  trace.tau_without_gravity = false;
+}
+
 }  // namespace tauext

@@ -5,13 +5,16 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
 #include "estimators/math/pack.h"
+#include "estimators/samples/limits.h"
 #include "estimators/tree/run_terms.h"
 #include "mjcf/plant/tree.h"
+#include "mjcf/trace/trace.h"
 
 namespace tauext {
 
@@ -62,10 +65,14 @@ class AnyTree {
   using MatN = Mat<N>;  ///< over the coordinates
 
   /// One without tied joints.
-  explicit AnyTree(const TreeModel<N>& arm) : arm_(arm) {}
+  explicit AnyTree(const TreeModel<N>& arm, const DriveLimits<N>& drives = {}) : arm_(arm) {
+    set_limits(drives);
+  }
   /// One with tied joints.
-  explicit AnyTree(std::shared_ptr<const TiedTree> arm)
-      : arm_(typename TreeModel<N>::Parameters()), tied_(std::move(arm)) {}
+  explicit AnyTree(std::shared_ptr<const TiedTree> arm, const DriveLimits<N>& drives = {})
+      : arm_(typename TreeModel<N>::Parameters()), tied_(std::move(arm)) {
+    set_limits(drives);
+  }
   /// The same arm, for the runs of a Pack S.
   template <class S>
   auto with() const {
@@ -75,6 +82,9 @@ class AnyTree {
       return TreeOfRuns<N, S::kWidth>(*this);
     }
   }
+
+  /// limits_by_model() of it and its drives.
+  const ArmLimits<N>& limits() const noexcept { return *limits_; }
 
   // as TreeModel has them, with units and signs
 
@@ -168,6 +178,10 @@ class AnyTree {
             narrow(f.by_qd), narrow(f.minus_inverse), f.ok};
   }
 
+  void set_limits(const DriveLimits<N>& drives) {
+    limits_ = std::make_shared<const ArmLimits<N>>(limits_by_model(*this, drives));
+  }
+
   // out of the way of an arm without tied joints
   template <class Result, class Ask>
   [[gnu::noinline]] static Result tied(Ask ask) noexcept {
@@ -176,6 +190,7 @@ class AnyTree {
 
   TreeModel<N> arm_;
   std::shared_ptr<const TiedTree> tied_;
+  std::shared_ptr<const ArmLimits<N>> limits_;
 };
 
 /// The same arm in W runs at once (estimators/runs/runs.h), each term run by run: a tree's passes
@@ -263,6 +278,13 @@ class TreeOfRuns {
   mutable Both here_;  // without terms_
 };
 
+/// What holds the arm: g(q) [N m] at any q [rad].
+std::function<Eigen::VectorXd(const Eigen::VectorXd& q)> gravity_of(const ArmTree& arm);
+
+/// Adds it to a tau without gravity; else does nothing.
+/// @throws std::invalid_argument for another number of joints
+void add_gravity(Trace& trace, const ArmTree& arm);
+
 /// The model of an arm with N coordinates, of which joints may follow others.
 /// @throws std::invalid_argument as tree_of does, for another number of coordinates, and where more
 /// than kMostFollowers joints follow others
@@ -270,8 +292,9 @@ template <int N>
 AnyTree<N> any_tree(const Model& model) {
   const ArmTree tree = tree_of(model);
   detail::require_size(tree, N);
-  if (tree.joints.size() == N) return AnyTree<N>(detail::filled<TreeModel<N>>(tree));
-  return AnyTree<N>(detail::tied_tree(tree));
+  const DriveLimits<N> drives{tree.rated_torque, tree.rated_speed};
+  if (tree.joints.size() == N) return AnyTree<N>(detail::filled<TreeModel<N>>(tree), drives);
+  return AnyTree<N>(detail::tied_tree(tree), drives);
 }
 
 }  // namespace tauext

@@ -170,11 +170,12 @@ ArmTree tree_of(const Model& model) {
   tree.usual_torque = c.usual_torque, tree.mobility = c.mobility;
   tree.friction_rate =
       together(ties_of(m), VectorXd::Map(m.dof_damping, m.nv).cwiseProduct(tree.mobility));
-  tree.gain.resize(tree.dof()), tree.rated.resize(tree.dof());
+  for (VectorXd* v : {&tree.gain, &tree.rated_torque, &tree.rated_speed}) v->resize(tree.dof());
   for (int i = 0; i < tree.dof(); ++i) {
     const int leader = tree.leaders[static_cast<std::size_t>(i)];
     tree.gain[i] = measured(m, leader).gain;
-    tree.rated[i] = rated_torque(m, leader);
+    const Rated rated = rated_of(m, leader);
+    tree.rated_torque[i] = rated.torque, tree.rated_speed[i] = rated.speed;
   }
   std::vector<Place> places(static_cast<std::size_t>(m.nbody));
   std::vector<Mass> masses(static_cast<std::size_t>(m.nv));

@@ -58,7 +58,8 @@ struct ArmTree {
   /// [N m/A] of the drive of each coordinate; 0 if nobody knows
   Eigen::VectorXd gain;
   /// [N m] or [N] what the drive of each coordinate can do; 0 where the file does not say
-  Eigen::VectorXd rated;
+  Eigen::VectorXd rated_torque;
+  Eigen::VectorXd rated_speed;   ///< [rad/s] or [m/s] likewise
   Vec<3> base = Vec<3>::Zero();  ///< [m] the tree's origin in the world, whose axes it has
   /// Sites, and origins of bodies, that joints move; and kEndEffector.
   std::map<std::string, ArmPoint> points;
@@ -84,10 +85,13 @@ namespace detail {
 void require_size(const ArmTree& tree, int coordinates);
 
 /// The model of an arm in the estimators' numbers, filled up as TiedTree (any_tree.h) says.
+/// @throws std::invalid_argument for an arm that is larger than that type
 template <class Tree>
 Tree filled(const ArmTree& tree) {
   const auto joints = static_cast<Eigen::Index>(tree.joints.size());
   typename Tree::Parameters p;
+  if (tree.joints.size() > p.joints.size() || tree.dof() > Tree::kDof)
+    throw std::invalid_argument("the arm has too many joints; --lock REGEX fixes some");
   std::copy(tree.joints.begin(), tree.joints.end(), p.joints.begin());
   p.gravity = tree.gravity;
   p.drho.setZero();

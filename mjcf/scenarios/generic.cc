@@ -48,7 +48,18 @@ Vector3d slanted(const ArmScale& scale) {
   return (scale.directions.col(0) + scale.directions.col(1)).normalized();
 }
 
-void set_forces(const Plant& plant, const VectorXd& way, ArmScale& scale) {
+// [N] what the drives hold of a force that gives each joint so many N m a newton; 1e300 if nobody
+// knows what they can do. One that could not hold the arm is a placeholder.
+double held_force(const ArmTree& arm, const VectorXd& torque) {
+  double most = 1e300;
+  for (int i = 0; i < arm.dof(); ++i)
+    if (arm.rated_torque[i] > 0)
+      most = std::min(most, std::max(arm.rated_torque[i], arm.usual_torque[i]) /
+                                std::max(std::abs(torque[i]), 1e-9));
+  return most;
+}
+
+void set_forces(const Plant& plant, const ArmTree& arm, const VectorXd& way, ArmScale& scale) {
   const MatrixXd J = plant.end_effector_jacobian();
   const MatrixXd mobility = J * plant.inertia().partialPivLu().solve(J.transpose());  // [1/kg]
   const Eigen::SelfAdjointEigenSolver<MatrixXd> by_mobility(mobility);
@@ -63,8 +74,9 @@ void set_forces(const Plant& plant, const VectorXd& way, ArmScale& scale) {
   if (!(gives[2] > 1e-6)) return;  // it weighs a thousand tons
   const Vector3d u = slanted(scale);
   scale.mass = 1 / u.dot(mobility * u);
-  const double most = std::min(20 * scale.mass, 300.);
-  const double bearable = share_of(plant, J.transpose() * u, way);
+  const VectorXd torque = J.transpose() * u;  // [N m/N]
+  const double most = std::min({20 * scale.mass, 300., held_force(arm, torque)});
+  const double bearable = share_of(plant, torque, way);
   scale.force = std::min(most, bearable);
   scale.gives_way = bearable < most;
 }
@@ -217,7 +229,7 @@ ArmScale scale_of(const Model& model) {
   scale.reach = (0.75 * (r.half + r.middle - scale.home)).cwiseMin(0.8);
   plant.set_state(scale.home, VectorXd::Zero(plant.dof()));
   const VectorXd way = (r.half / 8).cwiseMin(0.05);
-  set_forces(plant, way, scale);
+  set_forces(plant, arm, way, scale);
   const VectorXd hand = scale.force * plant.end_effector_jacobian().colwise().norm().transpose();
   scale.usual_torque = arm.usual_torque.cwiseMax(3 * hand);
   scale.torque = scale.usual_torque / 5;

@@ -26,8 +26,9 @@ struct ArmScale {
   /// twice the only one.
   Eigen::Matrix<double, 3, 2> directions;
   double mass = 0;  ///< [kg] of the end effector between these directions, by B at home
-  /// [N] of blows, pushes being smaller: 20 m/s^2 of that mass, 300 N, or what moves a joint by
-  /// 0.05 rad. 0 if no force on the end effector moves the arm.
+  /// [N] of blows, pushes being smaller: 20 m/s^2 of that mass, 300 N, what moves a joint by
+  /// 0.05 rad, or what the drives can hold where the file says it (ArmTree::rated_torque). 0 if no
+  /// force on the end effector moves the arm.
   double force = 0;
   bool gives_way = false;  ///< whether that joint limits the force
 };

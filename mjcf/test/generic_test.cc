@@ -122,13 +122,14 @@ INSTANTIATE_TEST_SUITE_P(Arms, Generic, testing::ValuesIn(kArms),
 class OneJoint : public testing::Test {
  protected:
   // a rod that hangs from a hinge at the world's origin
-  static Model rod(const std::string& joint, const std::string& site = "") {
+  static Model rod(const std::string& joint, const std::string& site = "",
+                   const std::string& motor = "") {
     const auto path =
         std::filesystem::temp_directory_path() / fmt::format("tauext_rod_{}.xml", ::getpid());
     std::ofstream(path)
         << "<mujoco><option integrator='RK4' timestep='0.001'/><worldbody><body><joint name='j' "
         << joint << "/><inertial pos='0 0 -.5' mass='2' diaginertia='.1 .1 .01'/>" << site
-        << "</body></worldbody><actuator><motor joint='j'/></actuator></mujoco>";
+        << "</body></worldbody><actuator><motor joint='j' " << motor << "/></actuator></mujoco>";
     const Model model = simulated(load_mjcf(path.string()));
     std::filesystem::remove(path);
     return model;
@@ -188,6 +189,16 @@ TEST_F(OneJoint, TheEndEffectorIsASiteOrTheLastLinksCentre) {
                        "<site name='attachment_site' pos='0 0 -.8'/>"
                        "<site name='end_effector' pos='0 0 -.9'/>")),
             -0.9);
+}
+
+// whose lever is 0.5 m; one that could not hold the rod, 9.81 N m, says nothing
+TEST_F(OneJoint, NothingPushesHarderThanTheDriveHolds) {
+  const auto force = [](const std::string& motor) {
+    return scale_of(rod("axis='0 1 0'", "", motor)).force;
+  };
+  EXPECT_GT(force(""), 23);
+  EXPECT_NEAR(force("ctrllimited='true' ctrlrange='-10 10'"), 10 / 0.5, 1e-6);
+  EXPECT_NEAR(force("ctrllimited='true' ctrlrange='-1 1'"), 9.81 / 0.5, 0.1);
 }
 
 // about its own axis no force at the end effector turns it

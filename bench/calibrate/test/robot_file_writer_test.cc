@@ -146,7 +146,7 @@ TEST(RatedTorque, IsWhatTheFileSays) {
                         << "/><inertial pos='0 0 .3' mass='2' diaginertia='.1 .1 .1'/></body>"
                            "</worldbody><actuator>"
                         << actuators << "</actuator></mujoco>";
-    return tree_of(load_mjcf(path)).rated[0];
+    return tree_of(load_mjcf(path)).rated_torque[0];
   };
   EXPECT_EQ(rated("", ""), 0);
   EXPECT_EQ(rated("class='c'", ""), 5);

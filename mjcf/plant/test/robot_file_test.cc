@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/model_error.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/simulated.h"
@@ -63,6 +64,23 @@ TEST_F(RobotFiles, SayWhatWasMeasuredAndLeaveTheRest) {
   EXPECT_EQ(a.joints[1].dry, 0.7);
   EXPECT_EQ(a.joints[1].offset, 0);
   EXPECT_EQ(a.gain[1], 0);
+}
+
+// the gates of samples are three times what a drive can do; where nobody knows, they are wide
+TEST_F(RobotFiles, WhatDrivesCanDoBoundsTheSamples) {
+  const auto limits = [&](const std::string& joints) {
+    return any_tree<2>(load_mjcf(written(R"({"format": "tauext-robot-1", "file": "arm.xml")" +
+                                         joints + "}")))
+        .limits();
+  };
+  const ArmLimits<2> wide = limits("");
+  const ArmLimits<2> l = limits(R"(, "joints": {"shoulder": {"effort": 400, "velocity": 2}})");
+  EXPECT_EQ(l.tau[0], 3 * 400);
+  EXPECT_EQ(l.qd, Vec<2>(3 * 2, wide.qd[1]));
+  // a drive that could not hold its arm is no measure: m g r = 9.81 (3 * .2 + .5), and 5 rad/s^2
+  const double holds = 9.81 * 1.1 + 5 * (.2 + 3 * .04 + .25);
+  EXPECT_NEAR(l.dtau[0], 0.1 * 400 + 0.05 * holds, 0.05);
+  EXPECT_NEAR(limits(R"(, "joints": {"shoulder": {"effort": 1}})").tau[0], 3 * holds, 1);
 }
 
 // friction at a speed is that of its direction, and an offset is always there
@@ -131,6 +149,7 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
            {head + R"("joints": {"elbow": {"viscous": [1]}}})",
             "\"viscous\" is [1], and must be 2 numbers"},
            {head + R"("joints": {"elbow": {"gain": 0}}})", "\"gain\" is 0"},
+           {head + R"("joints": {"elbow": {"effort": 0}}})", "\"effort\" is 0, and must be 1e-06"},
            {head + R"("payload": {"body": "hand", "mass": 1, "center": [0, 0, 0]}})",
             "unknown body 'hand'; known: lower, upper"},
            {head + R"("payload": {"body": "lower", "mass": -1, "center": [0, 0, 0]}})",

@@ -62,6 +62,18 @@ TEST_F(OfUrdf, IsTheArmThatMuJoCosOwnReaderMakes) {
   EXPECT_GT(tree.friction(qd)[0], 0.5);
 }
 
+TEST_F(OfUrdf, SaysWhatDrivesCanDoAndARobotFileKnowsBetter) {
+  const auto says = [&](const ArmTree& tree, const Vec<3>& torque, const Vec<3>& speed) {
+    EXPECT_EQ(tree.rated_torque, torque);
+    EXPECT_EQ(tree.rated_speed, speed);
+  };
+  says(tree_of(load_mjcf(put(urdf(), "arm.urdf"))), {10, 0, 10}, {1, 0, 1});
+  says(tree_of(load_mjcf(put(R"({"format": "tauext-robot-1", "file": "arm.urdf", "joints": {
+           "shoulder": {"velocity": 3}, "elbow": {"effort": 7}}})",
+                             "arm.json"))),
+       {10, 7, 10}, {3, 0, 1});
+}
+
 // as in many robots' URDF, where the world is a link
 TEST_F(OfUrdf, MayCallItsBaseTheWorld) {
   std::string text = urdf();
