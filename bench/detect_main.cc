@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "bench/logs/read_log.h"
 #include "bench/program/interrupt.h"
 #include "bench/program/program.h"
+#include "bench/replay/robot_log.h"
 #include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
@@ -80,10 +80,9 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   refuse_twice("recording", files);
   std::vector<study::FreeRecording> recordings;
   for (const std::string& path : f.logs) {
-    RecordedLog log = read_any_log(path, {f.channel, f.columns, r.joints(), true});
+    RecordedLog log = robot_log(r, path, f.channel, f.columns);
     log.require_consistent(path);
     usable = usable && log.usable();
-    r.make_torques(log.trace);
     recordings.push_back({path, std::move(log.trace)});
   }
   Progress progress("calibrating");

@@ -15,6 +15,7 @@
 #include "bench/calibrate/weighing.h"
 #include "bench/logs/read_log.h"
 #include "bench/program/program.h"
+#include "bench/replay/torque_fit.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
@@ -31,7 +32,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("logs", f.logs, "recordings without contact: CSV, .npy, .npz, .db3 or LCM");
+  app.add_option("logs", f.logs, "recordings without contact: CSV, .npy, .npz, a ROS 2 bag or LCM");
   app.add_option("--robot", f.robot,
                  "its file of MJCF, URDF or ours; else a log of one joint is identified")
       ->type_name("FILE");
@@ -125,6 +126,7 @@ std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
     if (log.trace.dof() != arm.dof())
       throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,
                                               log.trace.dof(), f.robot, arm.dof()));
+    add_gravity(log.trace, arm);
     all.push_back(std::move(log.trace));
   }
   return all;
@@ -145,6 +147,8 @@ int calibrate(const Flags& f, const ArmTree& arm) {
   std::vector<Trace> logs = read_logs(f, arm, f.logs, usable);
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
+  for (std::size_t i = 0; i < logs.size(); ++i)
+    usable = (logs[i].tau_is_current || torques_fit(arm, logs[i], f.logs[i])) && usable;
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,11 @@
 #include "bench/program/program.h"
 #include "bench/replay/estimates_writer.h"
 #include "bench/replay/replayed.h"
+#include "bench/replay/torque_fit.h"
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
@@ -127,7 +130,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("log", f.log, "log to read: CSV, .npy, .npz, .db3 (ROS 2) or LCM");
+  app.add_option("log", f.log, "log to read: CSV, .npy, .npz, a ROS 2 bag or LCM");
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
   app.add_option("--columns", f.columns,
                  "what the log's columns mean: a map, or libfranka, ur_rtde, ..")
@@ -193,6 +196,9 @@ int replay(Flags& f) {
   const RecordingContents& contents = log.contents();
   r.require_joints(contents.dof, f.log);
   log.use_gains(r.gains());
+  if (contents.without_gravity) log.use_gravity(gravity_of(tree_of(r.model())));
+  std::optional<TorqueFit> fit;
+  if (r.is_from_file()) fit.emplace(tree_of(r.model()), contents.torque_at_instants);
 
   Trace truth;  // truth and delayed_truth copy it; nothing else needs the log in memory
   if (contents.has_truth && std::any_of(f.estimators.begin(), f.estimators.end(), needs_truth)) {
@@ -212,6 +218,7 @@ int replay(Flags& f) {
   for (RecordedSample sample; log.next(sample);) {
     for (Replayed& c : all) c.take(sample);
     torque.take(sample);
+    if (fit) fit->take(sample, sample.contact, sample.tau_ext);
     out->add(sample.t, all);
   }
 
@@ -221,7 +228,7 @@ int replay(Flags& f) {
   if (!(f.score_from <= samples.to))
     throw std::invalid_argument(
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, samples.to));
-  bool good = log.usable();
+  bool good = log.usable() && (!fit || fits(*fit, f.log));
   for (const Replayed& c : all) good = report_status(c, log) && good;
   torque.report(samples);
   out->commit();

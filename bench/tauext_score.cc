@@ -9,9 +9,9 @@
 #include <optional>
 #include <set>
 
-#include "bench/logs/read_log.h"
 #include "bench/outside/outside_score.h"
 #include "bench/program/program.h"
+#include "bench/replay/robot_log.h"
 #include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
@@ -151,12 +151,15 @@ Recorded recorded(const Flags& f) {
   const std::string group = f.logs.size() == 1 ? std::filesystem::path(f.logs[0]).stem().string()
                                                : fmt::format("{}_logs", f.logs.size());
   for (const std::string& path : f.logs) {
-    all.logs.push_back(read_any_log(
-        path,
-        {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(), true}));
+    if (f.ours.empty()) {
+      all.logs.push_back(read_any_log(
+          path,
+          {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(), true}));
+      if (r != nullptr) r->require_joints(all.logs.back().trace, path);
+    } else {
+      all.logs.push_back(robot_log(*r, path, f.channel, f.columns));
+    }
     RecordedLog& log = all.logs.back();
-    if (r != nullptr) r->require_joints(log.trace, path);
-    if (!f.ours.empty()) r->make_torques(log.trace);
     if (log.trace.size() < 3)
       throw std::invalid_argument(
           fmt::format("{}: {} samples say nothing", path, log.trace.size()));

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/logs/read_log.h"
 #include "bench/outside/outside_score.h"
 #include "bench/program/program.h"
+#include "bench/replay/robot_log.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
 #include "bench/run/scenario_file.h"
@@ -153,10 +153,8 @@ class Recordings {
  public:
   Recordings(const Flags& f, const Robot& r, const std::vector<std::string>& paths) : robot_(r) {
     for (const std::string& path : paths) {
-      logs_.push_back(read_any_log(path, {f.channel, f.columns, r.joints(), true}));
+      logs_.push_back(robot_log(r, path, f.channel, f.columns));
       logs_.back().require_consistent(path);
-      r.require_joints(logs_.back().trace, path);
-      r.make_torques(logs_.back().trace);
     }
     for (const RecordedLog& log : logs_)
       runs_.push_back(

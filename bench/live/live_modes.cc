@@ -17,9 +17,9 @@
 #include "bench/live/live_io.h"
 #include "bench/live/live_report.h"
 #include "bench/logs/lcm_trace.h"
-#include "bench/logs/read_log.h"
 #include "bench/program/program.h"
 #include "bench/program/realtime.h"
+#include "bench/replay/robot_log.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/detection_metrics.h"
@@ -56,9 +56,7 @@ DetectorsOf thresholds_of(const Options& o) {
 
 // samples of a log, to be played
 RecordedLog read_samples(const Options& o, const Robot& r) {
-  RecordedLog log = read_any_log(o.from, {o.channel, o.columns, r.joints(), true});
-  r.make_torques(log.trace);
-  return log;
+  return robot_log(r, o.from, o.channel, o.columns);
 }
 
 // samples of a simulation, in which a detector may stop the motor

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +24,8 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr double kSlowStep = 0.0105;  // [s] of 100 samples a second, with some jitter
+
 // what was left out, if anything
 void report_skipped(const SkippedRows& s, const std::string& log) {
   for (const std::string& note : s.notes) say(log + ": " + note);
@@ -32,6 +37,13 @@ void report_skipped(const SkippedRows& s, const std::string& log) {
                   s.not_finite, s.time_order));
   for (const std::string& line : s.first) say("  " + line);
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
+}
+
+// by its first bytes, those of an event
+bool begins_as_lcm_log(const std::string& path) {
+  std::array<char, 4> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == "\xED\xA1\xDA\x01";
 }
 
 }  // namespace
@@ -158,7 +170,7 @@ struct LogReader::Impl {
       throw std::runtime_error(path +
                                ": is a pipe, and a log is read from its begin more than "
                                "once: save it to a file first");
-    if (is_lcm_log(path)) {
+    if (is_lcm_log(path) || begins_as_lcm_log(path)) {
       if (mapped)
         throw std::invalid_argument(fmt::format("{}: an LCM log has no columns to map", path));
       lcm = std::make_unique<LcmReader>(path, o.channel);
@@ -169,10 +181,12 @@ struct LogReader::Impl {
       source = rows.get();
     }
     contents = source->contents();
-    if (contents.tau_is_current && !o.currents)
+    if (contents.tau_is_current && !o.has_robot)
       throw std::runtime_error(
           path +
           ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
+    if (contents.without_gravity && !o.has_robot)
+      throw std::runtime_error(path + ": [tau_without_gravity] needs a robot, which adds gravity");
     doubt = std::make_unique<detail::UnitDoubt>(contents.dof);
   }
 
@@ -183,6 +197,7 @@ struct LogReader::Impl {
   SampleSource* source = nullptr;  // the one that there is
   RecordingContents contents;
   VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents
+  std::function<VectorXd(const VectorXd&)> gravity;  // [N m] of q, if it is to be added to tau
   std::unique_ptr<detail::UnitDoubt> doubt;
 };
 
@@ -195,6 +210,12 @@ void LogReader::use_gains(const VectorXd& gain) {
   require_gains(gain, impl_->contents.dof);
   impl_->gain = gain;
   impl_->contents.tau_is_current = false;
+}
+
+void LogReader::use_gravity(std::function<VectorXd(const VectorXd&)> gravity) {
+  if (!impl_->contents.without_gravity) return;
+  impl_->gravity = std::move(gravity);
+  impl_->contents.without_gravity = false;
 }
 
 const RecordingContents& LogReader::contents() const {
@@ -219,6 +240,7 @@ bool LogReader::next(RecordedSample& s) {
     return false;
   }
   if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
+  if (impl_->gravity) s.tau += impl_->gravity(s.q);
   impl_->doubt->take(s);
   return true;
 }
@@ -240,6 +262,11 @@ void LogReader::report() const {
     say(fmt::format("{}: channel {}: {}", i.path, i.lcm->report().channel, faults));
   }
   i.doubt->tell(i.path, remedy);
+  if (const double step = regularity().step; step > kSlowStep)
+    say(fmt::format(
+        "{}: {:.3g} samples a second. An estimate is a sample late, {:.3g} ms here, and "
+        "a touch that is shorter can be missed: record 100 a second or more",
+        i.path, 1 / step, 1000 * step));
   if (skipped() > regularity().samples)
     say(fmt::format("{}: most of it could not be used: {} skipped, {} used", i.path, skipped(),
                     regularity().samples));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,8 +22,9 @@ struct LogOptions {
   /// of any other log a preset or a TOML file of mjcf/trace/read/column_map.h; "": ours
   std::string columns;
   std::vector<std::string> joints;  ///< the robot's, as RecordingOptions has them
-  bool currents =
-      false;  ///< whether tau may be currents, which LogReader::use_gains() or Robot::make_torques() then mends
+  /// whether the caller makes torques of currents, and adds gravity, by LogReader's functions or
+  /// Robot::make_torques()
+  bool has_robot = false;
 };
 
 /// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag, sample by sample.
@@ -35,6 +37,8 @@ class LogReader final : public SampleSource {
   /// Makes torques of currents, if it has these, by the gains of the drives [N m/A].
   /// @throws std::invalid_argument as require_gains does
   void use_gains(const Eigen::VectorXd& gain);
+  /// Adds gravity(q) [N m] to a tau without it, if that is what it has.
+  void use_gravity(std::function<Eigen::VectorXd(const Eigen::VectorXd& q)> gravity);
 
   const RecordingContents& contents() const override;
   bool next(RecordedSample& sample) override;
@@ -62,8 +66,9 @@ struct RecordedLog {
   Trace trace;               ///< what could be used
   std::int64_t skipped = 0;  ///< rows, or messages of the channel
   bool contradicts = false;  ///< as LogReader says
-  /// Whether most of it could be used, and q and qd agree.
-  bool usable() const { return skipped <= trace.size() && !contradicts; }
+  bool doubtful = false;  ///< whether its torques may be another robot's (bench/replay/robot_log.h)
+  /// Whether most of it could be used, q and qd agree, and the torques may be the robot's.
+  bool usable() const { return skipped <= trace.size() && !contradicts && !doubtful; }
   /// Asked by programs that write down what they learn from it.
   /// @throws std::invalid_argument if q and qd contradict each other
   void require_consistent(const std::string& path) const;

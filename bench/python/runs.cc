@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/logs/read_log.h"
 #include "bench/python/arrays.h"
+#include "bench/replay/robot_log.h"
 #include "bench/roster/robots.h"
 #include "mjcf/trace/read/npy_writer.h"
 #include "mjcf/trace/trace.h"
@@ -54,14 +54,10 @@ py::object or_none(const Eigen::MatrixXd& m) {
 Trace read(const std::string& path, const std::string& columns, const std::string& channel,
            const std::string& robot_name) {
   const Robot* const of = robot_name.empty() ? nullptr : &robot(robot_name);
-  LogOptions options{.channel = channel, .columns = columns, .currents = of != nullptr};
-  if (of != nullptr) options.joints = of->joints();
-  RecordedLog log = read_any_log(path, options);
+  RecordedLog log = of != nullptr
+                        ? robot_log(*of, path, channel, columns)
+                        : read_any_log(path, LogOptions{.channel = channel, .columns = columns});
   log.require_consistent(path);
-  if (of != nullptr) {
-    of->make_torques(log.trace);
-    of->require_joints(log.trace, path);
-  }
   return std::move(log.trace);
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bench/roster/baselines.h"
+#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
@@ -118,6 +119,7 @@ std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool 
 
 void Robot::make_torques(Trace& trace) const {
   tauext::make_torques(trace, gains());
+  if (trace.tau_without_gravity) add_gravity(trace, tree_of(model()));
 }
 
 void Robot::require_joints(int joints, const std::string& log) const {

@@ -74,8 +74,9 @@ class Robot {
   /// the link that is touched, where a torque exceeds small_torque().
   /// @throws std::invalid_argument for an unknown point, listing the known ones, and as arm_forces
   std::unique_ptr<const ArmForces> forces_at(const std::string& site, bool moment) const;
-  /// Makes torques of currents, by the gains of the robot's file.
-  /// @throws std::invalid_argument as tauext::make_torques()
+  /// Makes torques of currents, by the gains of the robot's file, and adds gravity to those without
+  /// it.
+  /// @throws std::invalid_argument as tauext::make_torques() and add_gravity()
   void make_torques(Trace& trace) const;
   /// @throws std::invalid_argument for samples of another number of joints, naming the log unless
   /// it is ""

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is done to a simulated arm's recording is what is found; nothing is found where nothing is.
+#include "bench/replay/torque_fit.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mjcf/plant/simulated.h"
+#include "mjcf/record.h"
+#include "mjcf/scenarios/generic.h"
+#include "mjcf/trace/known.h"
+
+namespace tauext::test {
+namespace {
+
+struct Robot {
+  explicit Robot(const std::string& file)
+      : model(simulated(load_mjcf(file))), arm(tree_of(model)) {}
+
+  // without the truth, as a robot has it
+  Trace run(const std::string& scenario, double velocity_noise = 1e-3) const {
+    const std::vector<Scenario> all = generic_scenarios(model);
+    const Scenario& s =
+        find_known(all, "scenario", scenario, [](const Scenario& one) { return one.name; });
+    Sensors sensors;
+    sensors.velocity_noise = velocity_noise;
+    Trace log = record(model, s, sensors);
+    log.tau_ext.resize(0, 0);
+    log.contact.clear();
+    return log;
+  }
+  static TorqueFit fit_of(const ArmTree& arm, const Trace& log) {
+    TorqueFit f(arm, log.torque_at_instants);
+    for (int k = 0; k < log.size(); ++k)
+      f.take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
+             false, {});
+    return f;
+  }
+  static std::string words_of(const ArmTree& arm, const Trace& log) {
+    const TorqueFit f = fit_of(arm, log);
+    const std::string why = f.contradiction();
+    return why.empty() ? f.doubt() : why;
+  }
+  std::string contradiction(const Trace& log) const { return fit_of(arm, log).contradiction(); }
+  // of contradiction or of doubt
+  std::string words(const Trace& log) const { return words_of(arm, log); }
+
+  Model model;
+  ArmTree arm;
+};
+
+class TorqueFits : public testing::Test {
+ protected:
+  static Robot arm6() { return Robot("bench/examples/arm6.json"); }
+
+  static void expect(const std::string& why, const std::string& words) {
+    EXPECT_NE(why.find(words), std::string::npos) << '"' << why << '"';
+  }
+};
+
+TEST_F(TorqueFits, NothingIsWrongWithTheArmsOwn) {
+  const Robot robot = arm6();
+  for (const char* scenario : {"free", "in_motion", "push", "blow", "clamp", "sine", "ramp"})
+    EXPECT_EQ(robot.words(robot.run(scenario)), "") << scenario;
+}
+
+// the arm leans against a pad, or carries a load, most of the time, and nobody says so
+TEST_F(TorqueFits, ALoadContradictsNothing) {
+  const Robot robot = arm6();
+  for (const char* scenario : {"contact", "step"})
+    EXPECT_EQ(robot.contradiction(robot.run(scenario)), "") << scenario;
+}
+
+// of a file that knows neither rotors nor friction
+TEST_F(TorqueFits, NothingIsWrongWhereTheFileLacksFriction) {
+  const Robot robot = arm6();
+  ArmTree bare = robot.arm;
+  for (TreeJoint& j : bare.joints) j.armature = j.viscous = j.dry = j.offset = j.viscous_skew = 0;
+  for (const char* scenario : {"free", "in_motion", "push"})
+    EXPECT_EQ(Robot::words_of(bare, robot.run(scenario)), "") << scenario;
+}
+
+TEST_F(TorqueFits, GravityThatIsMissingIsNamed) {
+  const Robot robot = arm6();
+  for (const char* scenario : {"free", "in_motion"}) {
+    Trace log = robot.run(scenario);
+    const auto gravity = gravity_of(robot.arm);
+    for (int k = 0; k < log.size(); ++k) log.tau.col(k) -= gravity(log.q.col(k));
+    expect(robot.words(log), "[tau_without_gravity]");
+    log.tau_without_gravity = true;
+    add_gravity(log, robot.arm);
+    EXPECT_EQ(robot.contradiction(log), "");
+  }
+}
+
+TEST_F(TorqueFits, CurrentsAndOtherUnitsAreNamedWithTheirFactors) {
+  const Robot robot = arm6();
+  for (const char* scenario : {"free", "in_motion"}) {
+    const Trace log = robot.run(scenario);
+    Trace other = log;
+    other.tau = robot.arm.gain.cwiseInverse().asDiagonal() * log.tau;
+    expect(robot.words(other), "is 0.0");
+    expect(robot.words(other), "currents");
+    for (const double factor : {1000., 0.0001, 4.448, -1.}) {
+      other.tau = factor * log.tau;
+      EXPECT_NE(robot.words(other), "") << factor;
+    }
+  }
+}
+
+TEST_F(TorqueFits, ASignThatIsTurnedIsNamedInEachJoint) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  for (int j = 0; j < 6; ++j) {
+    Trace other = log;
+    other.tau.row(j) *= -1;
+    expect(robot.contradiction(other), fmt::format("of joint {} ", j + 1));
+    expect(robot.contradiction(other), "sign");
+  }
+}
+
+TEST_F(TorqueFits, JointsInEachOthersColumnsAreNamed) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  for (int a = 0; a < 6; ++a) {
+    for (int b = a + 1; b < 6; ++b) {
+      Trace other = log;
+      other.tau.row(a).swap(other.tau.row(b));
+      expect(robot.contradiction(other), fmt::format("of joints {} and {}", a + 1, b + 1));
+      other.q.row(a).swap(other.q.row(b)), other.qd.row(a).swap(other.qd.row(b));
+      EXPECT_NE(robot.words(other), "") << a + 1 << " " << b + 1;
+    }
+  }
+}
+
+TEST_F(TorqueFits, AnotherArmIsDoubted) {
+  const Robot robot = arm6();
+  ArmTree light = robot.arm;
+  for (TreeJoint& j : light.joints) j.mass *= 2.5, j.inertia *= 2.5;
+  expect(Robot::words_of(light, robot.run("free")), "times the torque of the model");
+}
+
+TEST_F(TorqueFits, OutliersDecideNothing) {
+  const Robot robot = arm6();
+  Trace log = robot.run("in_motion");
+  for (int k = 0; k < log.size(); k += 1000) log.tau.col(k).setConstant(1e5);
+  EXPECT_EQ(robot.words(log), "");
+  log.tau *= 0.1;
+  expect(robot.words(log), "is 0.1");
+}
+
+// in one pose a load and another unit look the same: that is no reason to refuse it
+TEST_F(TorqueFits, APoseAloneIsADoubtAtMost) {
+  const Robot robot = arm6();
+  Trace log = robot.run("free");
+  for (int k = 1; k < log.size(); ++k)
+    log.q.col(k) = log.q.col(0), log.qd.col(k).setZero(), log.tau.col(k) = log.tau.col(0);
+  EXPECT_EQ(robot.words(log), "");
+  log.tau *= 1.6;
+  EXPECT_EQ(robot.contradiction(log), "");
+  log.tau *= 0.1 / 1.6;
+  EXPECT_EQ(robot.contradiction(log), "");
+  expect(robot.words(log), "currents");
+  // a sensor's offset on a joint that carries nothing
+  Trace offset = robot.run("free");
+  offset.tau.row(5).array() -= 0.5;
+  EXPECT_EQ(robot.words(offset), "");
+}
+
+}  // namespace
+}  // namespace tauext::test

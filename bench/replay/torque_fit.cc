@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/replay/torque_fit.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+constexpr double kWindow = 0.1, kStep = 0.01, kGap = 0.25;  // [s]
+constexpr std::size_t kMaxWindows = 4096, kMinWindows = 10;
+constexpr double kMinMisfit = 0.1;        // [1] of the model's mean square
+constexpr double kMinOrderMisfit = 1e-4;  // [1] likewise, where joints are exchanged
+constexpr double kMaxRatio = 0.1;         // [1] of mean squares: what a cause may leave unexplained
+constexpr double kMinVariation = 1e-4;    // [1] of mean squares: less is one pose
+constexpr double kMinTorqueShare = 0.05;  // [1] of a joint's usual torque, which it has to carry
+
+std::string listed(const std::vector<int>& joints) {
+  return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
+}
+
+// the mean square of of(window) [N m], without the worst fifth
+template <class Windows, class Of>
+double misfit(const Windows& windows, Of of) {
+  if (windows.empty()) return 0;
+  std::vector<double> squares;
+  for (const auto* w : windows) squares.push_back(std::pow(of(*w), 2));
+  const std::size_t kept = squares.size() - squares.size() / 5;
+  std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
+                   squares.end());
+  double sum = 0;
+  for (std::size_t i = 0; i < kept; ++i) sum += squares[i];
+  return sum / static_cast<double>(kept);
+}
+
+template <class Windows, class Of>
+double median(const Windows& windows, Of of) {
+  std::vector<double> all;
+  for (const auto* w : windows) all.push_back(of(*w));
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
+
+// what the model and a constant load leave
+template <class Windows>
+double misfit_with_load(const Windows& windows, int j) {
+  const auto left = [j](const auto& w) { return w.tau[j] - w.model[j]; };
+  const double load = median(windows, left);
+  return misfit(windows, [&](const auto& w) { return left(w) - load; });
+}
+
+}  // namespace
+
+TorqueFit::TorqueFit(const ArmTree& arm, bool at_instants)
+    : arm_(arm), model_(detail::filled<TiedTree>(arm)), at_instants_(at_instants), n_(arm.dof()) {}
+
+TorqueFit::ModelSample TorqueFit::sample_of(const Sample& y) const {
+  ModelSample at;
+  VectorN qd = VectorN::Zero();
+  at.t = y.t, at.q.setZero();
+  at.q.head(n_) = y.q, qd.head(n_) = y.qd;
+  const auto d = model_.momentum_dynamics(at.q, qd);
+  at.momentum = d.B * qd, at.rest = model_.friction(qd) - d.bias;
+  at.gravity = model_.gravity(at.q);
+  return at;
+}
+
+void TorqueFit::begin(const Sample& y) {
+  begun_ = true;
+  first_ = newest_ = sample_of(y);
+  for (VectorN* v : {&tau_, &rest_, &gravity_}) v->setZero();
+}
+
+void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext) {
+  const double h = y.t - t_;
+  Eigen::VectorXd tau = y.tau;
+  if (tau_ext.size() > 0) tau -= tau_ext;
+  const bool usable = y.q.allFinite() && y.qd.allFinite() && tau.allFinite() && !contact;
+  const bool goes_on = usable && begun_ && h > 0 && h <= kGap;
+  if (goes_on) tau_.head(n_) += h * (at_instants_ ? Eigen::VectorXd((torque_ + tau) / 2) : torque_);
+  t_ = y.t, torque_ = std::move(tau);
+  if (!goes_on) {
+    begun_ = false;
+    if (usable) begin(y);
+    return;
+  }
+  if (y.t - newest_.t < kStep * (1 - 1e-6)) return;
+  const ModelSample at = sample_of(y);
+  rest_ += (at.t - newest_.t) / 2 * (at.rest + newest_.rest);
+  gravity_ += (at.t - newest_.t) / 2 * (at.gravity + newest_.gravity);
+  newest_ = at;
+  if (at.t - first_.t >= kWindow * (1 - 1e-6)) close(at);
+}
+
+void TorqueFit::close(const ModelSample& at) {
+  const double T = at.t - first_.t;
+  if (count_++ % every_ == 0)
+    windows_.push_back({tau_ / T, (at.momentum - first_.momentum + rest_) / T, gravity_ / T,
+                        (at.q + first_.q) / 2});
+  if (windows_.size() == kMaxWindows) {
+    for (std::size_t i = 0; 2 * i < windows_.size(); ++i) windows_[i] = windows_[2 * i];
+    windows_.resize(kMaxWindows / 2);
+    every_ *= 2;
+  }
+  first_ = at;
+  for (VectorN* v : {&tau_, &rest_, &gravity_}) v->setZero();
+}
+
+// at most 512, from all of the recording
+TorqueFit::Windows TorqueFit::thinned() const {
+  Windows some;
+  for (std::size_t i = 0; i < windows_.size(); i += 1 + windows_.size() / 512)
+    some.push_back(&windows_[i]);
+  return some;
+}
+
+// those in which a joint carries something, and hardly more than that
+TorqueFit::Windows TorqueFit::slow(int j) const {
+  Windows some;
+  for (const WindowMean& w : windows_) {
+    const double g = std::abs(w.gravity[j]);
+    if (g > kMinTorqueShare * arm_.usual_torque[j] && std::abs(w.model[j] - w.gravity[j]) < 0.2 * g)
+      some.push_back(&w);
+  }
+  return some;
+}
+
+// without gravity, or in another unit, in at least half of the joints that carry something
+TorqueFit::Cause TorqueFit::by_gravity() const {
+  std::vector<int> without, scaled;
+  std::vector<double> factors;
+  bool without_varied = false, scaled_varied = false;
+  std::size_t seen = 0;
+  for (int j = 0; j < n_; ++j) {
+    const Windows windows = slow(j);
+    if (windows.size() < kMinWindows) continue;
+    ++seen;
+    const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
+    const double residual =
+        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    if (residual < kMinMisfit * power) continue;
+    const double s = median(windows, [j](const WindowMean& w) { return w.tau[j] / w.model[j]; });
+    const double without_gravity =
+        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j] + w.gravity[j]; });
+    const double by_factor =
+        misfit(windows, [j, s](const WindowMean& w) { return w.tau[j] - s * w.model[j]; });
+    // of a load's residual, how much a better cause may leave: nothing where the pose is one
+    const double load = misfit_with_load(windows, j);
+    const double by_load = load > kMinVariation * residual ? kMaxRatio * load : 0;
+    if (without_gravity < kMaxRatio * residual &&
+        (without_gravity < 10 * by_factor || std::abs(s) < 0.02)) {
+      without.push_back(j + 1);
+      without_varied = without_varied || without_gravity < by_load;
+    } else if (by_factor < kMaxRatio * residual && (s < 0.7 || s > 1.4)) {
+      scaled.push_back(j + 1);
+      factors.push_back(s);
+      scaled_varied = scaled_varied || by_factor < by_load;
+    }
+  }
+  if (!without.empty() && 2 * without.size() >= seen)
+    return {fmt::format("in slow poses tau of {} does not contain the torque of gravity. If the "
+                        "recording has it removed, use [tau_without_gravity] in a map (--columns)",
+                        listed(without)),
+            without_varied};
+  if (scaled.empty() || 2 * scaled.size() < seen) return {};
+  // a load makes factors, too: above 1, and each joint its own
+  const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+  const bool alike =
+      *least * *most > 0 && std::max(*least / *most, *most / *least) < (*least > 1 ? 1.1 : 2);
+  if (!alike || (*least > 1 && *least < 5 && scaled.size() == 1)) return {};
+  return {fmt::format("in slow poses tau of {} is {:.3g} times the torque of the model: {}",
+                      listed(scaled), fmt::join(factors, ", "),
+                      *most < 0
+                          ? "its sign is reversed; set `sign = -1` in a map (--columns)"
+                          : "are these currents, or is this another unit? In a map (--columns), "
+                            "[current] with `gain` (N m/A), or `unit`, `gain` and `sign` of [tau], "
+                            "say so"),
+          scaled_varied};
+}
+
+// of joints that carry little, too
+std::string TorqueFit::by_sign() const {
+  std::vector<int> reversed;
+  const Windows windows = thinned();
+  for (int j = 0; j < n_; ++j) {
+    const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
+    const double residual =
+        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    const double other =
+        misfit(windows, [j](const WindowMean& w) { return w.tau[j] + w.model[j]; });
+    if (residual > kMinMisfit * power && other < kMaxRatio * residual &&
+        other < kMaxRatio * misfit_with_load(windows, j))
+      reversed.push_back(j + 1);
+  }
+  if (reversed.empty()) return "";
+  return fmt::format(
+      "the sign of tau of {} is reversed: set `sign` of [tau] in a map (--columns); where q and qd "
+      "are reversed, too, also that of [q] and [qd]",
+      listed(reversed));
+}
+
+// two joints in each other's columns, tau alone or all of them
+std::string TorqueFit::by_order() const {
+  const Windows windows = thinned();
+  // of residual(window, number of the window, joint), over all joints, by their size
+  const auto missed_by = [&](auto&& residual) {
+    double sum = 0;
+    for (int j = 0; j < n_; ++j) {
+      std::size_t k = 0;
+      sum += misfit(windows, [&](const WindowMean& w) { return residual(w, k++, j); }) /
+             std::pow(arm_.usual_torque[j], 2);
+    }
+    return sum;
+  };
+  const double missed =
+      missed_by([](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; });
+  double least = kMaxRatio * missed;
+  std::string best;
+  std::vector<VectorN> gravity(windows.size());
+  for (int a = 0; a < n_; ++a) {
+    for (int b = a + 1; b < n_; ++b) {
+      const auto other = [a, b](int j) { return j == a ? b : j == b ? a : j; };
+      const auto consider = [&](double misses, const char* what) {
+        if (!(misses < least)) return;
+        least = misses;
+        best = fmt::format(
+            "{} of joints {} and {} fit the model if they are exchanged: name the columns in a map "
+            "(--columns), or set its `order`",
+            what, a + 1, b + 1);
+      };
+      consider(missed_by([&](const WindowMean& w, std::size_t, int j) {
+                 return w.tau[other(j)] - w.model[j];
+               }),
+               "tau");
+      // the model's motion is that of the wrong joints, so only gravity is compared
+      for (std::size_t k = 0; k < windows.size(); ++k) {
+        VectorN q = windows[k]->q;
+        std::swap(q[a], q[b]);
+        gravity[k] = model_.gravity(q);
+      }
+      consider(missed_by([&](const WindowMean& w, std::size_t k, int j) {
+                 return w.tau[other(j)] - gravity[k][j];
+               }),
+               "q, qd and tau");
+    }
+  }
+  const double power =
+      missed_by([](const WindowMean& w, std::size_t, int j) { return w.model[j]; });
+  return missed > kMinOrderMisfit * power ? best : "";
+}
+
+std::string TorqueFit::contradiction() const {
+  if (windows_.size() < kMinWindows) return "";
+  if (std::string why = by_order(); !why.empty()) return why;
+  if (Cause cause = by_gravity(); cause.varied) return cause.words;
+  return by_sign();
+}
+
+std::string TorqueFit::doubt() const {
+  if (const Cause cause = by_gravity(); !cause.varied && !cause.words.empty())
+    return cause.words + "; or else the arm carries a load that nobody knows of";
+  double power = 0, residual = 0;
+  for (int j = 0; j < n_; ++j) {
+    const Windows windows = slow(j);
+    if (windows.size() < kMinWindows) continue;
+    power += misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
+    residual += misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+  }
+  if (!(residual > power)) return "";
+  return fmt::format(
+      "in slow poses tau is {:.3g} N m away from the {:.3g} N m that hold the robot's masses: is "
+      "this recording of this robot, are the joints in this order, and did it carry an unknown "
+      "load?",
+      std::sqrt(residual), std::sqrt(power));
+}
+
+bool fits(const TorqueFit& fit, const std::string& path) {
+  if (const std::string why = fit.contradiction(); !why.empty())
+    throw std::invalid_argument(fmt::format("{}: {}", path, why));
+  const std::string why = fit.doubt();
+  if (!why.empty()) say(fmt::format("{}: {}", path, why));
+  return why.empty();
+}
+
+bool torques_fit(const ArmTree& arm, const Trace& log, const std::string& path) {
+  TorqueFit fit(arm, log.torque_at_instants);
+  for (int k = 0; k < log.size(); ++k)
+    fit.take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
+             !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
+             log.has_truth() ? Eigen::VectorXd(log.tau_ext.col(k)) : Eigen::VectorXd());
+  return fits(fit, path);
+}
+
+}  // namespace tauext

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Whether what a recording calls torque is what moves the arm: torques of the link's side, in N m,
+/// with gravity in them, of the joints whose columns they stand in.
+///
+/// Over windows of 0.1 s the mean torque is compared with that of the arm's model, by (ii) of
+/// bench/calibrate/arm_motion.h, and with what it would be if the recording had it otherwise:
+/// without gravity, with another sign, in another unit, of another joint. The fifth of the windows
+/// that fits worst is left out each time: outliers, and touches that nobody labelled.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "estimators/types.h"
+#include "mjcf/plant/any_tree.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// A recording that goes by; of a long one every second window is kept, or every fourth, and so on.
+class TorqueFit {
+ public:
+  /// @param at_instants Trace::torque_at_instants
+  /// @throws std::invalid_argument for an arm that is too large for estimators
+  TorqueFit(const ArmTree& arm, bool at_instants);
+
+  /// The next sample; none in a contact.
+  /// @param tau_ext [N m] true, which is no part of what the masses take; empty if nobody knows
+  void take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext);
+
+  /// How the recording contradicts the arm, with the factors that were seen and the remedy; "" if
+  /// it does not. A cause is named if it explains the measured torque ten times better (mean
+  /// square) than the model does, and than the model with a constant load does.
+  std::string contradiction() const;
+  /// Why it may be of another arm: in slow poses the model misses more than the torque that holds
+  /// the masses, or a constant load explains it, too, but an odd one. "" if neither is so.
+  std::string doubt() const;
+
+ private:
+  using VectorN = Vec<kMostCoordinates>;
+  // means over a window, of the measured torque, of the model's, and of gravity's share of it
+  struct WindowMean {
+    VectorN tau, model, gravity, q;
+  };
+  using Windows = std::vector<const WindowMean*>;
+  // a sample at which the model was asked
+  struct ModelSample {
+    double t = 0;
+    VectorN momentum, rest, gravity, q;
+  };
+  struct Cause {
+    std::string words;    // "": none
+    bool varied = false;  // no constant load explains it
+  };
+
+  ModelSample sample_of(const Sample& y) const;
+  void begin(const Sample& y);
+  void close(const ModelSample& at);
+  Windows thinned() const;
+  Windows slow(int joint) const;
+  Cause by_gravity() const;
+  std::string by_sign() const;
+  std::string by_order() const;
+
+  ArmTree arm_;
+  TiedTree model_;
+  bool at_instants_;
+  int n_;                         // joints
+  double t_ = 0;                  // [s] of the last sample
+  Eigen::VectorXd torque_;        // and its tau
+  ModelSample first_, newest_;    // of the window
+  VectorN tau_, rest_, gravity_;  // integrals over it
+  std::vector<WindowMean> windows_;
+  std::size_t every_ = 1, count_ = 0;
+  bool begun_ = false;
+};
+
+/// At the end: whether it is that arm's; says on standard error why it may not be.
+/// @throws std::invalid_argument naming the path where it contradicts the arm
+bool fits(const TorqueFit& fit, const std::string& path);
+
+/// The same of a whole recording.
+bool torques_fit(const ArmTree& arm, const Trace& log, const std::string& path);
+
+}  // namespace tauext
