@@ -19,8 +19,9 @@ constexpr std::size_t kMaxWindows = 4096, kMinWindows = 10;
 constexpr double kMinMisfit = 0.1;        // [1] of the model's mean square
 constexpr double kMinOrderMisfit = 1e-4;  // [1] likewise, where joints are exchanged
 constexpr double kMaxRatio = 0.1;         // [1] of mean squares: what a cause may leave unexplained
-constexpr double kMinVariation = 1e-4;    // [1] of mean squares: less is one pose
-constexpr double kMinTorqueShare = 0.05;  // [1] of a joint's usual torque, which it has to carry
+constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
+constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
+constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
 
 std::string listed(const std::vector<int>& joints) {
   return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
@@ -133,19 +134,19 @@ TorqueFit::Windows TorqueFit::slow(int j) const {
   return some;
 }
 
-// without gravity, or in another unit, in at least half of the joints that carry something
+// without gravity, or in another unit, in joints that carry most of what is carried
 TorqueFit::Cause TorqueFit::by_gravity() const {
   std::vector<int> without, scaled;
   std::vector<double> factors;
-  bool without_varied = false, scaled_varied = false;
-  std::size_t seen = 0;
+  bool without_varied = false, scaled_varied = true;
+  double all = 0, power_without = 0, power_scaled = 0;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    ++seen;
     const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
     const double residual =
         misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    all += power;
     if (residual < kMinMisfit * power) continue;
     const double s = median(windows, [j](const WindowMean& w) { return w.tau[j] / w.model[j]; });
     const double without_gravity =
@@ -158,32 +159,55 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
     if (without_gravity < kMaxRatio * residual &&
         (without_gravity < 10 * by_factor || std::abs(s) < 0.02)) {
       without.push_back(j + 1);
+      power_without += power;
       without_varied = without_varied || without_gravity < by_load;
     } else if (by_factor < kMaxRatio * residual && (s < 0.7 || s > 1.4)) {
       scaled.push_back(j + 1);
       factors.push_back(s);
-      scaled_varied = scaled_varied || by_factor < by_load;
+      power_scaled += power;
+      scaled_varied = scaled_varied && by_factor < by_load;
     }
   }
-  if (!without.empty() && 2 * without.size() >= seen)
+  if (!without.empty() && power_without > all / 2)
     return {fmt::format("in slow poses tau of {} does not contain the torque of gravity. If the "
                         "recording has it removed, use [tau_without_gravity] in a map (--columns)",
                         listed(without)),
             without_varied};
-  if (scaled.empty() || 2 * scaled.size() < seen) return {};
-  // a load makes factors, too: above 1, and each joint its own
+  if (scaled.empty() || !(power_scaled > all / 2)) return {};
   const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
-  const bool alike =
-      *least * *most > 0 && std::max(*least / *most, *most / *least) < (*least > 1 ? 1.1 : 2);
-  if (!alike || (*least > 1 && *least < 5 && scaled.size() == 1)) return {};
+  // other masses than the file's, and loads, make factors, too, but each joint its own
+  const double spread =
+      *least * *most > 0 ? std::max(*least / *most, *most / *least) : kMaxSpreadOfGains;
+  const bool far = *most < 0.5 || *least > 5;
+  if (*least > 1 && !far && !(spread < 1.2 && factors.size() > 2)) return {};  // a load
   return {fmt::format("in slow poses tau of {} is {:.3g} times the torque of the model: {}",
                       listed(scaled), fmt::join(factors, ", "),
-                      *most < 0
-                          ? "its sign is reversed; set `sign = -1` in a map (--columns)"
-                          : "are these currents, or is this another unit? In a map (--columns), "
-                            "[current] with `gain` (N m/A), or `unit`, `gain` and `sign` of [tau], "
-                            "say so"),
-          scaled_varied};
+                      *most < 0 ? "its sign is reversed; set `sign = -1` in a map (--columns)"
+                                : "are these currents, or is this another unit? In a map "
+                                  "(--columns), [current] with `gain` (N m/A), or `unit`, `gain` "
+                                  "and `sign` of [tau], say so"),
+          scaled_varied && far && spread < kMaxSpreadOfGains};
+}
+
+// a channel that says the same all the time, though the arm moves
+std::string TorqueFit::by_rest() const {
+  std::vector<int> dead;
+  const Windows windows = thinned();
+  for (int j = 0; j < n_; ++j) {
+    const auto range = [&](auto&& of) {
+      double least = of(*windows[0]), most = least;
+      for (const WindowMean* w : windows)
+        least = std::min(least, of(*w)), most = std::max(most, of(*w));
+      return most - least;
+    };
+    const double varies = range([j](const WindowMean& w) { return w.model[j]; });
+    if (varies > kMinTorqueShare / 5 * arm_.usual_torque[j] &&
+        range([j](const WindowMean& w) { return w.tau[j]; }) < 1e-9 * varies)
+      dead.push_back(j + 1);
+  }
+  if (dead.empty()) return "";
+  return fmt::format("tau of {} never changes, though the arm moves: is it measured?",
+                     listed(dead));
 }
 
 // of joints that carry little, too
@@ -222,7 +246,10 @@ std::string TorqueFit::by_order() const {
   };
   const double missed =
       missed_by([](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; });
-  double least = kMaxRatio * missed;
+  double with_loads = 0;  // a constant one on each joint, like the offset of a sensor
+  for (int j = 0; j < n_; ++j)
+    with_loads += misfit_with_load(windows, j) / std::pow(arm_.usual_torque[j], 2);
+  double least = kMaxRatio * std::min(missed, with_loads);
   std::string best;
   std::vector<VectorN> gravity(windows.size());
   for (int a = 0; a < n_; ++a) {
@@ -257,8 +284,13 @@ std::string TorqueFit::by_order() const {
   return missed > kMinOrderMisfit * power ? best : "";
 }
 
+bool TorqueFit::is_long_enough() const {
+  return windows_.size() >= kMinWindows;
+}
+
 std::string TorqueFit::contradiction() const {
-  if (windows_.size() < kMinWindows) return "";
+  if (!is_long_enough()) return "";
+  if (std::string why = by_rest(); !why.empty()) return why;
   if (std::string why = by_order(); !why.empty()) return why;
   if (Cause cause = by_gravity(); cause.varied) return cause.words;
   return by_sign();
@@ -266,7 +298,7 @@ std::string TorqueFit::contradiction() const {
 
 std::string TorqueFit::doubt() const {
   if (const Cause cause = by_gravity(); !cause.varied && !cause.words.empty())
-    return cause.words + "; or else the arm carries a load that nobody knows of";
+    return cause.words + ". Or else its masses are not those of the file, or it carries a load";
   double power = 0, residual = 0;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
@@ -285,6 +317,11 @@ std::string TorqueFit::doubt() const {
 bool fits(const TorqueFit& fit, const std::string& path) {
   if (const std::string why = fit.contradiction(); !why.empty())
     throw std::invalid_argument(fmt::format("{}: {}", path, why));
+  if (!fit.is_long_enough())
+    say(
+        fmt::format("{}: too short to compare its torques with the robot's: {} windows of {:g} s "
+                    "without a gap or a contact are needed",
+                    path, kMinWindows, kWindow));
   const std::string why = fit.doubt();
   if (!why.empty()) say(fmt::format("{}: {}", path, why));
   return why.empty();

@@ -32,12 +32,15 @@ class TorqueFit {
   /// @param tau_ext [N m] true, which is no part of what the masses take; empty if nobody knows
   void take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext);
 
+  /// Whether there are windows enough to judge by.
+  bool is_long_enough() const;
   /// How the recording contradicts the arm, with the factors that were seen and the remedy; "" if
   /// it does not. A cause is named if it explains the measured torque ten times better (mean
   /// square) than the model does, and than the model with a constant load does.
   std::string contradiction() const;
   /// Why it may be of another arm: in slow poses the model misses more than the torque that holds
-  /// the masses, or a constant load explains it, too, but an odd one. "" if neither is so.
+  /// the masses, or a cause explains it that other masses or a load explain, too. "" if neither is
+  /// so.
   std::string doubt() const;
 
  private:
@@ -65,6 +68,7 @@ class TorqueFit {
   Cause by_gravity() const;
   std::string by_sign() const;
   std::string by_order() const;
+  std::string by_rest() const;
 
   ArmTree arm_;
   TiedTree model_;

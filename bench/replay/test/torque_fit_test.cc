@@ -164,9 +164,32 @@ TEST_F(TorqueFits, APoseAloneIsADoubtAtMost) {
   EXPECT_EQ(robot.contradiction(log), "");
   expect(robot.words(log), "currents");
   // a sensor's offset on a joint that carries nothing
-  Trace offset = robot.run("free");
-  offset.tau.row(5).array() -= 0.5;
-  EXPECT_EQ(robot.words(offset), "");
+  for (const double offset : {-3., 0.5, 2.}) {
+    Trace other = robot.run("free");
+    other.tau.row(5).array() += offset;
+    EXPECT_EQ(robot.words(other), "") << offset;
+  }
+}
+
+TEST_F(TorqueFits, ATorqueThatNeverChangesIsNamed) {
+  const Robot robot = arm6();
+  for (const int j : {1, 2, 5}) {
+    Trace log = robot.run("free");
+    log.tau.row(j).setConstant(log.tau(j, 0));
+    expect(robot.contradiction(log), fmt::format("of joint {} never changes", j + 1));
+    log.tau.setZero();
+    expect(robot.contradiction(log), "joints 1, 2, 3, 4, 5, 6 never changes");
+  }
+}
+
+TEST_F(TorqueFits, OtherMassesThanTheFilesAreADoubt) {
+  const Robot robot = arm6();
+  ArmTree tool = robot.arm;  // the file has a tool of 3 kg at the wrist that the arm did not carry
+  TreeJoint& wrist = tool.joints.back();
+  wrist.center *= wrist.mass / (wrist.mass + 3);
+  wrist.mass += 3;
+  const TorqueFit f = Robot::fit_of(tool, robot.run("free"));
+  EXPECT_EQ(f.contradiction(), "");
 }
 
 }  // namespace

@@ -182,6 +182,9 @@ struct RecordingReader::Impl {
   MappedColumns known() {
     MappedColumns all = map.mapped(rows->columns(), path);
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
+    if (map.rate() > 0)
+      skipped.notes.push_back(
+          fmt::format("the time is counted, {:g} rows a second, as the map says", map.rate()));
     if (std::string note = map.choose_torque(all); !note.empty())
       skipped.notes.push_back(std::move(note));
     if (is_bag(path) && joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
