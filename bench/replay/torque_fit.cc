@@ -139,6 +139,7 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
   std::vector<int> without, scaled;
   std::vector<double> factors;
   bool without_varied = false, scaled_varied = true;
+  int seen = 0;
   double all = 0, power_without = 0, power_scaled = 0;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
@@ -146,7 +147,7 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
     const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
     const double residual =
         misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
-    all += power;
+    ++seen, all += power;
     if (residual < kMinMisfit * power) continue;
     const double s = median(windows, [j](const WindowMean& w) { return w.tau[j] / w.model[j]; });
     const double without_gravity =
@@ -186,7 +187,7 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
                                 : "are these currents, or is this another unit? In a map "
                                   "(--columns), [current] with `gain` (N m/A), or `unit`, `gain` "
                                   "and `sign` of [tau], say so"),
-          scaled_varied && far && spread < kMaxSpreadOfGains};
+          scaled_varied && far && spread < kMaxSpreadOfGains && (factors.size() > 1 || seen == 1)};
 }
 
 // a channel that says the same all the time, though the arm moves
