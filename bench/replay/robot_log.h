@@ -10,8 +10,8 @@
 
 namespace tauext {
 
-/// All of it, with torques in N m, and its report. Where the torques may be another robot's, that
-/// is said, and the log is not usable().
+/// All of it, with torques in N m, and its report. Where the torques may be another robot's, it
+/// prints why, and the log is not usable().
 /// @throws std::runtime_error or std::invalid_argument naming the path and the reason, also where
 /// the torques contradict the robot (bench/replay/torque_fit.h)
 RecordedLog robot_log(const Robot& robot, const std::string& path, const std::string& channel,

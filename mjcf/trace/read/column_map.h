@@ -62,7 +62,7 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 /// A table of TOML for each quantity that there is: `columns`, a regular expression for their whole
 /// names (joints in the order of the number in it), a list of names, or a list of numbers from 1;
 /// `unit`, `gain` and `sign`, one for all or one for each of these columns; `held` of a torque
-/// (kTorques), true for `tau` unless it is said. A torque takes the place of the preset's, and its
+/// (kTorques), by default true for `tau` alone. A torque takes the place of the preset's, and its
 /// columns where it has none. Above the tables: `preset`, a map to begin with, `separator`,
 /// `header` (false: no line of names), `order` (which joint of the recording each joint of the
 /// robot is, from 1), `rate` [Hz] instead of [t], `velocity_filter` [rad/s].

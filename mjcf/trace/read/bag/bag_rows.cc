@@ -117,7 +117,7 @@ void BagRows::look_for_quantities() {
 
 // whether one text, put before each of the robot's names or taken from it, gives names of messages
 bool BagRows::find_by_prefix(const std::set<std::string>& named) {
-  std::map<std::string, std::vector<std::string>> found;  // by what is said of it
+  std::map<std::string, std::vector<std::string>> found;  // by the words of the note
   const auto attempt = [&](const std::string& how, auto&& call) {
     std::vector<std::string> names;
     for (const std::string& joint : joints_) names.push_back(call(joint));
