@@ -30,11 +30,11 @@ constexpr double kSlowStep = 0.0105;  // [s] of 100 samples a second, with some 
 void report_skipped(const SkippedRows& s, const std::string& log) {
   for (const std::string& note : s.notes) say(log + ": " + note);
   if (s.total() == 0) return;
-  say(
-      fmt::format("{}: skipped {} row{}: {} with a wrong number of fields, {} not a number, {} not "
-                  "finite, {} with a time that is not the next one",
-                  log, s.total(), s.total() == 1 ? "" : "s", s.wrong_field_count, s.not_a_number,
-                  s.not_finite, s.time_order));
+  say(fmt::format(
+      "{}: skipped {} row{}: {} with a wrong number of fields, {} not a number, {} empty "
+      "or not finite, {} with a time that is not the next one{}",
+      log, s.total(), s.total() == 1 ? "" : "s", s.wrong_field_count, s.not_a_number, s.not_finite,
+      s.time_order, s.alone == 0 ? "" : fmt::format(", {} that nothing is joined to", s.alone)));
   for (const std::string& line : s.first) say("  " + line);
   if (s.total() > static_cast<int>(s.first.size())) say("  ...");
 }

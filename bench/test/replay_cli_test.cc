@@ -105,7 +105,7 @@ TEST_F(Programs, ReplayWorksWithoutTruthAndReportsBadRows) {
   const Outcome o = run("tauext-replay log.csv --robot wallmobot3 --estimator ndob --out est.csv");
   EXPECT_EQ(o.code, 0) << o.text;
   EXPECT_TRUE(o.says("skipped 2 rows")) << o.text;
-  EXPECT_TRUE(o.says("line 3: a field is not finite")) << o.text;
+  EXPECT_TRUE(o.says("line 3: column 'qd3' is empty or not finite")) << o.text;
   const std::string est = content("est.csv");
   EXPECT_EQ(std::count(est.begin(), est.end(), '\n'), 3);
   const Outcome truth =

@@ -19,15 +19,16 @@ namespace tauext {
 
 /// Rows of a recording that were left out, by the reason.
 struct SkippedRows {
-  int not_finite = 0;              ///< a field was NaN or infinite
+  int not_finite = 0;              ///< a field was NaN, infinite or empty
   int wrong_field_count = 0;       ///< too few or too many fields
   int not_a_number = 0;            ///< a field could not be read as a number
   int time_order = 0;              ///< t was not the next one
+  int alone = 0;                   ///< no row to join was near enough in time
   std::vector<std::string> first;  ///< "line 7: ...", of the first few
   std::vector<std::string> notes;  ///< the same of rows that were used, but not as they are
 
   /// All of them.
-  int total() const { return not_finite + wrong_field_count + not_a_number + time_order; }
+  int total() const { return not_finite + wrong_field_count + not_a_number + time_order + alone; }
 
   /// Keeps it if it is among the first.
   void say(long line, std::string_view reason) {

@@ -65,7 +65,7 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 /// (kTorques), by default true for `tau` alone. A torque takes the place of the preset's, and its
 /// columns where it has none. Above the tables: `preset`, a map to begin with, `separator`,
 /// `header` (false: no line of names), `order` (which joint of the recording each joint of the
-/// robot is, from 1), `rate` [Hz] instead of [t], `velocity_filter` [rad/s].
+/// robot is, from 1), `rate` [Hz] instead of [t], `velocity_filter` [rad/s], `join` [s].
 class ColumnMap {
  public:
   /// Which columns of a source make which quantity; those that it does not have are missing.
@@ -85,6 +85,9 @@ class ColumnMap {
   const CsvFormat& csv() const { return csv_; }  ///< how its text is written
   /// [Hz] at which rows follow each other, where they have no time; 0: they have one.
   double rate() const { return rate_; }
+  /// [s] how far apart rows that have a part of a sample each may be (joined_rows.h); 0: a row is a
+  /// sample.
+  double join() const { return join_; }
   /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
   double velocity_filter() const { return velocity_filter_; }
 
@@ -109,7 +112,7 @@ class ColumnMap {
   std::map<std::string, Wanted, std::less<>> wanted_;
   std::vector<int> order_;
   CsvFormat csv_;
-  double rate_ = 0, velocity_filter_ = 100;
+  double rate_ = 0, velocity_filter_ = 100, join_ = 0;
 };
 
 }  // namespace tauext

@@ -61,6 +61,8 @@ class MapReader {
     }
     if (map_.rate_ > 0 && all.contains("t"))
       fail(all, "it has a `rate` and a [t], and only one of them can say the time");
+    if (map_.rate_ > 0 && map_.join_ > 0)
+      fail(all, "it has a `rate`, and `join` is for rows with a time");
   }
 
   void read(const detail::ColumnPreset& p) {
@@ -152,10 +154,14 @@ class MapReader {
     } else if (key == "rate") {
       map_.rate_ = number(value, key);
       if (!(map_.rate_ > 0)) fail(value, "rate must be positive [Hz]");
+    } else if (key == "join") {
+      map_.join_ = number(value, key);
+      if (!(map_.join_ > 0 && map_.join_ <= 0.1))
+        fail(value, "join must be above 0 and at most 0.1 [s]: an arm moves on meanwhile");
     } else {
       fail(value, unknown("key", key,
                           {"preset", "separator", "header", "order", "rate", "velocity_filter",
-                           "and tables of quantities"})
+                           "join", "and tables of quantities"})
                       .what());
     }
   }

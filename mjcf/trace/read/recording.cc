@@ -2,18 +2,23 @@
 #include "mjcf/trace/read/recording.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/column_map_file.h"
+#include "mjcf/trace/read/joined_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/sample_layout.h"
 #include "mjcf/trace/read/text/csv_rows.h"
@@ -152,6 +157,70 @@ class VelocityFilter {
   VectorXd once_, twice_;
 };
 
+// rows that were left out for the numbers that they do not have
+class Holes {
+ public:
+  Holes(const SampleLayout& layout, const std::vector<std::string>& columns)
+      : layout_(layout), columns_(columns) {}
+
+  void take(const std::vector<double>& sample, long line) {
+    std::vector<std::size_t> missing;
+    for (std::size_t i = 1; i < sample.size(); ++i)
+      if (std::isnan(sample[i])) missing.push_back(i);
+    if (missing.empty()) return;
+    ++rows_;
+    constexpr std::size_t kMost = 4;
+    if (kinds_.size() == kMost && kinds_.count(missing) == 0) return;
+    Kind& kind = kinds_[std::move(missing)];
+    ++kind.rows;
+    if (kind.lines.size() < 3) kind.lines.push_back(line);
+  }
+
+  std::int64_t rows() const { return rows_; }
+
+  // which, and what to do where what one kind lacks another has, or rows that are whole
+  std::string in_words(bool some_are_whole) const {
+    std::string all;
+    std::vector<std::size_t> in_none;
+    for (const auto& [missing, kind] : kinds_) {
+      all += fmt::format("{}{} rows (line {}{}) have no {}", all.empty() ? "" : ", ", kind.rows,
+                         fmt::join(kind.lines, ", "), kind.rows > 3 ? " .." : "", listed(missing));
+      if (&kind == &kinds_.begin()->second) in_none = missing;
+      std::erase_if(in_none, [&](std::size_t i) {
+        return !std::binary_search(missing.begin(), missing.end(), i);
+      });
+    }
+    if (!in_none.empty() && !some_are_whole)
+      return fmt::format("{}; {} in none of them", all, listed(in_none));
+    return all +
+           ": where these come from several topics, join = 0.005 in a map of columns takes each "
+           "from the row nearest in time, within so many seconds";
+  }
+
+ private:
+  struct Kind {
+    std::int64_t rows = 0;
+    std::vector<long> lines;  // the first few
+  };
+
+  std::string listed(const std::vector<std::size_t>& numbers) const {
+    std::string all;
+    for (const std::size_t i : numbers) {
+      const std::string name = layout_.names[i].substr(0, layout_.names[i].find(']') + 1);
+      if (all.find(name) != std::string::npos) continue;
+      const auto column = static_cast<std::size_t>(layout_.rest[i - 1].first);
+      all += fmt::format("{}{} (column '{}')", all.empty() ? "" : ", ", layout_.names[i],
+                         printable_name(columns_[column]));
+    }
+    return all;
+  }
+
+  const SampleLayout& layout_;
+  const std::vector<std::string>& columns_;
+  std::int64_t rows_ = 0;
+  std::map<std::vector<std::size_t>, Kind> kinds_;  // by the numbers that they lack
+};
+
 }  // namespace detail
 
 struct RecordingReader::Impl {
@@ -161,14 +230,15 @@ struct RecordingReader::Impl {
         map(column_map(!o.columns.empty() ? o.columns
                        : is_bag(path)     ? "joint_state"
                                           : "tauext")),
-        rows(open_rows(
-            path,
-            {o.columns, o.topic, map.leaves_order_open() ? o.joints : std::vector<std::string>()},
-            map.csv())),
+        options{o.columns, o.topic,
+                map.leaves_order_open() ? o.joints : std::vector<std::string>()},
+        rows(open_rows(path, options, csv())),
         layout(layout_of(known(), rows->columns(), path, map.rate() == 0)),
+        holes(layout, rows->columns()),
         timed(0, skipped),
         filter(map.velocity_filter()) {
     rows->read_only(layout.columns());
+    if (map.join() > 0) joined.emplace(path, map.join(), layout.names, pace(), skipped);
     contents = {layout.dof,          layout.instants,    layout.currents,    layout.without_gravity,
                 layout.tau_ext >= 0, layout.driver >= 0, layout.contact >= 0};
     if (layout.qd < 0) {
@@ -176,6 +246,40 @@ struct RecordingReader::Impl {
           "no qd: it is made of q by two poles at {:g} rad/s and a difference (velocity_filter)",
           map.velocity_filter()));
     }
+  }
+
+  CsvFormat csv() const {
+    CsvFormat format = map.csv();
+    format.finite = false, format.holes = true;  // which are counted here
+    return format;
+  }
+
+  // the number whose rows are the samples where rows are joined: the torque's, unless something
+  // else comes much more rarely, which would have to be taken for several samples
+  std::size_t pace() const {
+    const std::unique_ptr<RowSource> again = open_rows(path, options, csv());
+    again->read_only(layout.columns());
+    std::vector<std::int64_t> count(layout.names.size());
+    SkippedRows of_no_matter;
+    for (std::vector<double> one, sample; again->next(one, of_no_matter);) {
+      layout.convert(one, sample);
+      for (std::size_t i = 0; i < count.size(); ++i) count[i] += !std::isnan(sample[i]);
+    }
+    const auto rarest = std::min_element(count.begin(), count.end());
+    if (*rarest == 0) {
+      const auto i = static_cast<std::size_t>(rarest - count.begin());
+      throw std::runtime_error(fmt::format("{}: no row has {}: column '{}' is empty throughout",
+                                           path, layout.names[i], printable_name(column_of(i))));
+    }
+    const auto tau = static_cast<std::size_t>(layout.tau);
+    const bool much_more = 2 * count[tau] > 3 * *rarest;
+    return much_more ? static_cast<std::size_t>(rarest - count.begin()) : tau;
+  }
+
+  // from which a number of a sample comes
+  const std::string& column_of(std::size_t i) const {
+    return rows->columns()[static_cast<std::size_t>(i == 0 ? layout.t.at(0).first
+                                                           : layout.rest[i - 1].first)];
   }
 
   // what the map finds
@@ -203,21 +307,50 @@ struct RecordingReader::Impl {
   // false if the source is at its end
   bool take_row() {
     if (!read_row()) return false;
-    std::vector<double> values = timed.spare();
-    values.resize(static_cast<std::size_t>(layout.size));
-    values[0] = map.rate() == 0 ? 0 : static_cast<double>(row_count - 1) / map.rate();
-    for (const auto& [c, gain] : layout.t) values[0] += gain * raw[static_cast<std::size_t>(c)];
-    for (std::size_t i = 0; i < layout.rest.size(); ++i) {
-      const auto& [c, gain] = layout.rest[i];
-      values[i + 1] = gain * raw[static_cast<std::size_t>(c)];
-    }
-    if (std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) {
-      timed.take(std::move(values), rows->number());
+    std::vector<double> sample = timed.spare();
+    layout.convert(raw, sample);
+    if (map.rate() > 0) sample[0] = static_cast<double>(row_count - 1) / map.rate();
+    if (joined) {
+      joined->take(std::move(sample), rows->number());
+      take_joined();
     } else {
-      ++skipped.not_finite;
-      skipped.say(rows->number(), "a field is not finite");
+      take_sample(std::move(sample), rows->number());
     }
     return true;
+  }
+
+  void take_sample(std::vector<double> sample, long line) {
+    const auto odd =
+        std::find_if_not(sample.begin(), sample.end(), [](double x) { return std::isfinite(x); });
+    if (odd == sample.end()) return timed.take(std::move(sample), line);
+    ++skipped.not_finite;
+    skipped.say(
+        line,
+        fmt::format("column '{}' is empty or not finite",
+                    printable_name(column_of(static_cast<std::size_t>(odd - sample.begin())))));
+    holes.take(sample, line);
+  }
+
+  void take_joined() {
+    long line = 0;
+    for (std::vector<double> sample; joined->next(sample, line);)
+      take_sample(std::move(sample), line);
+  }
+
+  void finish() {
+    if (joined) {
+      joined->finish();
+      take_joined();
+      skipped.notes.push_back(joined->in_words());
+    }
+    timed.finish();
+    ended = true;
+  }
+
+  // where most rows lack something
+  void note_holes() {
+    if (!std::exchange(noted, true) && holes.rows() > counter.so_far().samples)
+      skipped.notes.push_back(holes.in_words(true));
   }
 
   void fill(RecordedSample& s) {
@@ -237,9 +370,13 @@ struct RecordingReader::Impl {
   }
 
   [[noreturn]] void fail_empty() const {
-    throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{})", path,
+    std::string why;
+    if (holes.rows() > 0) why = "; " + holes.in_words(false);
+    if (joined)
+      why = "; with `join`, rows are in the order of their times, which are those of one clock";
+    throw std::runtime_error(fmt::format("{}: no usable row ({} skipped{}{}){}", path,
                                          skipped.total(), skipped.first.empty() ? "" : "; ",
-                                         skipped.first.empty() ? "" : skipped.first[0]));
+                                         skipped.first.empty() ? "" : skipped.first[0], why));
   }
 
   std::string path;
@@ -247,11 +384,14 @@ struct RecordingReader::Impl {
   RecordingContents contents;
   SkippedRows skipped;
   std::vector<double> raw, row;
-  bool ended = false;
+  bool ended = false, noted = false;
   std::int64_t row_count = 0;  // with those that could not be read
   ColumnMap map;
+  RecordingOptions options;  // of the rows
   std::unique_ptr<RowSource> rows;
   SampleLayout layout;
+  detail::Holes holes;
+  std::optional<JoinedRows> joined;
   TimedRows timed;
   detail::VelocityFilter filter;
   RegularityCounter counter;
@@ -276,11 +416,10 @@ bool RecordingReader::next(RecordedSample& s) {
   while (!r.timed.next(r.row)) {
     if (r.ended) {
       if (r.counter.so_far().samples == 0) r.fail_empty();
+      r.note_holes();
       return false;
     }
-    if (r.take_row()) continue;
-    r.timed.finish();
-    r.ended = true;
+    if (!r.take_row()) r.finish();
   }
   r.fill(s);
   return true;

@@ -35,13 +35,14 @@ class LayoutMaker {
     const MappedQuantity* const q = find("q");
     if (q == nullptr) fail_missing(path_, "q", columns_);
     l_.dof = static_cast<int>(q->columns.size());
+    l_.names = {"[t]"};
     l_.q = add("q");
     l_.qd = add("qd");
     l_.tau = add_torque();
     l_.tau_ext = add("tau_ext");
     l_.driver = add("driver");
     l_.force = add("force", 3);
-    if (find("contact") != nullptr) l_.contact = append(*find("contact"));
+    l_.contact = add("contact", 1);
     return std::move(l_);
   }
 
@@ -51,10 +52,13 @@ class LayoutMaker {
     return it == mapped_.end() ? nullptr : &it->second;
   }
 
-  int append(const MappedQuantity& m) {
+  int append(std::string_view name, const MappedQuantity& m) {
     const int at = l_.size;
-    for (std::size_t i = 0; i < m.columns.size(); ++i)
+    for (std::size_t i = 0; i < m.columns.size(); ++i) {
       l_.rest.emplace_back(m.columns[i], m.gain[i]);
+      l_.names.push_back(i == 0 || name == "force" ? fmt::format("[{}]", name)
+                                                   : fmt::format("[{}] of joint {}", name, i + 1));
+    }
     l_.size += static_cast<int>(m.columns.size());
     return at;
   }
@@ -63,7 +67,7 @@ class LayoutMaker {
   int add(std::string_view name, int count) {
     const MappedQuantity* const m = find(name);
     if (m == nullptr) return -1;
-    if (static_cast<int>(m->columns.size()) == count) return append(*m);
+    if (static_cast<int>(m->columns.size()) == count) return append(name, *m);
     const std::string wanted = count == l_.dof ? fmt::format("{} columns are q", count)
                                                : fmt::format("{} columns are wanted", count);
     throw std::runtime_error(
@@ -99,6 +103,14 @@ std::vector<int> SampleLayout::columns() const {
   for (const auto& [c, gain] : t) all.push_back(c);
   for (const auto& [c, gain] : rest) all.push_back(c);
   return all;
+}
+
+void SampleLayout::convert(const std::vector<double>& row, std::vector<double>& sample) const {
+  sample.resize(static_cast<std::size_t>(size));
+  sample[0] = 0;
+  for (const auto& [c, gain] : t) sample[0] += gain * row[static_cast<std::size_t>(c)];
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    sample[i + 1] = rest[i].second * row[static_cast<std::size_t>(rest[i].first)];
 }
 
 SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,

@@ -22,8 +22,11 @@ struct SampleLayout {
   bool without_gravity = false;              ///< Trace::tau_without_gravity
   std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up; may be none
   std::vector<std::pair<int, double>> rest;  ///< column and gain of each of the others
+  std::vector<std::string> names;  ///< of all, like "[q] of joint 2"; the first is that of t
 
   std::vector<int> columns() const;  ///< that matter
+  /// The sample of a row [SI], without a time of columns 0.
+  void convert(const std::vector<double>& row, std::vector<double>& sample) const;
 };
 
 /// @param has_t whether there must be a time

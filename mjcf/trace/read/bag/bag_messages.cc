@@ -14,9 +14,10 @@ namespace tauext {
 
 namespace {
 
-// the second spelling is that of the first bags
+// the second spelling is that of the first bags; no topic of ROS has a comma
 bool is_joint_state(const BagTopic& t) {
-  return t.type == "sensor_msgs/msg/JointState" || t.type == "sensor_msgs/JointState";
+  return (t.type == "sensor_msgs/msg/JointState" || t.type == "sensor_msgs/JointState") &&
+         t.name.find(',') == std::string::npos;
 }
 
 std::string listed(const std::vector<BagTopic>& topics, bool with_types) {
@@ -47,7 +48,9 @@ std::string choose_topic(const std::vector<BagTopic>& topics, const std::string&
   const std::string known = listed(fitting, false);
   if (chosen.empty())
     fail(fmt::format("has no joint states on topic {}; known: {}", wanted, known));
-  if (chosen.size() > 1) fail("choose one of its topics of joint states: " + known);
+  if (chosen.size() > 1)
+    fail("choose one of its topics of joint states, or several apart by commas (--channel): " +
+         known);
   if (chosen[0].format != "cdr") {
     fail(
         fmt::format("topic {} is serialized as '{}', and not as 'cdr': write it anew by ros2 bag "
@@ -59,10 +62,18 @@ std::string choose_topic(const std::vector<BagTopic>& topics, const std::string&
 
 }  // namespace
 
-void BagMessages::set_topic(const std::string& path, const std::vector<BagTopic>& topics,
-                            const std::string& wanted) {
+void BagMessages::set_topics(const std::string& path, const std::vector<BagTopic>& topics,
+                             const std::string& wanted) {
   path_ = path;
-  topic_ = choose_topic(topics, wanted, path);
+  for (std::size_t at = 0, end = 0; end != wanted.npos; at = end + 1) {
+    end = wanted.find(',', at);
+    const std::string topic = choose_topic(topics, wanted.substr(at, end - at), path);
+    topic_ += (at == 0 ? "" : ",") + topic;
+  }
+}
+
+bool BagMessages::is_chosen(std::string_view topic) const {
+  return fmt::format(",{},", topic_).find(fmt::format(",{},", topic)) != std::string::npos;
 }
 
 }  // namespace tauext

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The messages of one topic in a bag, in the order in which they were recorded.
+/// The messages of some topics in a bag, in the order in which they were recorded.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct BagTopic {
   std::string name, type, format;  ///< of its messages the type, and how they are serialized
 };
 
-/// Those of a topic of sensor_msgs/msg/JointState.
+/// Those of topics of sensor_msgs/msg/JointState.
 class BagMessages {
  public:
   /// How long a message may be.
@@ -38,13 +38,15 @@ class BagMessages {
   /// At the end what a reader should know; else "".
   virtual std::string note() const { return ""; }
   const std::string& path() const { return path_; }
+  /// Their names, apart by commas.
   const std::string& topic() const { return topic_; }
 
  protected:
-  /// Chooses it among these. "": the only one of that type.
+  /// Chooses them among these. "": the only one of that type; else names apart by commas.
   /// @throws std::runtime_error naming the path, and the topics that there are
-  void set_topic(const std::string& path, const std::vector<BagTopic>& topics,
-                 const std::string& wanted);
+  void set_topics(const std::string& path, const std::vector<BagTopic>& topics,
+                  const std::string& wanted);
+  bool is_chosen(std::string_view topic) const;
 
  private:
   std::string path_, topic_;

@@ -57,9 +57,9 @@ McapMessages::McapMessages(const std::string& path, const std::string& topic) : 
   for (const auto& [id, c] : channels_)
     topics.push_back(
         {c.topic, schemas_.count(c.schema) > 0 ? schemas_.at(c.schema) : "", c.encoding});
-  set_topic(path, topics, topic);
+  set_topics(path, topics, topic);
   for (const auto& [id, c] : channels_)
-    if (c.topic == this->topic()) wanted_.insert(id);
+    if (is_chosen(c.topic)) wanted_.insert(id);
   rewind();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The messages of one topic in a bag of the storage mcap (mcap.dev/spec), in its order.
+/// The messages of some topics in a bag of the storage mcap (mcap.dev/spec), in its order.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace tauext {
 
-/// Those of a topic of sensor_msgs/msg/JointState. Chunks may be compressed by zstd or lz4, and
+/// Those of topics of sensor_msgs/msg/JointState. Chunks may be compressed by zstd or lz4, and
 /// have up to 256 MB; a file that ends too early is read up to its last whole record.
 class McapMessages final : public BagMessages {
  public:
@@ -50,7 +50,7 @@ class McapMessages final : public BagMessages {
   std::size_t chunk_at_ = 0;
   std::map<std::uint16_t, std::string> schemas_;  // names of types
   std::map<std::uint16_t, Channel> channels_;
-  std::set<std::uint16_t> wanted_;  // channels of the topic
+  std::set<std::uint16_t> wanted_;  // channels of the topics
 };
 
 }  // namespace tauext

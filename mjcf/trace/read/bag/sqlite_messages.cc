@@ -133,13 +133,13 @@ class SqliteMessages final : public BagMessages {
       : connection_(open_database(path)) {
     sqlite3* const db = connection_.get();
     refuse_other_schemas(db, path);
-    set_topic(path, topics_in(db, path), wanted);
+    set_topics(path, topics_in(db, path), wanted);
     // length() of a BLOB does not read it
     messages_ = prepare(
         db, path,
         fmt::format("SELECT timestamp, length(data), CASE WHEN length(data) <= {} THEN data END "
-                    "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE name = ?1) ORDER "
-                    "BY timestamp, id",
+                    "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE instr(',' || ?1 "
+                    "|| ',', ',' || name || ',') > 0) ORDER BY timestamp, id",
                     kMost));
     sqlite3_bind_text(messages_.get(), 1, topic().data(), static_cast<int>(topic().size()),
                       SQLITE_STATIC);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mjcf/trace/read/bag/joint_state.h"
+#include "mjcf/trace/read/recording.h"
 #include "mjcf/trace/read/test/recording.h"
 #include "mjcf/trace/read/test/some_bag.h"
 
@@ -82,6 +83,43 @@ TEST_F(Bag, AMessageIsARow) {
   EXPECT_EQ(rows.number(), 2);
   EXPECT_EQ(skipped.total(), 0);
   EXPECT_TRUE(skipped.notes.empty());
+}
+
+// an arm of three joints whose first two are on one topic, and whose third is on another
+TEST_F(Bag, SeveralTopicsAreReadAsOneAndJoined) {
+  put("", "x.db3");
+  {
+    SomeBag bag(path("x.db3"));
+    bag.make_tables();
+    for (const char* topic : {"/left", "/right", "/grip"}) bag.add_topic(topic);
+    for (unsigned k = 0; k < 20; ++k) {
+      const auto add = [&](int topic, unsigned late, const Names& names, double x) {
+        const std::vector<double> all(names.size(), x);
+        const unsigned at = 10000000 * k + late;
+        bag.add_message(topic, at,
+                        message(at, names).numbers(all).numbers(all).numbers(all).bytes());
+      };
+      add(1, 0, {"a", "b"}, k);
+      add(3, 500000, {"a", "b", "c"}, -1);
+      add(2, 1000000, {"c"}, k + 0.5);
+    }
+  }
+  const RecordingOptions options{
+      put("preset = 'joint_state'\njoin = 0.002\n", "map.toml"), "/left,/right", {"a", "b", "c"}};
+  SkippedRows skipped;
+  const Trace t = read_recording(path("x.db3"), options, &skipped);
+  ASSERT_EQ(t.size(), 20);
+  EXPECT_EQ(skipped.total(), 0);
+  for (int k = 0; k < t.size(); ++k) {
+    EXPECT_EQ(t.q.col(k), Eigen::Vector3d(k, k, k + 0.5));
+    EXPECT_EQ(t.tau.col(k), Eigen::Vector3d(k, k, k + 0.5));
+  }
+  EXPECT_NE(error_of([&] {
+              read_recording(path("x.db3"), {"", "/left,/right", {"a", "b", "c"}}, &skipped);
+            }).find("join = 0.005 in a map of columns"),
+            std::string::npos);
+  EXPECT_EQ(error_of_opening(path("x.db3"), "/left,/none"),
+            "has no joint states on topic /none; known: /left, /right, /grip");
 }
 
 TEST_F(Bag, TheHighByteMayBeTheFirst) {
@@ -250,7 +288,10 @@ TEST_F(Bag, ATopicIsChosenByItsName) {
   }
   const std::string file = path("x.db3");
   EXPECT_EQ(rows_of(BagRows(file, "/right"))[0][1], 2);
-  EXPECT_EQ(error_of_opening(file), "choose one of its topics of joint states: /left, /right");
+  EXPECT_EQ(
+      error_of_opening(file),
+      "choose one of its topics of joint states, or several apart by commas (--channel): /left, "
+      "/right");
   EXPECT_EQ(error_of_opening(file, "/tf"),
             "has no joint states on topic /tf; known: /left, /right");
 }

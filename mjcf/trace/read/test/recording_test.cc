@@ -108,7 +108,7 @@ TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
                                    "0.003,1,2,3,4,5\n"        // a field too few
                                    "0.004,1,2,3,4,5,6,7\n"    // a field too many
                                    "0.005,1,2,x,4,5,6\n"      // no number
-                                   "0.006,1,2,,4,5,6\n"       // no number
+                                   "0.006,1,2,,4,5,6\n"       // nothing
                                    "0,1,2,3,4,5,6\n"          // time stands still
                                    "\n"                       // nothing, and no row
                                    "0.007, 7 ,2,3,4,5,6\r\n"  // good: blanks and CR do not matter
@@ -116,12 +116,12 @@ TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
       &skipped);
   EXPECT_EQ(t.size(), 2);
   EXPECT_EQ(t.q(0, 1), 7);
-  EXPECT_EQ(skipped.not_finite, 2);
+  EXPECT_EQ(skipped.not_finite, 3);
   EXPECT_EQ(skipped.wrong_field_count, 3);
-  EXPECT_EQ(skipped.not_a_number, 2);
+  EXPECT_EQ(skipped.not_a_number, 1);
   EXPECT_EQ(skipped.time_order, 1);
   ASSERT_FALSE(skipped.first.empty());
-  EXPECT_EQ(skipped.first[0], "line 3: a field is not finite");
+  EXPECT_EQ(skipped.first[0], "line 3: column 'qd2' is empty or not finite");
   EXPECT_FALSE(t.has_truth());
   EXPECT_TRUE(t.contact.empty());
 }

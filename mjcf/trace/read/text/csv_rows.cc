@@ -50,6 +50,12 @@ bool number_of(std::string_view s, double& value) {
   return true;
 }
 
+// what programs write for no number, beside nan
+bool is_hole(std::string_view s) {
+  constexpr std::string_view kHoles[] = {"", "NA", "N/A", "null", "None"};
+  return std::find(std::begin(kHoles), std::end(kHoles), s) != std::end(kHoles);
+}
+
 // the one that the line has, of those that are usual
 char separator_of(std::string_view line) {
   for (const char c : {',', ';', '\t'}) {
@@ -161,9 +167,12 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
     more = take_field(line, field);
     if (fields >= columns_.size() || !wanted_[fields]) continue;
     double& value = row[fields];
-    if (!number_of(field, value) && wrong.empty())
+    if (format_.holes && is_hole(field)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    } else if (!number_of(field, value) && wrong.empty()) {
       wrong = fmt::format("column '{}' is '{}', not a number", printable_name(columns_[fields]),
                           printable_name(std::string(field)));
+    }
     if (!std::isfinite(value)) all_finite = false;
   }
   if (fields != columns_.size()) {

@@ -19,6 +19,7 @@ struct CsvFormat {
                        ///< first line, or else blanks
   bool has_header = true;  ///< else the columns are called 1, 2, ..
   bool finite = true;      ///< a row with NaN or infinity cannot be read
+  bool holes = false;      ///< a field may be empty, or say that it is (NA, null), and is NaN then
 };
 
 /// The rows of such a file, which may be compressed. Lines may end in CR and LF, and have up to
