@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "bench/report/provenance.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
+#include "bench/score/detection_metrics.h"
 #include "bench/study/detection/calibration.h"
 #include "bench/study/detection/detection_report.h"
 #include "bench/study/detection/detection_study.h"
@@ -38,7 +40,8 @@ struct Flags {
   study::CalibrationOptions calibration;
   std::vector<std::string> logs;   // to calibrate from
   std::vector<std::string> parts;  // of a study
-  std::string channel, columns, lock, calibrate_to, thresholds, out, shard, format = "text";
+  std::string channel, columns, contacts, lock, calibrate_to, thresholds, out, shard,
+      format = "text";
   bool list = false, quick = false;
 };
 
@@ -69,6 +72,44 @@ constexpr const char* kHeldOutLegend =
     "\n{}alarms: recordings in which the thresholds of all others would mark (the metric by which "
     "`clamping` weighs the joints has seen all of them).\n";
 
+// what labels leave of a recording, in stretches: from metrics::kGrace after a contact to the next
+// one. Those that are too short to train on are left out
+std::vector<study::FreeRecording> free_stretches(const std::string& path, const Trace& trace) {
+  std::vector<study::FreeRecording> all;
+  std::vector<int> samples;
+  int left_out = 0;
+  double seconds = 0;  // of all
+  const auto end = [&] {
+    if (samples.empty()) return;
+    Trace part = select_samples(trace, samples);
+    samples.clear();
+    const double from = part.t.front(), to = part.t.back();
+    if (to - from < 2 * study::kScoreFrom) {
+      ++left_out;
+      return;
+    }
+    seconds += to - from;
+    all.push_back({fmt::format("{} from {:g} to {:g} s", path, from, to), std::move(part)});
+  };
+  double last = -std::numeric_limits<double>::infinity();  // [s] of a contact
+  for (int k = 0; k < trace.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const bool touched = trace.contact[at] != 0;
+    if (touched) last = trace.t[at];
+    if (trace.t[at] > last + metrics::kGrace) {
+      samples.push_back(k);
+    } else {
+      end();
+    }
+  }
+  end();
+  say(fmt::format(
+      "{}: without its contacts {} stretches, {:.3g} s in all; {} are left out, as they "
+      "are shorter than {:g} s",
+      path, all.size(), seconds, left_out, 2 * study::kScoreFrom));
+  return all;
+}
+
 // from recordings without contact; says whether these thresholds would have held
 Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   if (f.study.robot.empty())
@@ -79,12 +120,20 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
     files.push_back(std::filesystem::weakly_canonical(path).string());
   refuse_twice("recording", files);
   std::vector<study::FreeRecording> recordings;
+  const auto contacts = contacts_of(f.contacts, f.logs);
   for (const std::string& path : f.logs) {
-    RecordedLog log = robot_log(r, path, f.channel, f.columns);
+    RecordedLog log = robot_log(r, path, f.channel, f.columns, contacts);
     log.require_consistent(path);
     usable = usable && log.usable();
-    recordings.push_back({path, std::move(log.trace)});
+    if (contacts == nullptr || contacts->of(path).empty()) {
+      recordings.push_back({path, std::move(log.trace)});
+      continue;
+    }
+    for (study::FreeRecording& part : free_stretches(path, log.trace))
+      recordings.push_back(std::move(part));
   }
+  if (recordings.empty())
+    throw std::invalid_argument(f.contacts + ": no stretch without contact is long enough");
   Progress progress("calibrating");
   std::vector<study::HeldOut> held_out;
   const Thresholds thresholds =
@@ -210,7 +259,8 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, f.thresholds.empty() && f.logs.empty(),
                "training on simulated runs, not with --thresholds or recordings",
                {"--train", "--runs"});
-  require_mode(app, !f.logs.empty(), "recordings to calibrate from", {"--columns", "--channel"});
+  require_mode(app, !f.logs.empty(), "recordings to calibrate from",
+               {"--columns", "--channel", "--contacts"});
   if (studies && !f.logs.empty())
     throw std::invalid_argument(f.logs[0] + ": recordings are for --calibrate FILE");
   return studies ? run_study(f) : run_calibration(f);
@@ -230,9 +280,10 @@ void add_names(CLI::App& app, const char* flag, std::vector<std::string>& to, co
 
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("logs", f.logs,
-                 "to --calibrate from: without contact (--columns as tauext-replay)");
+                 "to --calibrate from: without contact (--columns, --contacts: tauext-replay)");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--columns", f.columns)->group("");
+  app.add_option("--contacts", f.contacts)->group("")->check(not_empty);
   app.add_option("--calibrate", f.calibrate_to,
                  "set the thresholds from training runs, write, stop")
       ->type_name("FILE.json")

@@ -26,7 +26,7 @@ using namespace tauext;
 
 struct Flags {
   std::vector<std::string> logs, loaded, terms;
-  std::string channel, columns, robot, lock, out, format = "text";
+  std::string channel, columns, contacts, robot, lock, out, format = "text";
   Windows windows;
   bool list = false;
 };
@@ -47,6 +47,10 @@ void add_flags(CLI::App& app, Flags& f) {
       ->type_name("LOG..");
   app.add_option("--columns", f.columns, "what the logs' columns mean (see tauext-replay --help)")
       ->type_name("PRESET|FILE.toml");
+  app.add_option("--contacts", f.contacts,
+                 "labels beside the logs, file,start,end [s]: there they are left out")
+      ->type_name("FILE.csv")
+      ->check(not_empty);
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
   app.add_option("--terms", f.terms,
                  "to find, apart by commas (see --list); of a robot's joints all")
@@ -103,7 +107,8 @@ int identify_one(const Flags& f) {
   const std::vector<Term> model = find_terms(
       f.terms.empty() ? std::vector<std::string>{"inertia", "gravity_cos", "gravity_sin", "coulomb"}
                       : f.terms);
-  const RecordedLog recorded = read_any_log(f.logs[0], {f.channel, f.columns});
+  const RecordedLog recorded =
+      read_any_log(f.logs[0], {f.channel, f.columns, {}, false, contacts_of(f.contacts, f.logs)});
   recorded.require_consistent(f.logs[0]);
   const auto id = naming(f.logs, [&] { return identify(recorded.trace, model, f.windows); });
   fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
@@ -115,12 +120,19 @@ int identify_one(const Flags& f) {
   return recorded.usable() ? kGood : kAnswerIsNo;
 }
 
+std::vector<std::string> all_logs(const Flags& f) {
+  std::vector<std::string> all = f.logs;
+  all.insert(all.end(), f.loaded.begin(), f.loaded.end());
+  return all;
+}
+
 // all of them; `usable` becomes false where most of one was skipped
 std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
                              const std::vector<std::string>& paths, bool& usable) {
+  const auto contacts = contacts_of(f.contacts, all_logs(f));
   std::vector<Trace> all;
   for (const std::string& path : paths) {
-    RecordedLog log = read_any_log(path, {f.channel, f.columns, arm.joint_names(), true});
+    RecordedLog log = read_any_log(path, {f.channel, f.columns, arm.joint_names(), true, contacts});
     log.require_consistent(path);
     usable = usable && log.usable();
     if (log.trace.dof() != arm.dof())
@@ -187,9 +199,7 @@ int weigh_payload(const Flags& f, const ArmTree& arm) {
     return not_sure(f);
   }
   if (!f.out.empty()) {
-    std::vector<std::string> recordings = f.logs;
-    recordings.insert(recordings.end(), f.loaded.begin(), f.loaded.end());
-    write_file(robot_file_text({f.robot, f.lock, {}, &w, recordings}, f.out), f.out);
+    write_file(robot_file_text({f.robot, f.lock, {}, &w, all_logs(f)}, f.out), f.out);
   }
   return usable ? kGood : kAnswerIsNo;
 }

@@ -123,7 +123,8 @@ class TorqueCheck {
 };
 
 struct Flags {
-  std::string log, channel, columns, robot, lock, detector, thresholds, torque, wrench, out;
+  std::string log, channel, columns, contacts, robot, lock, detector, thresholds, torque, wrench,
+      out;
   std::vector<std::string> estimators;
   double score_from = -std::numeric_limits<double>::infinity();
   bool list = false;
@@ -135,6 +136,9 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--columns", f.columns,
                  "what the log's columns mean: a map, or libfranka, ur_rtde, ..")
       ->type_name("PRESET|FILE.toml");
+  app.add_option("--contacts", f.contacts, "labels beside the log: file,start,end[,kind] [s]")
+      ->type_name("FILE.csv")
+      ->check(not_empty);
   add_robot_flags(app, f.robot, f.lock);
   app.add_option("--estimator", f.estimators, "NAME[:KEY=VALUE].., one or more apart by commas")
       ->delimiter(',')
@@ -191,7 +195,8 @@ int replay(Flags& f) {
   const std::vector<DetectorSettings> settings = settings_of(f, r);
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
-  const LogOptions options{f.channel, f.columns, r.joints(), true};
+  const LogOptions options{f.channel, f.columns, r.joints(), true,
+                           contacts_of(f.contacts, {f.log})};
   LogReader log(f.log, options);
   const RecordingContents& contents = log.contents();
   r.require_joints(contents.dof, f.log);

@@ -28,7 +28,7 @@ using namespace tauext;
 
 struct Flags {
   std::vector<std::string> files, ours, logs;
-  std::string detector, thresholds, channel, columns, robot, lock, scenario, name, out,
+  std::string detector, thresholds, channel, columns, contacts, robot, lock, scenario, name, out,
       format = "text";
   double score_from = -std::numeric_limits<double>::infinity();
   Sensors sensors;
@@ -39,11 +39,12 @@ struct Flags {
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("estimates", f.files, "files: CSV, .npy or .npz; or --estimator alone");
   app.add_option("--log", f.logs,
-                 "their log; with --estimator alone several (--columns: tauext-replay)")
+                 "their log; with --estimator alone several (--columns, --contacts: tauext-replay)")
       ->allow_extra_args(false)
       ->type_name("LOG");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--columns", f.columns)->group("");
+  app.add_option("--contacts", f.contacts)->group("")->check(not_empty);
   app.add_option("--robot", f.robot, "robot, or a file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock)->group("")->check(not_empty);
@@ -115,6 +116,7 @@ void require_flags(const CLI::App& app, const Flags& f) {
         fmt::format("{}: a file of estimates goes with one --log", f.files.front()));
   require_mode(app, !f.ours.empty(), "--estimator", {"--detector", "--thresholds"});
   require_mode(app, simulated, "--scenario, not with --log", recording_flags());
+  require_mode(app, !simulated, "--log", {"--contacts"});
   if (!f.thresholds.empty() && f.detector.empty())
     throw std::invalid_argument("--thresholds needs a --detector");
   const std::string kind = std::filesystem::path(f.out).extension();
@@ -150,14 +152,15 @@ Recorded recorded(const Flags& f) {
                                             f.scenario, all.logs[0].trace.t.back()));
   const std::string group = f.logs.size() == 1 ? std::filesystem::path(f.logs[0]).stem().string()
                                                : fmt::format("{}_logs", f.logs.size());
+  const auto contacts = contacts_of(f.contacts, f.logs);
   for (const std::string& path : f.logs) {
     if (f.ours.empty()) {
       all.logs.push_back(read_any_log(
-          path,
-          {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(), true}));
+          path, {f.channel, f.columns, r == nullptr ? std::vector<std::string>() : r->joints(),
+                 true, contacts}));
       if (r != nullptr) r->require_joints(all.logs.back().trace, path);
     } else {
-      all.logs.push_back(robot_log(*r, path, f.channel, f.columns));
+      all.logs.push_back(robot_log(*r, path, f.channel, f.columns, contacts));
     }
     RecordedLog& log = all.logs.back();
     if (log.trace.size() < 3)

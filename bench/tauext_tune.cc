@@ -33,7 +33,7 @@ using namespace tauext;
 
 struct Flags {
   std::string robot, lock, minimize, scenarios, seeds = "1-3", test_seeds = "101-110";
-  std::string columns, channel, format = "text";
+  std::string columns, channel, contacts, format = "text";
   TunedPair pair;
   std::vector<std::string> keys, limits, scenario, logs, test_logs;
   std::vector<std::string> conditions, parts;  // of the study; to merge
@@ -63,9 +63,10 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--scenarios", f.scenarios)->group("");
   app.add_option("--seeds", f.seeds, "of the sensors, to tune on")->type_name("1-3");
   app.add_option("--test_seeds", f.test_seeds, "to test on")->type_name("101-110");
-  list("--log", f.logs, "labelled recordings to tune on instead (--columns: tauext-replay)")
+  list("--log", f.logs, "labelled recordings to tune on (--columns, --contacts: tauext-replay)")
       ->type_name("LOG");
   list("--test_log", f.test_logs, "labelled recordings to test on")->type_name("LOG");
+  app.add_option("--contacts", f.contacts)->group("")->check(not_empty);
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--channel", f.channel)->group("");
   list("--conditions", f.conditions,
@@ -152,8 +153,11 @@ class Simulated {
 class Recordings {
  public:
   Recordings(const Flags& f, const Robot& r, const std::vector<std::string>& paths) : robot_(r) {
+    std::vector<std::string> all = f.logs;
+    all.insert(all.end(), f.test_logs.begin(), f.test_logs.end());
+    const auto contacts = contacts_of(f.contacts, all);
     for (const std::string& path : paths) {
-      logs_.push_back(robot_log(r, path, f.channel, f.columns));
+      logs_.push_back(robot_log(r, path, f.channel, f.columns, contacts));
       logs_.back().require_consistent(path);
     }
     for (const RecordedLog& log : logs_)
@@ -221,7 +225,7 @@ int run(const CLI::App& app, Flags& f) {
     const char* why = "one pair, not with --conditions";
     require_mode(app, false, why,
                  {"--tune", "--minimize", "--limit", "--scenario", "--scenarios", "--seeds",
-                  "--test_seeds", "--log", "--test_log", "--columns", "--channel"});
+                  "--test_seeds", "--log", "--test_log", "--columns", "--channel", "--contacts"});
     require_mode(app, false, why, recording_flags());
     return tune_conditions({with_lock(f.robot, f.lock), f.conditions, f.pair.estimator,
                             f.pair.detector, f.evaluations, f.shard, f.out, f.format});
@@ -231,6 +235,7 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, f.logs.empty(), "simulated runs, not with --log",
                {"--scenario", "--scenarios", "--seeds", "--test_seeds"});
   require_mode(app, f.logs.empty(), "simulated runs, not with --log", recording_flags());
+  require_mode(app, !f.logs.empty(), "--log and --test_log", {"--contacts"});
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   r.check(f.pair.estimator, f.pair.detector);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -188,6 +189,17 @@ struct LogReader::Impl {
     if (contents.without_gravity && !o.has_robot)
       throw std::runtime_error(path + ": [tau_without_gravity] needs a robot, which adds gravity");
     doubt = std::make_unique<detail::UnitDoubt>(contents.dof);
+    if (o.contacts == nullptr) return;
+    labels.emplace(*o.contacts, path), labels_file = o.contacts;
+    own_labels = std::exchange(contents.has_contact, true);
+  }
+
+  // of the file beside it, if there is one
+  void label(RecordedSample& s) {
+    if (!labels) return;
+    const bool own = s.contact != 0;
+    s.contact = labels->at(s.t);
+    differing += own_labels && own != (s.contact != 0);
   }
 
   std::string path;
@@ -196,7 +208,11 @@ struct LogReader::Impl {
   std::unique_ptr<RecordingReader> rows;
   SampleSource* source = nullptr;  // the one that there is
   RecordingContents contents;
-  VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents
+  std::shared_ptr<const ContactsFile> labels_file;
+  std::optional<ContactLabels> labels;  // of it
+  bool own_labels = false;              // which the log has, too
+  std::int64_t differing = 0;           // samples
+  VectorXd gain;                        // [N m/A] of the drives, if tau is to be made of currents
   std::function<VectorXd(const VectorXd&)> gravity;  // [N m] of q, if it is to be added to tau
   std::unique_ptr<detail::UnitDoubt> doubt;
 };
@@ -237,8 +253,10 @@ bool LogReader::contradicts() const {
 bool LogReader::next(RecordedSample& s) {
   if (!impl_->source->next(s)) {
     impl_->doubt->finish();
+    if (impl_->labels) impl_->labels->finish();
     return false;
   }
+  impl_->label(s);
   if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
   if (impl_->gravity) s.tau += impl_->gravity(s.q);
   impl_->doubt->take(s);
@@ -261,6 +279,10 @@ void LogReader::report() const {
   } else if (const std::string faults = i.lcm->report().in_words(); !faults.empty()) {
     say(fmt::format("{}: channel {}: {}", i.path, i.lcm->report().channel, faults));
   }
+  if (i.differing > 0)
+    say(fmt::format(
+        "{}: its own labels are not used, and are others than those of {} in {} samples", i.path,
+        i.labels_file->path(), i.differing));
   i.doubt->tell(i.path, remedy);
   if (const double step = regularity().step; step > kSlowStep)
     say(fmt::format(

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/logs/contacts_file.h"
 #include "mjcf/trace/read/recording.h"
 #include "mjcf/trace/trace.h"
 
@@ -25,12 +26,15 @@ struct LogOptions {
   /// whether the caller makes torques of currents, and adds gravity, by LogReader's functions or
   /// Robot::make_torques()
   bool has_robot = false;
+  /// labels in the place of the log's own, if it has any; nullptr: none
+  std::shared_ptr<const ContactsFile> contacts;
 };
 
 /// A recorded log: LCM, CSV, .npy, .npz or a ROS 2 bag, sample by sample.
 class LogReader final : public SampleSource {
  public:
-  /// @throws std::runtime_error or std::invalid_argument naming the path and the reason
+  /// @throws std::runtime_error or std::invalid_argument naming the path and the reason; next(),
+  /// too, where labels do not fit (contacts_file.h)
   explicit LogReader(const std::string& path, const LogOptions& options = {});
   ~LogReader() override;
 

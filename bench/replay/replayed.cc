@@ -14,7 +14,9 @@ namespace {
 
 // what a detector was worth
 std::string verdict(const metrics::DetectionScore& s) {
-  const std::string alarms = fmt::format("{} false alarms, ", s.false_alarms);
+  std::string alarms = fmt::format("{} false alarms, ", s.false_alarms);
+  if (s.intended > 0)
+    alarms += fmt::format("{} of {} touches on purpose marked, ", s.intended_marked, s.intended);
   if (s.collisions == 0) return alarms + "no collision in the log";
   if (s.detected == 0) return alarms + "no collision detected";
   const metrics::Interval i = metrics::share_interval(s.detected, s.collisions);

@@ -3,6 +3,7 @@
 /// A recorded log, for a robot.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "bench/logs/read_log.h"
@@ -15,6 +16,7 @@ namespace tauext {
 /// @throws std::runtime_error or std::invalid_argument naming the path and the reason, also where
 /// the torques contradict the robot (bench/replay/torque_fit.h)
 RecordedLog robot_log(const Robot& robot, const std::string& path, const std::string& channel,
-                      const std::string& columns);
+                      const std::string& columns,
+                      std::shared_ptr<const ContactsFile> contacts = nullptr);
 
 }  // namespace tauext

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "mjcf/trace/read/recording.h"
 
 namespace tauext {
 namespace metrics {
@@ -27,11 +30,11 @@ double poisson_mean(int count, double share) {
 
 }  // namespace
 
-void DetectionCounter::watch(double t) {
+void DetectionCounter::watch(double t, bool counts) {
   switch (clock_.accept(t)) {
     case Status::kOk:
       ++steps_;
-      s_.watched += clock_.h();
+      if (counts) s_.watched += clock_.h();
       break;
     case Status::kStarted:
       if (steps_ == 1) s_.watched = before_;  // its only step was a gap
@@ -43,13 +46,27 @@ void DetectionCounter::watch(double t) {
   }
 }
 
-void DetectionCounter::take(double t, bool contact, bool mark) {
-  watch(t);
+// whether a mark at t belongs to a touch on purpose
+bool DetectionCounter::take_intended(double t, bool touched, bool mark) {
+  if (touched && !std::exchange(in_intended_, true)) {
+    ++s_.intended;
+    intended_marked_ = false;
+  }
+  if (touched) last_intended_ = t;
+  in_intended_ = in_intended_ && t <= last_intended_ + kGrace;
+  if (in_intended_ && mark && !std::exchange(intended_marked_, true)) ++s_.intended_marked;
+  return in_intended_;
+}
+
+void DetectionCounter::take(double t, std::uint8_t label, bool mark) {
+  const bool contact = label != 0 && label != kIntended;
+  const bool intended = take_intended(t, label == kIntended, mark && !contact);
+  watch(t, !intended);
   const bool goes_on = contact && touched_;  // whatever the time between two samples
   touched_ = contact;
   if (in_collision_ && !goes_on && t > last_ + kGrace) in_collision_ = false;
   if (!in_collision_ && !contact) {
-    s_.false_alarms += mark;
+    s_.false_alarms += mark && !intended;
     return;
   }
   if (!in_collision_) {
@@ -76,7 +93,7 @@ DetectionScore detection_score(const std::vector<double>& t,
                                const std::vector<std::uint8_t>& contact,
                                const std::vector<std::uint8_t>& marks) {
   DetectionCounter counter;
-  for (std::size_t k = 0; k < t.size(); ++k) counter.take(t[k], contact[k] != 0, marks[k] != 0);
+  for (std::size_t k = 0; k < t.size(); ++k) counter.take(t[k], contact[k], marks[k] != 0);
   return counter.score();
 }
 

@@ -21,26 +21,32 @@ inline constexpr double kGrace = 0.2;
 /// Marks against the true contact. A collision begins with a contact. Contacts that follow each
 /// other within kGrace are one collision: what was hit is still there, and an arm whose motor the
 /// mark has stopped rebounds onto it. A collision is detected by the first mark from its begin
-/// until kGrace after its last contact; any mark outside these windows is a false alarm.
+/// until kGrace after its last contact; any mark outside these windows is a false alarm, unless
+/// somebody touches the arm on purpose, or did within kGrace before.
 struct DetectionScore {
   int collisions = 0;          ///< that the truth has
   int detected = 0;            ///< of these
   std::vector<double> delays;  ///< [s] of these
   int false_alarms = 0;        ///< marks outside of them
+  int intended = 0;            ///< touches on purpose
+  int intended_marked = 0;     ///< of these, those in which something was marked
   double delay = 0;            ///< [s] largest delay of a detected collision; NaN without one
-  double watched = 0;  ///< [s] the steps by which a Clock goes on: what lies in a gap, nobody saw
+  /// [s] the steps by which a Clock goes on: what lies in a gap, nobody saw; without touches on
+  /// purpose
+  double watched = 0;
   double false_alarms_per_hour = 0;  ///< [1/h] of this time
 };
 
 /// The same score, of samples that come one by one.
 class DetectionCounter {
  public:
-  /// The next one, at t [s]: whether a contact acts, and whether the detector marks it.
-  void take(double t, bool contact, bool mark);
+  /// The next one, at t [s]: the label of a contact (Trace::contact), and whether it is marked.
+  void take(double t, std::uint8_t contact, bool mark);
   DetectionScore score() const;  ///< of those that were taken
 
  private:
-  void watch(double t);
+  void watch(double t, bool counts);
+  bool take_intended(double t, bool touched, bool mark);
 
   DetectionScore s_;
   Clock clock_{std::numeric_limits<double>::infinity()};
@@ -48,6 +54,9 @@ class DetectionCounter {
   double before_ = 0;       // [s] watched before it started
   bool in_collision_ = false, touched_ = false, marked_ = false;
   double begin_ = 0, last_ = 0;  // [s] of the collision: its first and last contact
+  // [s] of the touch on purpose; whether it goes on, and was marked
+  double last_intended_ = -std::numeric_limits<double>::infinity();
+  bool in_intended_ = false, intended_marked_ = false;
 };
 
 /// The score of these marks; all three are as long as t [s].

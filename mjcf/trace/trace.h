@@ -29,7 +29,7 @@ struct Trace {
   Eigen::MatrixXd qd;                 ///< [rad/s] measured
   Eigen::MatrixXd tau;                ///< [N m] measured
   Eigen::MatrixXd tau_ext;            ///< [N m] true; no columns if unknown
-  std::vector<std::uint8_t> contact;  ///< 1 while a collision acts; empty if unknown
+  std::vector<std::uint8_t> contact;  ///< 1 while a collision acts (2: kIntended); empty: unknown
   bool torque_at_instants = false;    ///< tau was read at t and does not hold (samples/options.h)
   bool tau_is_current = false;        ///< tau is in A, and make_torques() has to be asked
   bool tau_without_gravity = false;  ///< g(q) is to be added: add_gravity() (mjcf/plant/any_tree.h)

@@ -12,7 +12,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -22,6 +25,7 @@
 #include <vector>
 
 #include "bench/live/stream_table.h"
+#include "bench/logs/contacts_file.h"
 #include "bench/logs/lcm_reader.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/degradation.h"
@@ -86,6 +90,39 @@ void recording(Bytes input) {
     demand_trace(read_recording(path, {}, &skipped), true);
     demand(static_cast<int>(skipped.first.size()) <= skipped.total(), "what is named is counted");
   });
+}
+
+// the same, with rows that have a part of a sample each
+void joined(Bytes input) {
+  static const std::string by = [] {
+    const auto file = std::filesystem::temp_directory_path() /
+                      fmt::format("tauext_fuzz_{}.toml", static_cast<long>(::getpid()));
+    std::ofstream(file) << "preset = 'tauext'\njoin = 0.05\n";
+    return file.string();
+  }();
+  const std::string path = file_of(input);
+  refused_or(path, [&] {
+    SkippedRows skipped;
+    demand_trace(read_recording(path, {by, "", {}}, &skipped), true);
+  });
+}
+
+void contacts(Bytes input) {
+  const std::string path = file_of(input);
+  try {
+    const ContactsFile file(path, {"a.csv", "b.csv"});
+    for (const char* log : {"a.csv", "b.csv"}) {
+      double last = -std::numeric_limits<double>::infinity();
+      for (const LabelledContact& c : file.of(log)) {
+        demand(c.from <= c.to && c.from >= last, "contacts are in order, and apart");
+        last = c.to;
+      }
+    }
+  } catch (const std::invalid_argument& e) {
+    const std::string_view what = e.what();
+    demand(what.starts_with(path + ": "), "an error names the file");
+    demand(what.find('\n') == what.npos && what.size() < 2000, "an error is a line");
+  }
 }
 
 void map(Bytes input) {
@@ -240,9 +277,9 @@ void mjcf(Bytes input) {
 }
 
 const std::map<std::string_view, void (*)(Bytes)> kTargets{
-    {"csv", recording},     {"npy", recording}, {"bag", recording},       {"map", map},
-    {"log", log},           {"wire", wire},     {"datagrams", datagrams}, {"json", json},
-    {"baseline", baseline}, {"mjcf", mjcf}};
+    {"csv", recording},       {"npy", recording},     {"bag", recording},     {"map", map},
+    {"joined", joined},       {"contacts", contacts}, {"log", log},           {"wire", wire},
+    {"datagrams", datagrams}, {"json", json},         {"baseline", baseline}, {"mjcf", mjcf}};
 
 void (*target)(Bytes) = nullptr;
 

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "bench/score/detection_metrics.h"
+#include "mjcf/trace/read/recording.h"
 
 namespace tauext::test {
 namespace {
@@ -209,6 +211,24 @@ TEST(DetectionScore, RatesCountTheTimeThatWasWatched) {
     EXPECT_NEAR(s.watched, 60, 0.01) << "a few steps, until a clock is trusted, are lost";
     EXPECT_NEAR(s.false_alarms_per_hour, 180, 0.1);
   }
+}
+
+// touches on purpose from 1 to 1.5 s, which is marked twice, and from 2 to 2.5 s, which is not;
+// marks 0.1 s behind the first and 0.3 s behind the second; a collision at 3 s
+TEST(DetectionScore, ATouchOnPurposeIsNeitherCollisionNorFalseAlarm) {
+  const Times t = times(3600);
+  std::vector<std::uint8_t> contact = flags(3600, {{1000, 1499}, {2000, 2499}});
+  std::replace(contact.begin(), contact.end(), std::uint8_t{1}, kIntended);
+  std::fill(contact.begin() + 3000, contact.begin() + 3020, 1);
+  const auto marks = flags(3600, {{1100, 1101}, {1600, 1600}, {2800, 2800}, {3010, 3010}});
+  const DetectionScore s = detection_score(t, contact, marks);
+  EXPECT_EQ(s.collisions, 1);
+  EXPECT_EQ(s.detected, 1);
+  EXPECT_DOUBLE_EQ(s.delay, t[3010] - t[3000]);
+  EXPECT_EQ(s.false_alarms, 1);
+  EXPECT_EQ(s.intended, 2);
+  EXPECT_EQ(s.intended_marked, 1);
+  EXPECT_NEAR(s.watched, 3.599 - 2 * 0.7, 3e-3) << "with the grace behind each";
 }
 
 TEST(DetectionScore, ReboundsWithinTheGraceAreTheSameCollision) {

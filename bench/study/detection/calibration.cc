@@ -43,7 +43,7 @@ void require_free(const FreeRecording& r, const Robot& robot) {
   if (contact != t.contact.end())
     fail(
         fmt::format("something touches at {:g} s, by its column contact; thresholds come from "
-                    "recordings without",
+                    "recordings without, or from the stretches between those of --contacts",
                     t.t[static_cast<std::size_t>(contact - t.contact.begin())]));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,12 +32,15 @@ struct RecordingOptions {
 std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOptions& options = {},
                                      const CsvFormat& csv = {});
 
+/// A label of a contact that is none of a collision: somebody touches the arm on purpose.
+inline constexpr std::uint8_t kIntended = 2;
+
 /// A sample of a recording, and what else it says of that time. What it does not know is empty.
 struct RecordedSample : Sample {
-  Eigen::VectorXd tau_ext;  ///< [N m] true, sign of (3)
-  Eigen::VectorXd driver;   ///< [N m] the maker's own estimate of it, the same sign
-  Eigen::VectorXd force;    ///< [N] as Trace::force has it
-  bool contact = false;     ///< the label
+  Eigen::VectorXd tau_ext;   ///< [N m] true, sign of (3)
+  Eigen::VectorXd driver;    ///< [N m] the maker's own estimate of it, the same sign
+  Eigen::VectorXd force;     ///< [N] as Trace::force has it
+  std::uint8_t contact = 0;  ///< the label, as Trace::contact has it
 };
 
 /// What a recording has beside t, q, qd and tau.
