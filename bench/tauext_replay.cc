@@ -31,6 +31,8 @@ namespace {
 
 using namespace tauext;
 
+constexpr double kUsualGap = 0.05;  // [s] max_gap of estimators
+
 // what the unit of t seems to be, if arms are sampled at 50 Hz to 10 kHz
 std::string looks_like(double step) {
   if (step >= 0.1 && step <= 20) return ", so t looks like milliseconds";
@@ -62,6 +64,14 @@ bool report_status(const Replayed& c, const LogReader& log) {
     return false;
   }
   const double step = log.regularity().step;
+  if (2 * counts.of(Status::kBadTime) > counts.samples() && step >= kUsualGap / 2 && step < 1) {
+    say(fmt::format(
+        "{0}: most samples were taken for the first after a gap, so these are no estimates. They "
+        "are {1:.3g} s apart, and {0} goes on over `max_gap` at most, {2:g} s unless it is said: "
+        "{3}:max_gap={4:.2g}",
+        c.estimator(), step, kUsualGap, name_of_specification(c.estimator()), 8 * step));
+    return false;
+  }
   say(
       fmt::format("{}: most samples could not be used, so these are no estimates. Samples are "
                   "{:.3g} s apart{}. "

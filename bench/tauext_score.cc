@@ -177,6 +177,19 @@ Recorded recorded(const Flags& f) {
   return all;
 }
 
+// where so little was watched that a number of false alarms in an hour means nothing
+void say_what_is_short(const std::vector<Row>& rows) {
+  constexpr double kUnknown = 300;  // [1/h] that 44 s without a false alarm do not exclude
+  for (const Row& r : rows) {
+    const auto high = r.score.get(Metric::kFalseAlarmsHigh);
+    if (!high || *high < kUnknown) continue;
+    say(
+        fmt::format("{}: so little was watched that {:.3g} to {:.3g} false alarms an hour are "
+                    "possible (95 %); longer recordings tell",
+                    r.entry.name(), r.score.get(Metric::kFalseAlarmsLow).value_or(0), *high));
+  }
+}
+
 int score(const CLI::App& app, const Flags& f) {
   require_flags(app, f);
   const TableFormat format = table_format(f.format);
@@ -193,6 +206,7 @@ int score(const CLI::App& app, const Flags& f) {
   std::FILE* const tables = f.out == "-" ? stderr : stdout;  // standard output is for JSON alone
   fmt::print(tables, "{}", format_table(rows, format, also));
   if (format == TableFormat::kText) fmt::print(tables, "\n{}", table_legend(rows, also));
+  say_what_is_short(rows);
   if (out) {
     const std::string degraded = describe({f.sensors, f.error, f.recording.drives});
     const std::string run = f.scenario.empty()

@@ -13,7 +13,12 @@ void Soundness::look(double t, Status status, bool is_finite) {
 
 std::string Soundness::why(std::int64_t samples) const {
   if (!why_.empty() || 2 * counts_.left_out() <= samples) return why_;
-  return fmt::format("{} of {} samples left out: {}", counts_.left_out(), samples, counts_.text());
+  const bool gaps = 2 * counts_.of(Status::kBadTime) > samples;
+  return fmt::format(
+      "{} of {} samples left out: {}{}", counts_.left_out(), samples, counts_.text(),
+      gaps ? "; a step of more than `max_gap` [s] counts as a gap, and the estimator's "
+             "specification sets it, like mo2:max_gap=0.4"
+           : "");
 }
 
 }  // namespace tauext

@@ -172,7 +172,7 @@ std::vector<std::string> ColumnMap::missing_in(const MappedColumns& found) const
   std::vector<std::string> all;
   for (const auto& [name, w] : wanted_) {
     if (!w.of_preset && found.find(name) == found.end())
-      all.push_back(fmt::format("no column for [{}]: none matches '{}'", name, w.expression));
+      all.push_back(fmt::format("no column has [{}]: none is called '{}'", name, w.expression));
   }
   return all;
 }
@@ -186,10 +186,13 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     const Wanted& w = wanted->second;
     MappedQuantity m{find(q.name, w, columns, path), {}};
     if (m.columns.empty() && (q.name == "t" || q.name == "q"))
-      throw std::runtime_error(fmt::format(
-          "{}: no column for [{}]: none matches '{}'; --columns says which it is. There are: {}",
-          path, q.name, w.expression,
-          printable_name(fmt::format("{}", fmt::join(columns, ", ")), 200)));
+      throw std::runtime_error(
+          fmt::format("{}: no column has the {}, [{}]: none is called '{}'; --columns says which "
+                      "it is{}. There "
+                      "are: {}",
+                      path, q.help.substr(0, q.help.find(';')), q.name, w.expression,
+                      q.name == "t" ? ", or with `rate` that rows have no time" : "",
+                      printable_name(fmt::format("{}", fmt::join(columns, ", ")), 200)));
     if (m.columns.empty()) continue;
     const std::size_t count = m.columns.size();
     m.has_gain = !w.gain.empty(), m.held = w.held;

@@ -190,8 +190,9 @@ class Holes {
         return !std::binary_search(missing.begin(), missing.end(), i);
       });
     }
+    all = one_line(all, 700);
     if (!in_none.empty() && !some_are_whole)
-      return fmt::format("{}; {} in none of them", all, listed(in_none));
+      return fmt::format("{}; {} in none of them", all, one_line(listed(in_none), 400));
     return all +
            ": where these come from several topics, join = 0.005 in a map of columns takes each "
            "from the row nearest in time, within so many seconds";

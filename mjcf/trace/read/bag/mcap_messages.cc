@@ -165,7 +165,7 @@ void McapMessages::open_chunk(std::uint64_t begin) {
                            printable_name(compression)));
   }
   if (chunk_.size() != size || (crc != 0 && crc != crc32_of(0, chunk_.data(), chunk_.size())))
-    file_.fail("is damaged: a chunk is not what its checksum says");
+    file_.fail("is damaged: the bytes of a chunk do not have its checksum");
   chunk_at_ = 0;
 }
 

@@ -88,7 +88,7 @@ void ByteStream::fill() {
   if (!checked_) return;
   crc_ = crc32_of(crc_, block_.data(), end_);
   if (taken_ == extent_.size && crc_ != *extent_.crc) {
-    fail("its checksum is another one: the file is damaged");
+    fail("its bytes do not have its checksum: the file is damaged");
   }
 }
 

@@ -224,7 +224,7 @@ TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
   const std::string log = "t,q1,qd1,tau1\n0,1,2,3\n1,1,2,3\n";
   read_by(log, "preset = 'tauext'\n[contact]\ncolumns = 'touched'\n");
   EXPECT_EQ(skipped_.notes,
-            std::vector<std::string>{"no column for [contact]: none matches 'touched'"});
+            std::vector<std::string>{"no column has [contact]: none is called 'touched'"});
 }
 
 TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {

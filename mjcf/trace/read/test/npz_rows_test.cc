@@ -194,7 +194,7 @@ TEST_F(Npz, WhatADirectoryClaimsIsNotBelieved) {
       error_of_reading(zip({{"t.npy", bytes_of_hex("01 06 00 f9 ff") + "\x93NUMPY", 0, 8, 100}})),
       "array 't': is cut off: 6 of 100 bytes");
   EXPECT_EQ(error_of_reading(zip({{"t.npy", data, 0, 0, size, 1}})),
-            "array 't': its checksum is another one: the file is damaged");
+            "array 't': its bytes do not have its checksum: the file is damaged");
   EXPECT_EQ(error_of_reading(changed(kLocal + kQ + kEntry + kEnd, 0xe7 + 42, "\x01")),
             "its directory points to what is no member");
   EXPECT_EQ(error_of_reading(changed(kLocal + kQ + kEntry + kEnd, 0xe7 + 28, "\xff")),

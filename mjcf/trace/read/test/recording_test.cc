@@ -233,7 +233,8 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(
       error_of_reading("a,b,c\n"),
       path() +
-          ": no column for [t]: none matches 't'; --columns says which it is. There are: a, b, c");
+          ": no column has the time, [t]: none is called 't'; --columns says which it is, or with "
+          "`rate` that rows have no time. There are: a, b, c");
   SkippedRows skipped;
   EXPECT_EQ(error_of([&] { read_csv("/nowhere/x.csv", &skipped); }),
             "/nowhere/x.csv: No such file or directory");
