@@ -146,7 +146,9 @@ std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
 
 // says what is wrong with the robot's file
 ArmTree arm_of(const Flags& f) {
-  const Model model = load_mjcf(f.robot, {f.lock, {}});
+  std::string changes;
+  const Model model = load_mjcf(f.robot, {f.lock, {}}, &changes);
+  if (!changes.empty()) say(fmt::format("{}: {}", f.robot, changes));
   try {
     return tree_of(model);
   } catch (const std::invalid_argument& e) {

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,12 +22,6 @@
 namespace {
 
 using namespace tauext;
-
-std::string counted(const std::map<std::string, int>& all) {
-  std::vector<std::string> words;
-  for (const auto& [what, n] : all) words.push_back(fmt::format("{} {}", n, printable_name(what)));
-  return fmt::format("{}", fmt::join(words, ", "));
-}
 
 // says what is wrong with it
 ArmTree arm_of(const std::string& file, const ImportOptions& options) {
@@ -116,8 +109,7 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
                     kMostCoordinates, kMostFollowers));
   if (const std::string stiff = too_stiff(load_mjcf(file, options)); !stiff.empty())
     say("note: it cannot be simulated: " + stiff);
-  if (!text.changed.empty()) say(fmt::format("changed: {}", counted(text.changed)));
-  if (!text.dropped.empty()) say(fmt::format("left out: {}", counted(text.dropped)));
+  if (const std::string words = in_words(text); !words.empty()) say(words);
   return kGood;
 }
 

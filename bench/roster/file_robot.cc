@@ -8,6 +8,7 @@
 
 #include "bench/roster/kernels/kernels.h"
 #include "mjcf/plant/tree.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -29,7 +30,9 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::size_t lock = name.find(kLock);
   const std::string path = name.substr(0, lock);
   const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
-  const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}) : load_robot(name);
+  std::string changes;
+  const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}, &changes) : load_robot(name);
+  if (!changes.empty()) say(fmt::format("{}: {}", path, changes));
   const detail::Kernels& kernels = detail::kernels();  // its error is not the file's
   try {
     return robot_from(kernels, tree_of(model).dof(), name, model);

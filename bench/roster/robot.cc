@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -133,7 +134,8 @@ void Robot::require_range(const Eigen::VectorXd& least, const Eigen::VectorXd& m
   if (!file_) return;
   const ArmTree arm = tree_of(file_);
   for (int j = 0; j < dof_; ++j) {
-    const double slack = (arm.upper[j] - arm.lower[j]) / 4;  // infinite without a range
+    const double width = arm.upper[j] - arm.lower[j];  // infinite without both ends
+    const double slack = std::isfinite(width) ? width / 4 : 1.5;
     if (least[j] < arm.lower[j] - slack || most[j] > arm.upper[j] + slack)
       throw std::invalid_argument(fmt::format(
           "{}: q{} goes from {:.3g} to {:.3g}, and that joint of {} from {:.3g} to {:.3g} rad (or "

@@ -91,7 +91,7 @@ std::string list_scale(const Robot& r) {
                      {"used to", "N m, N"}});
   for (int i = 0; i < r.dof(); ++i) {
     const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
-    const bool free = std::isinf(arm.upper[i] - arm.lower[i]);
+    const bool free = std::isinf(arm.lower[i]) && std::isinf(arm.upper[i]);
     table.add({fmt::format("{}", i + 1), printable_name(arm.names[leader]),
                free ? "none" : fmt::format("{:.3f} to {:.3f}", arm.lower[i], arm.upper[i]),
                fmt::format("{:.3f}", scale.home[i]), fmt::format("{:.3f}", scale.amplitude[i]),

@@ -111,6 +111,18 @@ TEST_F(FilePrograms, RecordsAndReplaysIt) {
   EXPECT_EQ(run(line.substr(line.find("tauext-record"))).code, 0);
 }
 
+TEST_F(FilePrograms, SayOnceWhatTheImportChanged) {
+  const auto times = [](const std::string& text, const std::string& what) {
+    int n = 0;
+    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; ++at) ++n;
+    return n;
+  };
+  const Outcome locked = run("tauext-record --robot " + kArm7 + " --scenario step --out x.csv");
+  EXPECT_EQ(times(locked.text, "arm7.xml: changed: 2 joint locked; left out: "), 1) << locked.text;
+  const Outcome whole = run("tauext-record --robot " + kArm6 + " --scenario step --out x.csv");
+  EXPECT_EQ(times(whole.text, "left out: "), 0) << whole.text;
+}
+
 TEST_F(FilePrograms, CalibratesAndStudiesIt) {
   const std::string few =
       " --robot " + kTwoArms + " --estimator mo2 --detector high_pass,pan_tompkins";

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "mjcf/import/xml.h"
@@ -16,6 +17,25 @@
 
 namespace tauext::detail {
 namespace {
+
+// GCC's library tries all ways one after the other, which may take for ever, unless it is told to
+// go them together; then it knows no \1
+#ifdef __GLIBCXX__
+constexpr auto kTogether = std::regex::ECMAScript | std::regex_constants::__polynomial;
+#else
+constexpr auto kTogether = std::regex::ECMAScript;
+#endif
+
+const std::regex& compiled(const std::string& regex) {
+  thread_local std::pair<std::string, std::regex> last;
+  if (last.first != regex) {
+    if (regex.size() > 10000)  // it is read as deep as it is long
+      throw std::runtime_error("--lock: an expression of more than 10000 letters");
+    last.second = std::regex(regex, kTogether);
+    last.first = regex;
+  }
+  return last.second;
+}
 
 // a joint that is taken away stays at its `ref`
 bool stays_in_range(const XMLElement& joint) {
@@ -31,7 +51,7 @@ std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,
   if (lock.empty()) return locked;
   std::vector<std::string> names;
   each(root, [&](XMLElement& e) {
-    if (name_of(e) != "joint" || parent_name(e) != "body") return true;
+    if (!is_joint(e)) return true;
     names.push_back(text(e, "name"));
     if (!is_locked(names.back(), lock)) return true;
     locked.insert(names.back());
@@ -57,6 +77,7 @@ void find_carriers(const XMLElement& at, const XMLElement* carrier, Carriers& al
 }
 
 bool is_idle(const XMLElement& e, const std::set<std::string>& locked, Carriers& carriers) {
+  if (name_of(e) == "tendon") return false;  // it goes with its tendons
   if (name_of(e) != "joint") return carriers[text(e, "body1")] == carriers[text(e, "body2")];
   const std::string one = text(e, "joint1"), two = text(e, "joint2");
   const bool first = locked.count(one) > 0, second = two.empty() || locked.count(two) > 0;
@@ -68,12 +89,39 @@ bool is_idle(const XMLElement& e, const std::set<std::string>& locked, Carriers&
   return first;
 }
 
+bool moves_inside(XMLElement& body) {
+  bool moves = false;
+  each(body, [&](XMLElement& e) {
+    moves = moves || (is_joint(e) && !is_free(e));
+    return true;
+  });
+  return moves;
+}
+
 }  // namespace
+
+void settle(XMLElement& mujoco, std::map<std::string, int>& dropped) {
+  bool arm = false;
+  std::vector<XMLElement*> free;
+  each(mujoco, [&](XMLElement& e) {
+    arm = arm || (is_joint(e) && !is_free(e));
+    if (is_joint(e) && is_free(e)) free.push_back(&e);
+    return true;
+  });
+  for (XMLElement* joint : free) {
+    XMLElement& body = *joint->Parent()->ToElement();
+    if (arm && !moves_inside(body)) {
+      drop(*joint, "body that floats beside the arm, and stands now", dropped);
+    } else if (text(*joint, "name").empty() && !text(body, "name").empty()) {
+      joint->SetAttribute("name", text(body, "name").c_str());
+    }
+  }
+}
 
 bool is_locked(const std::string& joint, const std::string& regex) {
   if (regex.empty()) return false;
   try {
-    return std::regex_match(joint, std::regex(regex));
+    return std::regex_match(joint, compiled(regex));
   } catch (const std::regex_error& e) {
     throw std::runtime_error(fmt::format("--lock '{}': {}", printable_name(regex), e.what()));
   }
@@ -94,9 +142,17 @@ void lock_joints(XMLElement& mujoco, const std::string& regex, std::map<std::str
       return drop(e, "equality of what is locked", dropped);
     return true;
   });
+  std::set<std::string> gone = {""};
   each(mujoco, [&](XMLElement& e) {
     if (name_of(e) != "fixed" || e.FirstChildElement() != nullptr) return true;
+    gone.insert(text(e, "name"));
     return drop(e, "tendon of locked joints", dropped);
+  });
+  each(mujoco, [&](XMLElement& e) {
+    if (name_of(e) != "tendon" || parent_name(e) != "equality" ||
+        gone.count(text(e, "tendon1")) == 0 || gone.count(text(e, "tendon2")) == 0)
+      return true;
+    return drop(e, "equality of what is locked", dropped);
   });
 }
 

@@ -16,6 +16,11 @@ namespace tauext::detail {
 /// @throws std::runtime_error for one that is none
 bool is_locked(const std::string& joint, const std::string& regex);
 
+/// A body that floats alone beside an arm, like an object to grasp, has no part in the arm's
+/// dynamics: it loses its free joint and stands. Another free joint, which is a robot's base, gets
+/// its body's name if it has none.
+void settle(tinyxml2::XMLElement& mujoco, std::map<std::string, int>& dropped);
+
 /// Takes the joints away whose whole name matches, so that their bodies stand as at 0; then
 /// equalities and tendons that have nothing left to tie.
 /// @param regex ECMAScript's; none if it is empty

@@ -2,15 +2,20 @@
 #include "mjcf/import/mjcf_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <locale>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
 #include "mjcf/import/schema.h"
 #include "mjcf/import/urdf.h"
@@ -62,13 +67,19 @@ class Import {
     XMLElement& root = *doc_.RootElement();
     if (name_of(root) != "mujoco") fail(root, "<{}> is no MJCF, and no URDF", name_of(root));
     include(root, fs::path(path_).parent_path(), 0);
+    problems_.raise();
     refuse_unknown(root);
-    find_bodies_with_mass(root);
+    read_settings(root);
     detail::keep_rated(root);
     keep(root);
+    problems_.raise();
+    detail::settle(root, out_.dropped);
     detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
+    mend_inertias(root);
     set_compiler(root);
-    root.InsertNewChildElement("option")->SetAttribute("integrator", "RK4");
+    XMLElement* const option = root.InsertNewChildElement("option");
+    option->SetAttribute("integrator", "RK4");
+    if (weightless_) option->SetAttribute("gravity", "0 0 0");
     add_motors(root);
     detail::put_measured(root, options_.measured);
     tinyxml2::XMLPrinter printer;
@@ -94,7 +105,23 @@ class Import {
           fmt::format("{}line {}: no XML ({})", where, doc.ErrorLineNum(), detail::error_of(doc))));
     if (const XMLElement* const second = doc.RootElement()->NextSiblingElement())
       fail(*second, "{}a second <{}> behind the first", where, name_of(*second));
+    refuse_controls(*doc.RootElement(), where);
+    each(*doc.RootElement(), [&](const XMLElement& e) {
+      refuse_controls(e, where);
+      return true;
+    });
     return *doc.RootElement();
+  }
+
+  // XML must not have them, and terminals obey them
+  static void refuse_controls(const XMLElement& e, const std::string& where) {
+    for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
+      for (const char* c = a->Value(); *c != '\0'; ++c)
+        if (std::iscntrl(static_cast<unsigned char>(*c)) &&
+            !std::isspace(static_cast<unsigned char>(*c)))
+          fail(e, "{}{} of <{}> has a control character: {}", where, a->Name(), name_of(e),
+               a->Value());
+    }
   }
 
   // <include file=".."/> by the content of that file
@@ -102,14 +129,17 @@ class Import {
     for (XMLElement* e = at.FirstChildElement(); e != nullptr;) {
       XMLElement* const next = e->NextSiblingElement();
       if (name_of(*e) == "include") {
-        const std::string file = text(*e, "file");
-        if (depth > 20 || !included_.insert(file).second) fail(*e, "'{}' is included twice", file);
-        XMLDocument other;
-        XMLElement& root = load(other, folder / file);
-        include(root, folder, depth + 1);
-        XMLNode* behind = e;
-        for (XMLNode* c = root.FirstChild(); c != nullptr; c = c->NextSibling())
-          behind = at.InsertAfterChild(behind, c->DeepClone(at.GetDocument()));
+        problems_.attempt([&] {
+          const std::string file = text(*e, "file");
+          if (depth > 20 || !included_.insert(file).second)
+            fail(*e, "'{}' is included twice", file);
+          XMLDocument other;
+          XMLElement& root = load(other, folder / file);
+          include(root, folder, depth + 1);
+          XMLNode* behind = e;
+          for (XMLNode* c = root.FirstChild(); c != nullptr; c = c->NextSibling())
+            behind = at.InsertAfterChild(behind, c->DeepClone(at.GetDocument()));
+        });
         at.DeleteChild(e);
       } else {
         include(*e, folder, depth);
@@ -119,22 +149,34 @@ class Import {
   }
 
   void refuse_unknown(XMLElement& root) {
+    std::vector<std::string> found;
     each(root, [&](XMLElement& e) {
-      for (const std::string_view name : detail::kUnknown) {
-        if (name_of(e) != name || !inside(e, "worldbody")) continue;
-        fail(e,
-             "MuJoCo 2.2.2 does not know <{}> within a body; write its bodies out "
-             "(as newer MuJoCo does when it saves a model)",
-             name);
-      }
-      return true;
+      const auto* const end = std::end(detail::kUnknown);
+      if (!inside(e, "worldbody") ||
+          std::find(std::begin(detail::kUnknown), end, name_of(e)) == end)
+        return true;
+      found.push_back(fmt::format("<{}> (line {})", name_of(e), e.GetLineNum()));
+      return false;
     });
+    if (found.empty()) return;
+    throw std::runtime_error(
+        one_line(fmt::format("MuJoCo 2.2.2 does not know {} within a body; write its bodies out "
+                             "(as newer MuJoCo does when it saves a model)",
+                             fmt::join(found, ", ")),
+                 8000));
   }
 
-  void find_bodies_with_mass(XMLElement& root) {
+  void read_settings(XMLElement& root) {
     each(root, [&](XMLElement& e) {
-      if (name_of(e) == "compiler" && e.Attribute("inertiafromgeom") != nullptr)
+      if (text(e, "mocap") == "true" && e.Attribute("name") != nullptr)
+        mocap_.insert(text(e, "name"));
+      if (name_of(e) == "tendon" && inside(e, "default"))
+        tendons_have_forces_ = tendons_have_forces_ || has_forces(e);
+      if (name_of(e) != "compiler") return true;
+      if (e.Attribute("inertiafromgeom") != nullptr)
         from_geom_ = text(e, "inertiafromgeom") == "true";
+      if (e.Attribute("balanceinertia") != nullptr) balances_ = text(e, "balanceinertia") == "true";
+      by_group_ = by_group_ || e.Attribute("inertiagrouprange") != nullptr;
       return true;
     });
   }
@@ -151,6 +193,7 @@ class Import {
       if (parent_name(e) == "equality") return detail::kJointEquality;
       if (parent_name(e) == "fixed") return detail::kFixedJoint;
     }
+    if (name_of(e) == "tendon" && parent_name(e) == "equality") return detail::kTendonEquality;
     for (const detail::Kept& k : detail::kKept) {
       if (k.element == name_of(e)) return k.attributes;
     }
@@ -163,21 +206,9 @@ class Import {
       root.DeleteAttribute(root.FirstAttribute()->Name());
     std::set<std::string> meshes;
     each(root, [&](XMLElement& e) {
-      const std::string_view attributes = attributes_of(e);
-      if (attributes.empty()) {
-        if (!has_word(detail::kLeftOutElements, name_of(e)))
-          fail(e, "this import knows no <{}>; {}", name_of(e),
-               detail::remedy_for(name_of(e), detail::elements_of(detail::kKept)));
-        return drop_section(e);
-      }
-      if (name_of(e) == "geom" && e.Attribute("mesh") != nullptr && !inside(e, "default")) {
-        if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
-        meshes.insert(text(e, "mesh"));
-      }
-      if (name_of(e) == "numeric" && !text(e, "name").starts_with(detail::kMeasured))
-        return drop(e, "numeric", out_.dropped);
-      keep_attributes(e, attributes);
-      return true;
+      bool goes_on = false;
+      problems_.attempt([&] { goes_on = keep_element(e, meshes); });
+      return goes_on;
     });
     each(root, [&](XMLElement& e) {
       if (name_of(e) != "mesh" || inside(e, "default")) return true;
@@ -186,6 +217,52 @@ class Import {
       if (meshes.count(name) > 0) return true;
       return drop(e, "mesh", out_.dropped);
     });
+  }
+
+  // false where it was left out
+  bool keep_element(XMLElement& e, std::set<std::string>& meshes) {
+    const std::string_view attributes = attributes_of(e);
+    if (name_of(e) == "spatial" && (has_forces(e) || tendons_have_forces_))
+      fail(e,
+           "a <spatial> tendon, or its default, has stiffness, damping or frictionloss, which no "
+           "estimator here knows; take that out");
+    if (name_of(e) == "flag") obey(e);
+    if (attributes.empty()) {
+      if (!has_word(detail::kLeftOutElements, name_of(e)))
+        fail(e, "this import knows no <{}>; {}", name_of(e),
+             detail::remedy_for(name_of(e), detail::elements_of(detail::kKept)));
+      return drop_section(e);
+    }
+    if (parent_name(e) == "equality" &&
+        (mocap_.count(text(e, "body1")) > 0 || mocap_.count(text(e, "body2")) > 0))
+      return drop(e, "equality that drags by a mocap body", out_.dropped);  // as an actuator would
+    if (name_of(e) == "geom" && !inside(e, "default")) {
+      if (e.Attribute("hfield") != nullptr) return drop(e, "geom (hfield)", out_.dropped);
+      if (e.Attribute("mesh") != nullptr) {
+        if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
+        meshes.insert(text(e, "mesh"));
+      }
+    }
+    if (name_of(e) == "numeric" && !text(e, "name").starts_with(detail::kMeasured))
+      return drop(e, "numeric", out_.dropped);
+    keep_attributes(e, attributes);
+    return true;
+  }
+
+  // what it switches off would come back with it left out
+  void obey(const XMLElement& flag) {
+    weightless_ = weightless_ || text(flag, "gravity") == "disable";
+    for (const char* what :
+         {"constraint", "equality", "frictionloss", "passive", "spring", "damper"})
+      if (text(flag, what) == "disable")
+        fail(flag, "<flag> switches {} off; take that out, and what it switches off", what);
+  }
+
+  static bool has_forces(const XMLElement& tendon) {
+    bool any = false;
+    for (const char* force : {"stiffness", "damping", "frictionloss"})
+      any = any || tendon.DoubleAttribute(force, 0) != 0;
+    return any;
   }
 
   // counts what is in it
@@ -207,15 +284,58 @@ class Import {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr;) {
       const std::string attribute = a->Name();
       a = a->Next();
-      if (has_word(kept, attribute)) continue;
+      if (has_word(kept, attribute) || (by_group_ && attribute == "group")) continue;
       if (!is_left_out(e, attribute)) {
-        fail(e, "<{}> has no attribute '{}' that this import knows; {}", name_of(e), attribute,
-             detail::remedy_for(attribute, kept));
+        problems_.attempt([&] {
+          fail(e, "<{}> has no attribute '{}' that this import knows; {}", name_of(e), attribute,
+               detail::remedy_for(attribute, kept));
+        });
       }
       if (attribute != "rgba" && attribute != "material" && attribute != "group")
         ++out_.dropped[fmt::format("{}.{}", name_of(e), attribute)];
       e.DeleteAttribute(attribute.c_str());
     }
+  }
+
+  // MuJoCo judges every body by itself
+  void mend_inertias(XMLElement& root) {
+    if (from_geom_) return;
+    std::vector<std::string> all;
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "inertial") return true;
+      const bool diagonal = e.Attribute("diaginertia") != nullptr;
+      const char* const attribute = diagonal ? "diaginertia" : "fullinertia";
+      std::istringstream in(text(e, attribute));
+      in.imbue(std::locale::classic());
+      double I[6] = {};
+      for (int i = 0; i < (diagonal ? 3 : 6); ++i)
+        if (!(in >> I[i])) return true;  // MuJoCo will say it
+      Eigen::Matrix3d tensor;
+      tensor << I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2];
+      if (tensor.isZero(0)) return true;  // a point
+      const detail::MendedInertia m = detail::mended(tensor, e.DoubleAttribute("mass", 0));
+      const double missing = m.moments[2] - m.moments[0] - m.moments[1];
+      if (m.moments[0] >= 0 && missing <= 0) return true;
+      const std::string body = text(*e.Parent()->ToElement(), "name");
+      if (balances_ && m.moments[0] >= 0) {  // by MuJoCo, which makes a ball of it
+        const double mean = m.moments.sum() / 3;
+        ++out_.changed[fmt::format("inertia of '{}' by {:.2g} %, by the file's balanceinertia",
+                                   body, 100 * (m.moments[2] - mean) / m.moments[2])];
+        return true;
+      }
+      if (!m.few_digits && !options_.balance) {
+        all.push_back(detail::impossible(body, e.GetLineNum(), m.moments));
+        return true;
+      }
+      if (m.change > 1e-8)
+        ++out_.changed[fmt::format("inertia of '{}' by {:.2g} %", body, 100 * m.change)];
+      const Eigen::Matrix3d& M = m.inertia;
+      std::string words = fmt::format("{:.17g} {:.17g} {:.17g}", M(0, 0), M(1, 1), M(2, 2));
+      if (!diagonal) words += fmt::format(" {:.17g} {:.17g} {:.17g}", M(0, 1), M(0, 2), M(1, 2));
+      e.SetAttribute(attribute, words.c_str());
+      return true;
+    });
+    if (!all.empty()) throw std::runtime_error(one_line(detail::impossible_inertias(all), 8000));
   }
 
   // the last <compiler> is obeyed; newer MuJoCo's default is that a range limits
@@ -270,11 +390,28 @@ class Import {
   ImportOptions options_;
   XMLDocument doc_;
   ImportedText out_;
-  bool from_geom_ = false;
-  std::set<std::string> included_;
+  detail::Problems problems_;
+  bool from_geom_ = false, balances_ = false, tendons_have_forces_ = false;
+  bool weightless_ = false;
+  bool by_group_ = false;  // whether the group of a shape says if it has a mass
+  std::set<std::string> included_, mocap_;
 };
 
+std::string counted(const std::map<std::string, int>& all) {
+  std::vector<std::string> words;
+  for (const auto& [what, n] : all)
+    words.push_back(fmt::format("{} {}", n, printable_name(what, 200)));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 }  // namespace
+
+std::string in_words(const ImportedText& text) {
+  std::string words;
+  if (!text.changed.empty()) words = "changed: " + counted(text.changed);
+  if (text.dropped.empty()) return words;
+  return words + (words.empty() ? "" : "; ") + "left out: " + counted(text.dropped);
+}
 
 bool is_urdf(const std::string& path) {
   return Import(path, {}).root() == "robot";

@@ -31,6 +31,9 @@ struct ImportedText {
   std::map<std::string, int> changed;  ///< what is different, like "joint locked"
 };
 
+/// What is different and what is left out, each with its number, in one line; "" if nothing is.
+std::string in_words(const ImportedText& text);
+
 /// Whether the file is URDF, and none that MuJoCo should be shown.
 /// @throws std::runtime_error as import_mjcf does, for a file that cannot be read or is no XML
 bool is_urdf(const std::string& path);

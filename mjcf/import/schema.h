@@ -48,7 +48,8 @@ struct Kept {
   std::string_view attributes;  ///< apart by blanks, one before and behind each
 };
 
-/// The same within <default>, within bodies and beside them.
+/// The same within <default>, within bodies and beside them. <tendon> and <equality> have theirs in
+/// <default>.
 inline constexpr Kept kKept[] = {
     {"compiler",
      " boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq "
@@ -70,11 +71,13 @@ inline constexpr Kept kKept[] = {
     {"site", " name class type size fromto pos quat axisangle xyaxes zaxis euler "},
     {"asset", " "},
     {"mesh", " name class file vertex normal face refpos refquat scale smoothnormal "},
-    {"tendon", " "},
+    {"tendon",
+     " limited range margin springlength stiffness damping frictionloss solreflimit solimplimit "
+     "solreffriction solimpfriction "},
     {"fixed",
      " name class limited range margin springlength stiffness damping frictionloss solreflimit "
      "solimplimit solreffriction solimpfriction "},
-    {"equality", " "},
+    {"equality", " active solref solimp "},
     {"connect", " name class active body1 body2 anchor solref solimp "},
     {"weld", " name class active body1 body2 relpose anchor torquescale solref solimp "},
     {"contact", " "},
@@ -94,6 +97,9 @@ std::string elements_of(const Kept (&list)[n]) {
 /// Of <equality><joint>, which is another element than a body's.
 inline constexpr std::string_view kJointEquality =
     " name class active joint1 joint2 polycoef solref solimp ";
+/// Of <equality><tendon>.
+inline constexpr std::string_view kTendonEquality =
+    " name class active tendon1 tendon2 polycoef solref solimp ";
 /// Of <fixed><joint>.
 inline constexpr std::string_view kFixedJoint = " joint coef ";
 
@@ -117,6 +123,7 @@ inline constexpr Kept kLeftOut[] = {
      " maxhullvert inertia content_type builtin params material user texcoord "
      "octree_maxdepth "},
     {"fixed", " group user width rgba actuatorfrcrange actuatorfrclimited "},
+    {"tendon", " group user width rgba material actuatorfrcrange actuatorfrclimited "},
 };
 
 /// Elements that show things, are about contacts, actuators or sensors, or have no part in the

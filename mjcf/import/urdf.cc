@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -20,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
 #include "mjcf/import/measured_terms.h"
 #include "mjcf/import/schema.h"
@@ -45,6 +45,9 @@ double number(const XMLElement* e, const char* attribute, double otherwise) {
   if (e == nullptr || e->Attribute(attribute) == nullptr) return otherwise;
   return numbers(*e, attribute, 1).front();
 }
+constexpr double kEndless = 1e9;   // [rad] or [m] of a range in MJCF that has no end there
+constexpr double kNoLimit = 1000;  // [rad] or [m] of a limit from which on none is meant
+
 // of a limit; "inf" stands for none in many files, as 0 does
 double bound(const XMLElement* limit, const char* attribute) {
   const std::string words = limit == nullptr ? "" : text(*limit, attribute);
@@ -126,6 +129,24 @@ void drop_attribute(const XMLElement& e, const std::string& owner, std::string_v
   ++dropped[fmt::format("{}.{}", name_of(e), name)];
 }
 
+// Whether an element may be meant for another place, around it or beside it, that has none; where
+// there is no such place, an <origin> has nothing to turn or move.
+bool is_astray(const XMLElement& e, std::string_view within) {
+  if (has_word(within, "robot")) return true;
+  bool found = false;
+  const auto lacks_it = [&](const XMLElement& place) {
+    const XMLElement* const own = place.FirstChildElement(e.Name());
+    found = found || (own != nullptr && own != &e);
+    return has_word(within, name_of(place)) && (own == nullptr || own == &e);
+  };
+  for (const tinyxml2::XMLNode* at = e.Parent(); at->ToElement() != nullptr; at = at->Parent())
+    if (lacks_it(*at->ToElement())) return true;
+  for (const XMLElement* beside = e.Parent()->FirstChildElement(); beside != nullptr;
+       beside = beside->NextSiblingElement())
+    if (lacks_it(*beside)) return true;
+  return !found && name_of(e) != "origin";
+}
+
 // typing errors would change the arm, and nobody would see it
 void refuse_unknown(const XMLElement& e, const std::string& owner,
                     std::map<std::string, int>& dropped) {
@@ -144,9 +165,13 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
     ++dropped[std::string(name_of(e))];
     return;
   }
-  if (!has_word(known->within, parent_name(e)))
-    fail(e, "{}: <{}> stands within <{}>, and belongs into{}", owner, name_of(e), parent_name(e),
-         known->within.substr(0, known->within.size() - 1));
+  if (!has_word(known->within, parent_name(e))) {
+    if (is_astray(e, known->within))
+      fail(e, "{}: <{}> stands within <{}>, and belongs into{}", owner, name_of(e), parent_name(e),
+           known->within.substr(0, known->within.size() - 1));
+    ++dropped[fmt::format("{} in <{}>", name_of(e), parent_name(e))];
+    return;
+  }
   for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string_view name = a->Name();
     if (std::string_view(a->Value()).find("${") != name.npos)
@@ -168,6 +193,12 @@ struct Part {
   Matrix3d inertia = Matrix3d::Zero();  // [kg m^2] about it
 };
 
+// links that are fixed to each other
+struct Piece {
+  std::vector<Part> parts;
+  bool has_shape = false;
+};
+
 Part sum(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts.front();
   Part all;
@@ -184,58 +215,26 @@ Part sum(const std::vector<Part>& parts) {
   return all;
 }
 
-// The nearest principal moments that a body has, a little within: each is above 0, and at most the
-// sum of the others. Those of a ball of water's density if there are none at all.
-Vector3d balanced(const Vector3d& moments, double kg) {  // the least first
-  const double r = std::cbrt(kg / 4189), most = moments[2];
-  Vector3d m = moments.cwiseMax(most > 0 ? 1e-6 * most : .4 * kg * r * r);
-  if (const double missing = m[2] - m[0] - m[1] + 1e-9 * most; missing > 0)
-    m += missing / 3 * Vector3d(1, 1, -1);
-  return m;
-}
-
-// whether what is missing was lost where the file was printed with few digits
-bool can_be(const Vector3d& moments) {
-  const double missing = std::max(-moments[0], moments[2] - moments[0] - moments[1]);
-  return moments[2] > 0 && missing <= 1e-3 * moments[2];
-}
-
 class Urdf {
  public:
   Urdf(const XMLElement& robot, XMLElement& mujoco, const UrdfReading& how)
       : mujoco_(mujoco), how_(how) {
-    attempt([&] {
+    problems_.attempt([&] {
       read(robot);
       connect(robot);
     });
-    if (!impossible_.empty())
-      problems_.push_back(fmt::format(
-          "{} principal moments of inertia [kg m^2] that no body has (each is above 0, and at most "
-          "the sum of the others; tauext-import --balance mends them): {}",
-          impossible_.size() == 1 ? "a link has" : fmt::format("{} links have", impossible_.size()),
-          fmt::join(impossible_, ", ")));
+    if (!impossible_.empty()) problems_.add(impossible_inertias(impossible_));
     if (!massless_.empty())
-      problems_.push_back(fmt::format(
+      problems_.add(fmt::format(
           "links that move and have no mass (give them an <inertial>, or --lock their joints): {}",
           fmt::join(massless_, ", ")));
-    if (!problems_.empty())
-      throw std::runtime_error(one_line(fmt::format("{}", fmt::join(problems_, "; ")), 8000));
+    problems_.raise();
   }
 
  private:
-  // every error of a file in one message
-  template <class Try>
-  void attempt(Try&& what) {
-    try {
-      what();
-    } catch (const std::runtime_error& e) {
-      problems_.emplace_back(e.what());
-    }
-  }
-
   void read(const XMLElement& robot) {
     for (const XMLElement* e = robot.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-      attempt([&] { read_part(*e); });
+      problems_.attempt([&] { read_part(*e); });
     if (links_.empty()) fail(robot, "there is no link in it; is it a file of macros (xacro)?");
   }
 
@@ -254,21 +253,24 @@ class Urdf {
 
   void connect(const XMLElement& robot) {
     for (const XMLElement* j : joints_) {
-      attempt([&] {
+      problems_.attempt([&] {
         const std::string child = link_of(*j, "child"), parent = link_of(*j, "parent");
         if (!joint_of_child_.emplace(child, j).second)
           fail(*j, "link '{}' is the child of two joints", child);
         children_[parent].push_back(j);
       });
     }
-    const bool whole = problems_.empty();  // else what follows may be for want of what was refused
+    const bool whole =
+        problems_.count() == 0;  // else what follows may be for want of what was refused
     XMLElement& world = *mujoco_.InsertNewChildElement("worldbody");
     int roots = 0;
     for (const auto& [name, link] : links_) {
       if (joint_of_child_.count(name) > 0) continue;
       ++roots;
-      std::vector<Part> stands;
+      Piece stands;
       add_body(*link, nullptr, world, 0, stands, Isometry3d::Identity());
+      for (const Part& p : stands.parts)
+        if (p.kg > 0) ++how_.dropped["mass of what never moves"];
     }
     if (!whole) return;
     if (roots == 0) fail(robot, "every link is a joint's child: the joints go round in a ring");
@@ -282,14 +284,16 @@ class Urdf {
     const XMLElement* const e = joint.FirstChildElement(end);
     std::string link = e == nullptr ? "" : text(*e, "link");
     if (links_.count(link) == 0)
-      fail(joint, "joint '{}': its {} '{}' is no link", text(joint, "name"), end, link);
+      fail(joint, "joint '{}': its {} '{}' is no link; add that, or take the joint out",
+           text(joint, "name"), end, link);
     return link;
   }
 
   // What is fixed to the link before it has its mass in the same piece, in whose frame that link
   // stands at `before`. The piece of the base never moves, and may have any inertia.
-  void add_body(const XMLElement& link, const XMLElement* joint, XMLElement& parent, int depth,
-                std::vector<Part>& piece, const Isometry3d& before) {
+  // Returns the mass [kg] of it and of all behind it.
+  double add_body(const XMLElement& link, const XMLElement* joint, XMLElement& parent, int depth,
+                  Piece& piece, const Isometry3d& before) {
     const std::string name = text(link, "name");
     placed_.insert(name);
     if (depth > 90) fail(link, "more than 90 links in a row");  // XML elements, each in another
@@ -298,8 +302,9 @@ class Urdf {
     const bool moves = joint != nullptr && text(*joint, "type") != "fixed" &&
                        !is_locked(text(*joint, "name"), how_.lock);
     Isometry3d frame = Isometry3d::Identity();
-    attempt([&] {
+    problems_.attempt([&] {
       if (joint == nullptr) return;
+      if (text(*joint, "type") != "fixed") add_joint(*joint, moves, body);
       const XMLElement* const origin = joint->FirstChildElement("origin");
       frame.linear() = rotation(origin);
       frame.translation() = vector(origin, "xyz", Vector3d::Zero());
@@ -307,18 +312,21 @@ class Urdf {
       const Eigen::Quaterniond q(frame.linear());
       set(body, "pos", {at[0], at[1], at[2]});
       set(body, "quat", {q.w(), q.x(), q.y(), q.z()});
-      if (text(*joint, "type") != "fixed") add_joint(*joint, body);
     });
-    std::vector<Part> own;
-    std::vector<Part>& parts = moves ? own : piece;
+    Piece own;
+    Piece& all = moves ? own : piece;
     const Isometry3d here = moves ? Isometry3d::Identity() : before * frame;
-    const std::size_t before_it = problems_.size();
-    attempt([&] { add_part(link, here, parts); });
-    if (problems_.size() > before_it)
-      parts.push_back({name, 1, here.translation(), Matrix3d::Identity()});
+    const std::size_t parts_before = all.parts.size();
+    if (!problems_.attempt([&] { add_part(link, here, all.parts); }))
+      all.parts.push_back({name, 1, here.translation(), Matrix3d::Identity()});
+    for (const char* shape : {"visual", "collision"})
+      all.has_shape = all.has_shape || link.FirstChildElement(shape) != nullptr;
+    const double kg = all.parts.size() > parts_before ? all.parts.back().kg : 0;
+    double behind = 0;
     for (const XMLElement* j : children_[name])
-      add_body(*links_.at(link_of(*j, "child")), j, body, depth + 1, parts, here);
-    if (moves) add_inertial(link, sum(own), body);
+      behind += add_body(*links_.at(link_of(*j, "child")), j, body, depth + 1, all, here);
+    if (moves) add_inertial(link, own, behind, body);
+    return kg + behind;
   }
 
   static void add_part(const XMLElement& link, const Isometry3d& at, std::vector<Part>& parts) {
@@ -343,71 +351,101 @@ class Urdf {
                      Matrix3d(R * I * R.transpose())});
   }
 
-  void add_inertial(const XMLElement& link, Part p, XMLElement& body) {
+  // A frame between two joints, as those that a ball joint is made of have between them, needs no
+  // mass; MuJoCo wants some.
+  void add_inertial(const XMLElement& link, const Piece& piece, double behind, XMLElement& body) {
+    constexpr double kNearlyNone = 1e-12;  // [kg], [kg m^2]
+    Part p = sum(piece.parts);
+    if (p.kg == 0 && behind > 0 && !piece.has_shape) {
+      p.kg = kNearlyNone;
+      p.inertia = kNearlyNone * Matrix3d::Identity();
+      ++how_.changed["frame between joints that has no mass, now 1e-12 kg"];
+    }
     if (p.kg == 0)
       return massless_.push_back(
           fmt::format("'{}' (line {})", text(link, "name"), link.GetLineNum()));
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(p.inertia);
-    const Vector3d& moments = axes.eigenvalues();
-    const Vector3d mended = balanced(moments, p.kg);
-    const double change = (mended - moments).cwiseAbs().maxCoeff() / mended[2];
-    if (!can_be(moments) && !how_.balance)
-      impossible_.push_back(fmt::format("'{}' (line {}) {:.4g}, {:.4g} and {:.4g}", p.links,
-                                        link.GetLineNum(), moments[0], moments[1], moments[2]));
-    if (change > 0)
-      p.inertia = axes.eigenvectors() * mended.asDiagonal() * axes.eigenvectors().transpose();
-    if (change > 1e-8)
-      ++how_.changed[fmt::format("inertia of '{}' by {:.2g} %", p.links, 100 * change)];
+    const MendedInertia m = mended(p.inertia, p.kg);
+    if (!m.few_digits && !how_.balance)
+      impossible_.push_back(impossible(p.links, link.GetLineNum(), m.moments));
+    if (m.change > 1e-8)
+      ++how_.changed[fmt::format("inertia of '{}' by {:.2g} %", p.links, 100 * m.change)];
     XMLElement& out = *body.InsertNewChildElement("inertial");
-    const Matrix3d& I = p.inertia;
     set(out, "pos", {p.center[0], p.center[1], p.center[2]});
     set(out, "mass", {p.kg});
-    set(out, "fullinertia", {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)});
+    // MuJoCo finds the axes of a "fullinertia" to seven digits
+    set(out, "quat", {m.axes.w(), m.axes.x(), m.axes.y(), m.axes.z()});
+    set(out, "diaginertia", {m.principal[0], m.principal[1], m.principal[2]});
   }
 
-  void add_joint(const XMLElement& joint, XMLElement& body) {
+  void add_joint(const XMLElement& joint, bool moves, XMLElement& body) {
     const std::string type = text(joint, "type"), name = text(joint, "name");
     const bool slide = type == "prismatic";
-    if (!slide && type != "revolute" && type != "continuous")
-      fail(joint, "joint '{}' is {}: revolute, continuous, prismatic and fixed are known", name,
-           type);
     XMLElement& out = *body.InsertNewChildElement("joint");
     out.SetAttribute("name", name.c_str());
     out.SetAttribute("type", slide ? "slide" : "hinge");
+    if (!slide && type != "revolute" && type != "continuous") {
+      if (!moves) return;  // it is locked
+      fail(joint,
+           "joint '{}' is {}: revolute, continuous, prismatic and fixed are known; --lock REGEX "
+           "fixes others",
+           name, type);
+    }
+    problems_.attempt([&] { set_axis(joint, out); });
+    problems_.attempt([&] { set_range(joint, out); });
+    const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
+    const auto copy = [&](const char* term, const char* attribute) {
+      const double x = number(dynamics, term, 0);
+      if (!(x >= 0))
+        fail(*dynamics, "joint '{}': its {} is {:g}, and must be 0 or more", name, term, x);
+      set(out, attribute, {x});
+    };
+    problems_.attempt([&] { copy("damping", "damping"); });
+    problems_.attempt([&] { copy("friction", "frictionloss"); });
+    problems_.attempt([&] { copy("armature", "armature"); });  // URDF itself has no word for it
+    const XMLElement* const limit = joint.FirstChildElement("limit");
+    problems_.attempt(
+        [&] { put_rated(mujoco_, name, bound(limit, "effort"), bound(limit, "velocity")); });
+    problems_.attempt([&] { tie(joint); });
+  }
+
+  static void set_axis(const XMLElement& joint, XMLElement& out) {
     const Vector3d axis = vector(joint.FirstChildElement("axis"), "xyz", Vector3d::UnitX());
-    if (!(axis.norm() > 1e-9)) fail(joint, "joint '{}': its axis has no direction", name);
+    if (!(axis.norm() > 1e-9))
+      fail(joint, "joint '{}': its axis has no direction", text(joint, "name"));
     set(out, "axis", {axis[0], axis[1], axis[2]});
+  }
+
+  void set_range(const XMLElement& joint, XMLElement& out) {
+    const std::string type = text(joint, "type"), name = text(joint, "name");
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = bound(limit, "lower"), upper = bound(limit, "upper");
-    const bool says_range = type != "continuous" && (lower != 0 || upper != 0);
-    if (says_range && !(lower < upper))
+    if (lower == 0 && upper == 0) return;
+    if (type == "continuous") {
+      ++how_.dropped["limits of a continuous joint"];
+      return;
+    }
+    if (!(lower < upper))
       fail(joint,
            "joint '{}' has no way to go from {} to {}: correct lower or upper, or make it fixed",
            name, lower, upper);
-    const bool has_range = says_range && std::max(-lower, upper) < 1000;  // beyond: none is meant
-    if (has_range) {
-      if (type == "revolute" && std::max(-lower, upper) > 20)
-        fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous", name,
-             lower, upper);
-      set(out, "range", {lower, upper});
-    } else if (type != "continuous") {
-      ++how_.dropped["joint without a range"];
-    }
-    const XMLElement* const dynamics = joint.FirstChildElement("dynamics");
-    for (const char* term : {"damping", "friction", "armature"}) {
-      if (const double x = number(dynamics, term, 0); !(x >= 0))
-        fail(*dynamics, "joint '{}': its {} is {:g}, and must be 0 or more", name, term, x);
-    }
-    set(out, "damping", {number(dynamics, "damping", 0)});
-    set(out, "frictionloss", {number(dynamics, "friction", 0)});
-    set(out, "armature", {number(dynamics, "armature", 0)});  // URDF itself has no word for it
-    put_rated(mujoco_, name, bound(limit, "effort"), bound(limit, "velocity"));
-    if (const XMLElement* const mimic = joint.FirstChildElement("mimic")) {
-      XMLElement& tie = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
-      tie.SetAttribute("joint1", name.c_str());
-      tie.SetAttribute("joint2", leader_of(*mimic, name).c_str());
-      set(tie, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
-    }
+    const bool from = lower > -kNoLimit, to = upper < kNoLimit;
+    if (!from) ++how_.dropped["endless limit"];
+    if (!to) ++how_.dropped["endless limit"];
+    if (!from && !to) return;
+    if (type == "revolute" && std::max(from ? -lower : 0, to ? upper : 0) > 20)
+      fail(joint, "joint '{}' goes from {} to {} rad: give radians, or make it continuous", name,
+           lower, upper);
+    set(out, "range", {from ? lower : -kEndless, to ? upper : kEndless});
+  }
+
+  void tie(const XMLElement& joint) {
+    const XMLElement* const mimic = joint.FirstChildElement("mimic");
+    if (mimic == nullptr) return;
+    const std::string name = text(joint, "name"), leader = leader_of(*mimic, name);
+    XMLElement& e = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
+    e.SetAttribute("joint1", name.c_str());
+    e.SetAttribute("joint2", leader.c_str());
+    set(e, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
   }
 
   // that moves, and is another one
@@ -423,7 +461,8 @@ class Urdf {
 
   XMLElement& mujoco_;
   const UrdfReading& how_;
-  std::vector<std::string> problems_, impossible_, massless_;
+  Problems problems_;
+  std::vector<std::string> impossible_, massless_;
   std::map<std::string, const XMLElement*> links_, joint_by_name_, joint_of_child_;
   std::map<std::string, std::vector<const XMLElement*>> children_;
   std::vector<const XMLElement*> joints_;

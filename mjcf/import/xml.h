@@ -4,14 +4,17 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tinyxml2.h>
 
 #include <cctype>
+#include <cstddef>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "mjcf/trace/printable.h"
 
@@ -35,6 +38,32 @@ template <class... Args>
   throw std::runtime_error(one_line(
       fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...))));
 }
+
+/// The errors of a file, for one message.
+class Problems {
+ public:
+  /// Whether it threw none.
+  template <class Try>
+  bool attempt(Try&& what) {
+    try {
+      what();
+      return true;
+    } catch (const std::runtime_error& e) {
+      add(e.what());
+      return false;
+    }
+  }
+  void add(std::string problem) { all_.push_back(std::move(problem)); }
+  std::size_t count() const { return all_.size(); }
+  /// @throws std::runtime_error with all of them, if there are any
+  void raise() const {
+    if (!all_.empty())
+      throw std::runtime_error(one_line(fmt::format("{}", fmt::join(all_, "; ")), 8000));
+  }
+
+ private:
+  std::vector<std::string> all_;
+};
 
 /// What is wrong with what was read, like "mismatched element"; "no element" if nothing is.
 inline std::string error_of(const tinyxml2::XMLDocument& doc) {
@@ -63,6 +92,15 @@ inline bool inside(const XMLElement& e, std::string_view section) {
 inline bool has_joint(const tinyxml2::XMLNode& body) {
   return body.FirstChildElement("joint") != nullptr ||
          body.FirstChildElement("freejoint") != nullptr;
+}
+
+/// Whether it is a body's joint, and none of an equality, a tendon or a default.
+inline bool is_joint(const XMLElement& e) {
+  return (name_of(e) == "joint" || name_of(e) == "freejoint") && parent_name(e) == "body";
+}
+
+inline bool is_free(const XMLElement& joint) {
+  return name_of(joint) == "freejoint" || text(joint, "type") == "free";
 }
 
 /// Calls visit(element) for every element within `at`; where it says false it may have deleted the

@@ -2,6 +2,7 @@
 #include "mjcf/mujoco/ties.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -47,13 +48,19 @@ void check(const mjModel& m, int e) {
 // the equality by which each degree of freedom follows another; -1: none
 std::vector<int> followers(const mjModel& m) {
   std::vector<int> by(static_cast<std::size_t>(m.nv), -1);
+  std::vector<std::string> problems;
   for (int e = 0; has_ties(m) && e < m.neq; ++e) {
     if (!is_active(m, e)) continue;
-    check(m, e);
-    int& own = by[static_cast<std::size_t>(m.jnt_dofadr[m.eq_obj1id[e]])];
-    if (own >= 0) refuse_joint(m, m.eq_obj1id[e], "follows two others");
-    own = e;
+    try {
+      check(m, e);
+      int& own = by[static_cast<std::size_t>(m.jnt_dofadr[m.eq_obj1id[e]])];
+      if (own >= 0) refuse_joint(m, m.eq_obj1id[e], "follows two others");
+      own = e;
+    } catch (const std::invalid_argument& problem) {
+      problems.emplace_back(problem.what());
+    }
   }
+  if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "; ")));
   return by;
 }
 

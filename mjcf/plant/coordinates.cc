@@ -63,7 +63,11 @@ void set_ranges(const mjModel& m, ArmCoordinates& c) {
   if (has_tendon_coordinates(m)) return;
   for (int i = 0; i < m.njnt; ++i) {
     if (!m.jnt_limited[i]) continue;
-    const double* const range = m.jnt_range + 2 * i;
+    const auto end = [&](int which) {  // beyond 1e6, none is meant
+      const double x = m.jnt_range[2 * i + which];
+      return std::abs(x) < 1e6 ? x : std::copysign(kNone, x);
+    };
+    const double range[] = {end(0), end(1)};
     Eigen::Index k = 0;
     c.drho.row(i).cwiseAbs().maxCoeff(&k);
     const double factor = c.drho(i, k), at = c.rho0[i];
@@ -97,10 +101,10 @@ void set_usual(const mjModel& m, ArmCoordinates& c) {
     VectorXd free = VectorXd::Zero(ties.T.cols());
     for (int n = 0; n < c.dof(); ++n) {
       const int i = ties.free[static_cast<std::size_t>(n)];
-      const double most = m.jnt_type[i] == mjJNT_SLIDE ? 0.5 : 3.14159;
-      double from = -most, to = most;
-      if (m.jnt_limited[i]) from = m.jnt_range[2 * i], to = m.jnt_range[2 * i + 1];
-      if (std::isfinite(c.lower[n])) from = c.lower[n], to = c.upper[n];
+      double lower = c.lower[n], upper = c.upper[n];
+      if (std::isinf(lower) && std::isinf(upper) && m.jnt_limited[i])
+        lower = m.jnt_range[2 * i], upper = m.jnt_range[2 * i + 1];
+      const auto [from, to] = finite_range(lower, upper, m.jnt_type[i] == mjJNT_SLIDE);
       const double turns = k * std::sqrt(kPrimes[n % 8]);
       free[n] = from + (to - from) * (turns - std::floor(turns));
     }
@@ -118,6 +122,13 @@ void set_usual(const mjModel& m, ArmCoordinates& c) {
 }
 
 }  // namespace
+
+std::pair<double, double> finite_range(double lower, double upper, bool slides) {
+  const double most = slides ? 0.5 : 3.14159;
+  if (std::isinf(lower) && std::isinf(upper)) return {-most, most};
+  return {std::isinf(lower) ? upper - 2 * most : lower,
+          std::isinf(upper) ? lower + 2 * most : upper};
+}
 
 ArmCoordinates coordinates_of(const mjModel& m) {
   ArmCoordinates c;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "mjcf/mujoco/handles.h"
@@ -22,6 +23,10 @@ struct ArmCoordinates {
 
   int dof() const { return static_cast<int>(drho.cols()); }  ///< coordinates
 };
+
+/// [rad] or [m] from where to where a coordinate goes; where a range has no end, as far as a hinge
+/// turns in half a turn to each side, or a slide in 0.5 m.
+std::pair<double, double> finite_range(double lower, double upper, bool slides);
 
 /// @throws std::invalid_argument as tree_of of an arm alone, for motors on tendons and for ranges
 ArmCoordinates coordinates_of(const mjModel& m);

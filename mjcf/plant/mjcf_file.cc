@@ -2,6 +2,7 @@
 #include "mjcf/plant/mjcf_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -50,30 +51,33 @@ std::string range_of(double least, double most) {
   return most == kAny && least == -kAny ? "finite" : fmt::format("{:g} to {:g}", least, most);
 }
 
-void check_numbers(const mjModel& m, const Numbers& n) {
+using Problems = std::vector<std::string>;
+
+void check_numbers(const mjModel& m, const Numbers& n, Problems& problems) {
   for (int i = 0; i < n.elements * n.width; ++i) {
     const double value = n.values[i];
     if (value >= n.least && value <= n.most) continue;
     const int id = n.of == nullptr ? i / n.width : n.of[i / n.width];
-    throw std::runtime_error(fmt::format("{}: {} is {:g}, and must be {}",
-                                         element(m, n.type, n.kind, id), n.attribute, value,
-                                         range_of(n.least, n.most)));
+    problems.push_back(fmt::format(
+        "{}: {} is {:g}, and must be {}{}", element(m, n.type, n.kind, id), n.attribute, value,
+        range_of(n.least, n.most), n.type == mjOBJ_JOINT ? ", or --lock REGEX fixes it" : ""));
   }
 }
 
-void check_option(const char* what, double value, double least, double most) {
+void check_option(const char* what, double value, double least, double most, Problems& problems) {
   if (value >= least && value <= most) return;
-  throw std::runtime_error(
+  problems.push_back(
       fmt::format("option: {} is {:g}, and must be {}", what, value, range_of(least, most)));
 }
 
 // MuJoCo scales what it can to length 1
-void check_turn(const mjModel& m, const char* attribute, const mjtNum* quaternions) {
+void check_turn(const mjModel& m, const char* attribute, const mjtNum* quaternions,
+                Problems& problems) {
   for (int i = 0; i < m.nbody; ++i) {
     const double length = mju_norm(quaternions + 4 * i, 4);
     if (std::abs(length - 1) < 1e-6) continue;
-    throw std::runtime_error(fmt::format("{}: {} has the length {:g}, and must turn",
-                                         element(m, mjOBJ_BODY, "body", i), attribute, length));
+    problems.push_back(fmt::format("{}: {} has the length {:g}, and must turn",
+                                   element(m, mjOBJ_BODY, "body", i), attribute, length));
   }
 }
 
@@ -81,13 +85,14 @@ void check_physical(const mjModel& m) {
   constexpr auto kJoint = mjOBJ_JOINT, kTendon = mjOBJ_TENDON, kBody = mjOBJ_BODY,
                  kSite = mjOBJ_SITE, kMotor = mjOBJ_ACTUATOR;
   constexpr double kMuch = 1e6;  // [kg, N m, N m s/rad, ..]
-  for (const double g : m.opt.gravity) check_option("gravity", g, -1000, 1000);
-  check_option("timestep", m.opt.timestep, 1e-9, 1);
+  Problems problems;
+  for (const double g : m.opt.gravity) check_option("gravity", g, -1000, 1000, problems);
+  check_option("timestep", m.opt.timestep, 1e-9, 1, problems);
   // a step must not take minutes
-  check_option("iterations", m.opt.iterations, 0, 1000);
-  check_option("noslip_iterations", m.opt.noslip_iterations, 0, 1000);
+  check_option("iterations", m.opt.iterations, 0, 1000, problems);
+  check_option("noslip_iterations", m.opt.noslip_iterations, 0, 1000, problems);
   const auto [name, most] = collision_iterations(m);
-  check_option(name, most, 0, 1000);
+  check_option(name, most, 0, 1000, problems);
   for (const Numbers& n : std::to_array<Numbers>({
            {kBody, "body", m.nbody, "mass", m.body_mass, 1, 0, kMuch},
            {kBody, "body", m.nbody, "diaginertia", m.body_inertia, 3, 0, 1e9},
@@ -115,16 +120,19 @@ void check_physical(const mjModel& m) {
            {kMotor, "actuator", m.nu, "gainprm", m.actuator_gainprm, mjNGAIN, -kAny, kAny},
            {kMotor, "actuator", m.nu, "biasprm", m.actuator_biasprm, mjNBIAS, -kAny, kAny},
        })) {
-    check_numbers(m, n);
+    check_numbers(m, n, problems);
   }
-  check_turn(m, "quat", m.body_quat);
-  check_turn(m, "inertial quat", m.body_iquat);
+  check_turn(m, "quat", m.body_quat, problems);
+  check_turn(m, "inertial quat", m.body_iquat, problems);
   for (int j = 0; j < m.njnt; ++j) {
     if (m.jnt_type[j] != mjJNT_HINGE && m.jnt_type[j] != mjJNT_SLIDE) continue;
     const int at = m.jnt_qposadr[j];
-    check_numbers(m, {kJoint, "joint", 1, "ref", m.qpos0 + at, 1, -kAny, kAny, &j});
-    check_numbers(m, {kJoint, "joint", 1, "springref", m.qpos_spring + at, 1, -kAny, kAny, &j});
+    check_numbers(m, {kJoint, "joint", 1, "ref", m.qpos0 + at, 1, -kAny, kAny, &j}, problems);
+    check_numbers(m, {kJoint, "joint", 1, "springref", m.qpos_spring + at, 1, -kAny, kAny, &j},
+                  problems);
   }
+  if (!problems.empty())
+    throw std::runtime_error(one_line(fmt::format("{}", fmt::join(problems, "; ")), 8000));
 }
 
 // a step of its own, from its initial state
@@ -167,14 +175,16 @@ std::string without_jargon(const std::string& message) {
 }
 
 // the file as it is, or, if it has to be, imported
-Model loaded(const std::string& path, const ImportOptions& options) {
+Model loaded(const std::string& path, const ImportOptions& options, std::string& changes) {
   std::array<char, 1000> error{};
   const bool urdf = is_urdf(path);
   Model m = urdf ? nullptr : owned(mj_loadXML(path.c_str(), nullptr, error.data(), error.size()));
   if (m && options.changes_nothing() && has_motors(*m) && !moves_as_newer(*m)) return m;
   const std::string first = one_line(error.data());
   try {
-    return load_files({{"robot.xml", import_mjcf(path, options).xml}});
+    const ImportedText text = import_mjcf(path, options);
+    changes = one_line(in_words(text), 8000);
+    return load_files({{"robot.xml", text.xml}});
   } catch (const std::runtime_error& e) {
     for (const char* unreadable : {"problem reading attribute", "bad format in attribute"}) {
       if (std::string_view(e.what()).find(unreadable) == std::string_view::npos) continue;
@@ -188,14 +198,16 @@ Model loaded(const std::string& path, const ImportOptions& options) {
   }
 }
 
+// the changes in a line, and MJB
 std::string compiled(const std::string& path, const ImportOptions& options) {
-  const Model m = loaded(path, options);
+  std::string changes;
+  const Model m = loaded(path, options, changes);
   check_physical(*m);
   refuse_nan(path);
   try_step(*m);
   std::string bytes(static_cast<std::size_t>(mj_sizeModel(m.get())), '\0');
   mj_saveModel(m.get(), nullptr, bytes.data(), static_cast<int>(bytes.size()));
-  return bytes;
+  return changes + '\n' + bytes;
 }
 
 }  // namespace
@@ -229,10 +241,13 @@ Model load_files(const std::vector<std::pair<std::string, std::string_view>>& fi
 }
 
 std::string compiled_mjcf(const std::string& path, const Limits& limits,
-                          const ImportOptions& options) {
+                          const ImportOptions& options, std::string* changes) {
   throw_mujoco_errors();
   try {
-    return confined(limits, [&] { return compiled(path, options); });
+    const std::string all = confined(limits, [&] { return compiled(path, options); });
+    const std::size_t end = all.find('\n');
+    if (changes != nullptr) *changes = all.substr(0, end);
+    return all.substr(end + 1);
   } catch (const Unfinished& e) {
     throw std::runtime_error(
         fmt::format("{}: MuJoCo {} when it loads this robot. Textures can be left out, and meshes "

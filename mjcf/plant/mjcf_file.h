@@ -26,9 +26,10 @@ Model load_files(const std::vector<std::pair<std::string, std::string_view>>& fi
 /// dynamics: bodies, joints, tendons, motors, sites, gravity) and tries one step. What MuJoCo
 /// 2.2.2 does not read, what is driven by other actuators than motors, and what is to be locked,
 /// is imported (mjcf/import/) first.
+/// @param changes becomes what the import changed and left out, in one line; "" if nothing
 /// @returns MuJoCo's binary form of it (MJB)
 /// @throws std::runtime_error in one line, naming the path, the element and what is wrong
 std::string compiled_mjcf(const std::string& path, const Limits& limits = {},
-                          const ImportOptions& options = {});
+                          const ImportOptions& options = {}, std::string* changes = nullptr);
 
 }  // namespace tauext

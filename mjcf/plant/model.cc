@@ -63,11 +63,11 @@ Model load_robot(std::string_view name, std::string_view scene) {
   }
 }
 
-Model load_mjcf(const std::string& path, const ImportOptions& options) {
+Model load_mjcf(const std::string& path, const ImportOptions& options, std::string* changes) {
   const RobotFile robot = robot_file(path, options);
   try {
     claim_input(robot.path);
-    return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options)}});
+    return load_files({{"robot.mjb", compiled_mjcf(robot.path, {}, robot.options, changes)}});
   } catch (const std::runtime_error& e) {
     if (robot.path == path) throw;
     throw std::runtime_error(fmt::format("{}: {}", path, e.what()));  // it may be what is wrong

@@ -23,9 +23,11 @@ Model load_robot(std::string_view name, std::string_view scene = "");
 
 /// A robot of your own: an MJCF file, laid out as mjcf/mujoco/layout.h says, or as people have it
 /// (mjcf/import/). It is compiled and tried in a child process with limits.
+/// @param changes becomes what the import changed and left out, in one line; "" if nothing
 /// @throws std::runtime_error naming the path, with MuJoCo's own message, what crashed, or the
 /// element whose numbers are not physical
-Model load_mjcf(const std::string& path, const ImportOptions& options = {});
+Model load_mjcf(const std::string& path, const ImportOptions& options = {},
+                std::string* changes = nullptr);
 
 /// From now on load_robot(name) gives the robot of this MJCF file; it stands in no scene.
 /// @throws std::invalid_argument if the name is taken; std::runtime_error as load_mjcf does

@@ -149,7 +149,8 @@ std::optional<PlainArm> plain_arm(const Model& model) {
     if (m.actuator_ctrllimited[i] != 0)
       arm.least[i] = m.actuator_ctrlrange[2 * i], arm.most[i] = m.actuator_ctrlrange[2 * i + 1];
     if (m.jnt_limited[i] == 0) continue;
-    const double margin = m.jnt_margin[i] + 1e-3 * (m.jnt_range[2 * i + 1] - m.jnt_range[2 * i]);
+    const double width = m.jnt_range[2 * i + 1] - m.jnt_range[2 * i];
+    const double margin = m.jnt_margin[i] + 1e-3 * (width < 1e6 ? width : 1);  // or without an end
     arm.lowest[i] = m.jnt_range[2 * i] + margin;
     arm.highest[i] = m.jnt_range[2 * i + 1] - margin;
   }

@@ -2,6 +2,7 @@
 #include "mjcf/plant/tree.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "mjcf/mujoco/ties.h"
 #include "mjcf/plant/coordinates.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
@@ -26,32 +28,40 @@ VectorXd together(const Ties& ties, const VectorXd& of_joint) {
   return moves * (moves.transpose() * of_joint);
 }
 
+// all that it would have to ignore, in one message
 void check(const mjModel& m) {
-  const auto refuse = [](bool present, const char* what) {
-    if (present)
-      throw std::invalid_argument(std::string("the model has ") + what + ": not supported");
-  };
+  std::vector<std::string> problems, free, springs;
   for (int i = 0; i < m.njnt; ++i) {
-    if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
-    throw std::invalid_argument(
-        fmt::format("{} is {}: an arm of hinges and slides on a fixed base is wanted; take it out",
-                    joint_name(m, i), m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
+    const bool slide = m.jnt_type[i] == mjJNT_SLIDE;
+    if (!slide && m.jnt_type[i] != mjJNT_HINGE)
+      free.push_back(fmt::format("{} is {}", joint_name(m, i),
+                                 m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
+    if (m.jnt_stiffness[i] != 0)
+      springs.push_back(fmt::format("{} has a spring of {:.4g} {}", joint_name(m, i),
+                                    m.jnt_stiffness[i], slide ? "N/m" : "N m/rad"));
   }
-  if (m.nv == 0) {
-    throw std::invalid_argument(
-        "no joint is left that moves: an arm of hinges and slides is wanted");
-  }
-  for (int i = 0; i < m.njnt; ++i) {
-    if (m.jnt_stiffness[i] == 0) continue;
-    throw std::invalid_argument(fmt::format(
-        "{} has a spring of {:.4g} {}, which no estimator here knows: take its "
-        "stiffness out, or --lock REGEX fixes the joint",
-        joint_name(m, i), m.jnt_stiffness[i], m.jnt_type[i] == mjJNT_SLIDE ? "N/m" : "N m/rad"));
-  }
+  if (!free.empty())
+    problems.push_back(
+        fmt::format("{}: an arm of hinges and slides on a fixed base is wanted; --lock REGEX fixes "
+                    "such joints",
+                    fmt::join(free, ", ")));
+  if (!springs.empty())
+    problems.push_back(
+        fmt::format("{}, which no estimator here knows: take the stiffness out, or "
+                    "--lock REGEX fixes such joints",
+                    fmt::join(springs, ", ")));
+  if (m.nv == 0)
+    problems.emplace_back("no joint is left that moves: an arm of hinges and slides is wanted");
   for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
-    refuse(!VectorXd::Map(forces, m.ntendon).isZero(0), "tendons with springs or friction");
+    if (VectorXd::Map(forces, m.ntendon).isZero(0)) continue;
+    problems.emplace_back("the model has tendons with springs or friction: take these out");
+    break;
   }
-  refuse(m.opt.density != 0 || m.opt.viscosity != 0, "air or water around it");
+  if (m.opt.density != 0 || m.opt.viscosity != 0)
+    problems.emplace_back(
+        "the model has air or water around it: take density and viscosity out of <option>");
+  if (!problems.empty())
+    throw std::invalid_argument(one_line(fmt::format("{}", fmt::join(problems, "; ")), 8000));
 }
 
 Vec<3> vector(const mjtNum* v) {
@@ -163,7 +173,7 @@ ArmTree tree_of(const Model& model) {
   const mjModel& m = *model;
   check(m);
   ArmTree tree;
-  tree.gravity = vector(m.opt.gravity);
+  if ((m.opt.disableflags & mjDSBL_GRAVITY) == 0) tree.gravity = vector(m.opt.gravity);
   const ArmCoordinates c = coordinates_of(m);
   tree.drho = c.drho, tree.rho0 = c.rho0, tree.leaders = c.leaders;
   tree.lower = c.lower, tree.upper = c.upper;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/plant.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/motion.h"
@@ -28,10 +29,9 @@ struct Ranges {
 
   explicit Ranges(const ArmTree& arm) : middle(VectorXd::Zero(arm.dof())), half(arm.dof()) {
     for (int i = 0; i < arm.dof(); ++i) {
-      half[i] = arm.slides(i) ? 0.5 : 3.14159;
-      if (!std::isfinite(arm.lower[i])) continue;
-      middle[i] = (arm.lower[i] + arm.upper[i]) / 2;
-      half[i] = std::min(half[i], (arm.upper[i] - arm.lower[i]) / 2);
+      const auto [from, to] = finite_range(arm.lower[i], arm.upper[i], arm.slides(i));
+      middle[i] = (from + to) / 2;
+      half[i] = std::min(arm.slides(i) ? 0.5 : 3.14159, (to - from) / 2);
     }
   }
 };

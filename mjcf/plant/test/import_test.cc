@@ -6,6 +6,8 @@
 
 #include <array>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -166,6 +168,127 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
               "<worldbody><body><joint name='j'/><geom type='mesh' mesh='m'/></body></worldbody>"
               "</mujoco>")),
       "parts/gone.stl");
+}
+
+TEST_F(Import, ManyErrorsAreInOneMessage) {
+  const auto error = [&](const std::string& xml) {
+    return error_of([&] { tree_of(load_mjcf(put(xml))); });
+  };
+  const auto has = [](const std::string& text, const std::vector<const char*>& parts) {
+    for (const char* part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << part << ": " << text;
+  };
+  has(error("<mujoco><include file='a.xml'/><include file='b.xml'/></mujoco>"),
+      {"a.xml: no such file", "b.xml: no such file"});
+  has(error("<mujoco><worldbody><frame/><replicate/></worldbody></mujoco>"),
+      {"<frame> (line 1)", "<replicate> (line 1)"});
+  has(error("<mujoco><worldbody><body><joint dampening='1' gravcomp='1'/><sight/></body>"
+            "</worldbody></mujoco>"),
+      {"'dampening'", "'gravcomp'", "<sight>"});
+  has(error("<mujoco><option density='1'/><worldbody><body><joint name='a' stiffness='3'/><joint "
+            "name='b' stiffness='4' type='slide'/><geom size='.1'/><body><joint name='c' "
+            "type='ball'/><geom size='.1'/></body></body></worldbody></mujoco>"),
+      {"'a' has a spring of 3 N m/rad", "'b' has a spring of 4 N/m", "'c' is a ball", "air or"});
+  has(error("<mujoco><worldbody><body><joint name='a' damping='-1' armature='1e9'/><geom "
+            "size='.1'/></body></worldbody></mujoco>"),
+      {"damping is -1", "armature is 1e+09", "--lock"});
+}
+
+TEST_F(Import, WhatFloatsBesideTheArmStandsAndABaseThatFloatsCanBeLocked) {
+  const auto arm_with = [](const std::string& joint) {
+    return "<body name='arm'>" + joint +
+           "<geom size='.1'/><body><joint name='a' axis='1 0 0'/><geom size='.1' pos='0 0 .5'/>"
+           "</body></body>";
+  };
+  const std::string object = "<body name='cup' pos='1 0 0'><freejoint/><geom size='.1'/></body>";
+  const std::string path = body(arm_with("") + object);
+  EXPECT_EQ(import_mjcf(path).dropped.at("body that floats beside the arm, and stands now"), 1);
+  EXPECT_EQ(tree_of(load_mjcf(path)).dof(), 1);
+  const std::string floats = body(arm_with("<freejoint/>"));
+  EXPECT_NE(error_of([&] { tree_of(load_mjcf(floats)); }).find("joint 1 'arm' is free"),
+            std::string::npos);
+  EXPECT_EQ(tree_of(load_mjcf(floats, {"arm"})).dof(), 1);
+}
+
+// MuJoCo's own reading of what it reads
+TEST_F(Import, TakesMassAndGravityAsTheFileHasThem) {
+  const std::string path = put(
+      "<mujoco><compiler inertiagrouprange='3 4'/><option><flag gravity='disable'/></option>"
+      "<default><geom group='4'/></default><worldbody><body><joint name='a' axis='1 0 0'/><geom "
+      "size='.1' pos='0 0 .5'/><geom size='.3' group='1'/><body><joint name='b' axis='1 0 0'/>"
+      "<geom size='.1' pos='0 0 .5'/></body></body></worldbody></mujoco>");
+  char why[1000];
+  const Model own(mj_loadXML(path.c_str(), nullptr, why, sizeof why),
+                  [](const mjModel* m) { mj_deleteModel(const_cast<mjModel*>(m)); });
+  ASSERT_NE(own, nullptr) << why;
+  const Vec<2> q(0.4, -1.1), qd(0.7, -0.3);
+  const MjcfArm<2> oracle(own);
+  const TreeModel<2> tree = tree_model<2>(load_mjcf(path));
+  EXPECT_LT((tree.inertia(q) - oracle.inertia(q)).norm(), 1e-12);
+  EXPECT_LT((tree.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-12);
+  EXPECT_LT(tree.gravity(q).norm(), 1e-12);
+}
+
+TEST_F(Import, KnowsDefaultsOfTendonsAndDragsByNoMocapBody) {
+  const std::string hand = body(
+      "<body name='m' mocap='true'/><body name='arm'><joint name='a'/><geom size='.1'/></body>"
+      "<geom type='hfield' hfield='ground'/>");
+  std::ifstream in(hand);
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  text.insert(text.find("<worldbody>"),
+              "<default><tendon width='.1' limited='true' range='0 1'/><equality solref='.01 1'/>"
+              "</default><equality><weld body1='m' body2='arm'/></equality>");
+  const std::string path = put(text);
+  const auto left_out = import_mjcf(path).dropped;
+  for (const char* what : {"equality that drags by a mocap body", "geom (hfield)", "tendon.width"})
+    EXPECT_EQ(left_out.count(what), 1u) << what;
+  EXPECT_EQ(tree_of(load_mjcf(path)).dof(), 1);
+  text.insert(text.find("<tendon"), "<tendon damping='1'/>");
+  text.insert(text.find("<worldbody>"), "<tendon><spatial/></tendon>");
+  EXPECT_NE(error_of([&] { import_mjcf(put(text)); }).find("a <spatial> tendon"),
+            std::string::npos);
+}
+
+TEST_F(Import, MendsInertiasThatNoBodyHasAsOfUrdf) {
+  const auto of = [&](const char* inertia, bool balance, const char* compiler = "") {
+    return import_mjcf(put(fmt::format("<mujoco><compiler {}/><worldbody><body name='b'><joint "
+                                       "name='a'/><inertial pos='0 0 0' mass='2' {}/></body>"
+                                       "</worldbody></mujoco>",
+                                       compiler, inertia)),
+                       {.balance = balance});
+  };
+  const char* const diagonal = "quat='0 1 0 0' diaginertia='.01 .02 .04'";
+  const char* const full = "fullinertia='.01 .04 .02 0 0 0'";
+  for (const char* inertia : {diagonal, full}) {
+    EXPECT_NE(error_of([&] { of(inertia, false); }).find("'b' (line 1) 0.01, 0.02 and 0.04"),
+              std::string::npos);
+    const ImportedText mended = of(inertia, true);
+    EXPECT_EQ(mended.changed.begin()->first, "inertia of 'b' by 9.1 %");
+    EXPECT_EQ(tree_of(load_mjcf(put(mended.xml))).dof(), 1);
+  }
+  EXPECT_EQ(of("diaginertia='.01 .02 .03001'", false).changed.size(), 1u);
+  EXPECT_EQ(of("diaginertia='.01 .02 .03'", false).changed.size(), 0u);
+  // MuJoCo makes .07 / 3 of each
+  EXPECT_EQ(of(diagonal, false, "balanceinertia='true'").changed.begin()->first,
+            "inertia of 'b' by 42 %, by the file's balanceinertia");
+}
+
+TEST_F(Import, NamesThatATerminalWouldObeyAreRefused) {
+  EXPECT_EQ(error_of([&] {
+              import_mjcf(body("<body><joint name='a&#27;[31m'/><geom size='.1'/></body>"));
+            }),
+            "line 1: name of <joint> has a control character: a?[31m");
+}
+
+TEST_F(Import, AnExpressionOfJointsToLockEndsSoon) {
+  const std::string name(60, 'a');
+  const std::string path = body("<body><joint name='" + name + "b'/><geom size='.1'/></body>");
+  EXPECT_NE(error_of([&] { import_mjcf(path, {.lock = "(a+)+"}); }).find("matches no joint"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { import_mjcf(path, {.lock = "(a*)*c|(a|aa)+"}); }).find("matches no"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { import_mjcf(path, {.lock = "(a)\\1"}); }).find("--lock '"),
+            std::string::npos);
 }
 
 TEST_F(Import, NeedsNoMeshesOfWhatStandsStill) {

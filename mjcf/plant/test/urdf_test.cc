@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mjcf/import/mjcf_text.h"
@@ -269,9 +271,93 @@ TEST_F(OfUrdf, EveryErrorIsInOneMessage) {
 TEST_F(OfUrdf, LimitsMayBeInfiniteAndAFileOfMacrosIsNamed) {
   std::string text = urdf();
   text.replace(text.find("lower='-2' upper='2'"), 20, "lower='-inf' upper='INF'");
-  EXPECT_EQ(import_mjcf(put(text, "arm.urdf")).dropped.at("joint without a range"), 1);
+  EXPECT_EQ(import_mjcf(put(text, "arm.urdf")).dropped.at("endless limit"), 2);
   EXPECT_EQ(error_of([&] { import_mjcf(put("<robot name='x'></robot>", "arm.urdf")); }),
             "line 1: there is no link in it; is it a file of macros (xacro)?");
+}
+
+TEST_F(OfUrdf, ALimitOnOneSideStays) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  for (const auto& [limit, lower, upper] : std::vector<std::tuple<const char*, double, double>>{
+           {"lower='-2' upper='inf'", -2, kNone},
+           {"lower='-inf' upper='2'", -kNone, 2},
+           {"lower='-1e5' upper='.5'", -kNone, .5},
+           {"lower='-1'            ", -1, 0}}) {  // 0 is what URDF says of one that is not there
+    std::string text = urdf();
+    text.replace(text.find("lower='-2' upper='2'"), 20, limit);
+    const std::string path = put(text, "arm.urdf");
+    const ArmTree arm = tree_of(load_mjcf(path));
+    EXPECT_EQ(arm.lower[0], lower) << limit;
+    EXPECT_EQ(arm.upper[0], upper) << limit;
+    EXPECT_EQ(import_mjcf(path).dropped.count("endless limit"),
+              std::isinf(upper - lower) ? 1u : 0u);
+    // of 6.5 kg at most 0.8 m away
+    EXPECT_LT(arm.usual_torque[0], 6.5 * 9.81 * .8) << limit;
+    EXPECT_GT(arm.usual_torque[0], 5) << limit;
+  }
+}
+
+TEST_F(OfUrdf, EveryFaultOfAJointIsNamedAtOnce) {
+  std::string text = urdf();
+  const auto change = [&](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  change("<axis xyz='0 1 0'/>", "<axis xyz='0 0 0'/>");
+  change("lower='-2' upper='2'", "lower='2' upper='-2'");
+  change("damping='.5' friction='.3'", "damping='-.5' friction='-.3'");
+  const std::string error = error_of([&] { import_mjcf(put(text, "arm.urdf")); });
+  for (const char* part : {"its axis has no direction", "no way to go from 2 to -2",
+                           "its damping is -0.5", "its friction is -0.3"})
+    EXPECT_NE(error.find(part), std::string::npos) << part << ": " << error;
+}
+
+// MuJoCo has both joints in one body
+TEST_F(OfUrdf, AFrameBetweenJointsNeedsNoMass) {
+  const auto wrist = [](const std::string& of_frame) {
+    return urdf("<link name='frame'>" + of_frame +
+                "</link><joint name='a' type='revolute'><parent link='base'/><child link='frame'/>"
+                "<origin xyz='1 0 0'/><axis xyz='0 1 0'/></joint><link name='w'><inertial><origin "
+                "xyz='.1 .2 .3'/><mass value='3'/><inertia ixx='.02' iyy='.03' izz='.04'/>"
+                "</inertial></link><joint name='b' type='revolute'><parent link='frame'/><child "
+                "link='w'/><axis xyz='1 0 0'/></joint>");
+  };
+  const std::string path = put(wrist(""), "arm.urdf");
+  EXPECT_EQ(import_mjcf(path).changed.size(), 1u);
+  const TreeModel<2> one = tree_model<2>(load_mjcf(path, {"shoulder|elbow|lift"}));
+  const TreeModel<2> two = tree_model<2>(load_mjcf(put(
+      "<mujoco><worldbody><body pos='1 0 0'><inertial pos='.1 .2 .3' mass='3' diaginertia='.02 .03 "
+      ".04'/><joint name='a' axis='0 1 0'/><joint name='b' axis='1 0 0'/></body></worldbody>"
+      "<actuator><motor joint='a'/><motor joint='b'/></actuator></mujoco>")));
+  const Vec<2> q(0.4, -1.1), qd(0.7, -0.3);
+  EXPECT_LT((one.inertia(q) - two.inertia(q)).norm(), 1e-10);
+  EXPECT_LT((one.bias(q, qd) - two.bias(q, qd)).norm(), 1e-10);
+  // a part that somebody drew will have one
+  EXPECT_NE(error_of([&] {
+              import_mjcf(put(wrist("<visual/>"), "arm.urdf"));
+            }).find("no mass (give them an <inertial>, or --lock their joints): 'frame'"),
+            std::string::npos);
+}
+
+TEST_F(OfUrdf, WhatIsOutOfPlaceIsAnErrorOnlyWhereItIsMissing) {
+  std::string text = urdf(
+      "<link name='eye'><origin xyz='1 1 1'/></link><joint name='screws' "
+      "type='fixed'><parent link='tool'/><child link='eye'/></joint>");
+  const auto left_out = import_mjcf(put(text, "arm.urdf")).dropped;
+  EXPECT_EQ(left_out.count("origin in <link>"), 1u);
+  text.insert(text.find("<origin xyz='1 1 1'/>"),
+              "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>");
+  EXPECT_NE(error_of([&] {
+              import_mjcf(put(text, "arm.urdf"));
+            }).find("link 'eye': <origin> stands within <link>, and belongs into inertial joint"),
+            std::string::npos);
+}
+
+TEST_F(OfUrdf, AJointOfAnyTypeCanBeLocked) {
+  const std::string path = put(
+      urdf("<link name='c'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"
+           "</link><joint name='y' type='floating'><parent link='tool'/><child link='c'/></joint>"),
+      "arm.urdf");
+  EXPECT_NEAR(tree_of(load_mjcf(path, {"y"})).joints[2].mass, 1.5, 1e-12);
 }
 
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
