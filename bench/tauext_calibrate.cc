@@ -96,7 +96,7 @@ int not_sure(const Flags& f) {
   say(fmt::format(
       "tauext-calibrate: {}these numbers are not to be used: is this the robot of the recordings, "
       "and do their columns have the right joints, units (rad, rad/s, N m or A) and signs? "
-      "--columns tells them; where the speed is noisy, a longer --window helps",
+      "--columns tells them",
       f.out.empty() ? "" : f.out + " is not written, as "));
   return kAnswerIsNo;
 }

@@ -30,6 +30,9 @@ constexpr JointTerm kSuspects[] = {
      [](double, double slip, double rigid) { return slip * std::abs(rigid); }},
 };
 
+// [1] of the speed over which dry friction is smooth: above, all of it but 1e-3 acts
+constexpr double kFullSlip = 4;
+
 using Terms = std::vector<const JointTerm*>;
 
 // the arm without what is to be found
@@ -51,10 +54,10 @@ ArmTree bare(const ArmTree& arm, const Terms& terms) {
   return b;
 }
 
-// of a term over a window
+// of a term over a window, where the mean acceleration is qdd
 double column(const JointTerm& term, const Trace& log, int joint, const Window& w, double v_s,
-              double rigid) {
-  if (term.column == nullptr) return mean_acceleration(log, joint, w);
+              double rigid, double qdd) {
+  if (term.column == nullptr) return qdd;
   return mean_over(log, w, [&](int k) {
     const double qd = log.qd(joint, k);
     return term.column(qd, std::tanh(qd / v_s), rigid);
@@ -81,6 +84,7 @@ JointRows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& 
       windows.emplace_back(l, window);
   const auto m = static_cast<Index>(windows.size()), n = static_cast<Index>(terms.size());
   r.terms.resize(m, n), r.rigid.resize(m), r.measured.resize(m);
+  r.term_instruments.resize(m, n), r.rigid_instrument.resize(m);
   r.others.resize(m, static_cast<Index>(std::size(kSuspects)));
   for (const JointTerm& t : kSuspects) r.suspects.emplace_back(t.name);
   for (Index i = 0; i < m; ++i) {
@@ -88,12 +92,20 @@ JointRows rows_of(const std::vector<Trace>& logs, const std::vector<ArmMotion>& 
     for (int k = window.first; k <= window.second; ++k)
       r.fastest = std::max(r.fastest, std::abs(logs[l].qd(joint, k)));
     r.rigid[i] = motions[l].expected(joint, window);
+    r.rigid_instrument[i] = motions[l].expected_around(joint, window);
     r.measured[i] = mean_torque(logs[l], joint, window);
-    const auto of = [&, l = l, window = window](const JointTerm& t) {
-      return column(t, logs[l], joint, window, v_s, r.rigid[i]);
+    const auto speed = [&, l = l](int k) { return logs[l].qd(joint, k); };
+    const double qdd = mean_change(logs[l], window, speed),
+                 qdd_around = change_around(logs[l], window, speed);
+    const auto of = [&, l = l, window = window](const JointTerm& t, double acceleration) {
+      return column(t, logs[l], joint, window, v_s, r.rigid[i], acceleration);
     };
-    for (Index k = 0; k < n; ++k) r.terms(i, k) = of(*terms[static_cast<std::size_t>(k)]);
-    for (Index k = 0; k < r.others.cols(); ++k) r.others(i, k) = of(kSuspects[k]);
+    for (Index k = 0; k < n; ++k) {
+      const JointTerm& t = *terms[static_cast<std::size_t>(k)];
+      r.terms(i, k) = of(t, qdd);
+      r.term_instruments(i, k) = t.column == nullptr ? qdd_around : r.terms(i, k);
+    }
+    for (Index k = 0; k < r.others.cols(); ++k) r.others(i, k) = of(kSuspects[k], qdd);
   }
   return r;
 }
@@ -164,7 +176,9 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
         const double slip =
             slip_speed(arm, static_cast<int>(leader), calibrated_joint(r, names, currents).terms);
         // smooth over more than it moves, dry friction would be viscous friction
-        r = rows_of(logs, motions, i, terms, o.windows, std::min(slip, r.fastest / 2));
+        Windows faster = o.windows;
+        faster.min_speed = std::max(faster.min_speed, std::min(kFullSlip * slip, r.fastest / 4));
+        r = rows_of(logs, motions, i, terms, faster, std::min(slip, r.fastest / 2));
       }
       CalibratedJoint joint = calibrated_joint(r, names, currents);
       joint.slip = slip_speed(arm, static_cast<int>(leader), joint.terms);

@@ -21,8 +21,12 @@ ArmMotion::ArmMotion(const ArmTree& arm, const Trace& log) : log_(log) {
 }
 
 double ArmMotion::expected(int joint, const Window& w) const {
-  const double T = log_.t[w.second] - log_.t[w.first];
-  return (momentum_(joint, w.second) - momentum_(joint, w.first)) / T +
+  return mean_change(log_, w, [&](int k) { return momentum_(joint, k); }) +
+         mean_over(log_, w, [&](int k) { return rest_(joint, k); });
+}
+
+double ArmMotion::expected_around(int joint, const Window& w) const {
+  return change_around(log_, w, [&](int k) { return momentum_(joint, k); }) +
          mean_over(log_, w, [&](int k) { return rest_(joint, k); });
 }
 

@@ -3,9 +3,10 @@
 /// The torques that a recorded motion takes, integrated: no acceleration is needed.
 ///
 /// With the momentum p = B qd, (3) without contact is dp/dt = tau + C^T qd - g - F, so over a
-/// window [t_a, t_b) of length T
-///     mean(tau) = (p_b - p_a) / T - mean(C^T qd - g) + mean(F)                              (ii)
-/// The means go through the same samples, so nothing is lost to a filter.
+/// window
+///     mean(tau) = mean(dp/dt) - mean(C^T qd - g) + mean(F)                                  (ii)
+/// The means go through the same samples with the same weights (windows.h), so nothing is lost to a
+/// filter.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,6 +25,9 @@ class ArmMotion {
 
   /// [N m] the right side of (ii), of one joint.
   double expected(int joint, const Window& w) const;
+
+  /// [N m] its instrument.
+  double expected_around(int joint, const Window& w) const;
 
  private:
   const Trace& log_;

@@ -29,7 +29,7 @@ VectorXd row(const Trace& log, const Window& w, const std::vector<Term>& terms) 
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& f = terms[i].column;
     r[i] = f ? mean_over(log, w, [&](int k) { return f(log.q(0, k), log.qd(0, k)); })
-             : mean_acceleration(log, 0, w);
+             : mean_change(log, w, [&](int k) { return log.qd(0, k); });
   }
   r[n] = mean_torque(log, 0, w);
   return r;
@@ -64,13 +64,12 @@ std::vector<Term> others(const std::vector<Term>& model) {
 
 // what the residuals say; a loadcell that is not linear adds powers of tau
 void add_residuals(const Trace& log, const std::vector<Term>& model,
-                   const std::vector<Window>& windows, const MatrixXd& A, const Fit& f,
-                   Identification& id) {
+                   const std::vector<Window>& windows, const Fit& f, Identification& id) {
   if (id.residual <= 1e-6 * id.torque) return;  // no sensor's noise, but the integration's error
   const std::vector<Term> rest = others(model);
   const auto n = static_cast<Eigen::Index>(rest.size());
-  MatrixXd columns(A.rows(), n + 2);
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+  MatrixXd columns(f.residuals.size(), n + 2);
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     const VectorXd r = row(log, windows[static_cast<std::size_t>(i)], rest);
     columns.row(i) << r.head(n).transpose(), r[n] * r[n], r[n] * r[n] * r[n];
   }
@@ -78,7 +77,7 @@ void add_residuals(const Trace& log, const std::vector<Term>& model,
   names.insert(names.end(),
                {"a loadcell that is not linear (tau^2)", "a loadcell that is not linear (tau^3)"});
   id.colour = colour(f.residuals);
-  id.missing = suspects(A, f.inverse, f.residuals, columns, names);
+  id.missing = suspects(f.shown, f.inverse, f.residuals, columns, names);
 }
 
 }  // namespace
@@ -132,12 +131,17 @@ Identification identify(const Trace& log, const std::vector<Term>& terms, const 
     A.row(i) = r.head(n);
     y[i] = r[n];
   }
-  const Fit f = fit(A, y, names_of(terms));
+  MatrixXd Z = A;
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index i = 0; i < m && !terms[static_cast<std::size_t>(k)].column; ++i)
+      Z(i, k) = change_around(log, windows[static_cast<std::size_t>(i)],
+                              [&](int sample) { return log.qd(0, sample); });
+  const Fit f = fit(A, Z, y, names_of(terms));
   id.parameters = f.parameters;
   id.condition = f.condition;
   id.torque = f.y;
   id.residual = f.residual;
-  add_residuals(log, terms, windows, A, f, id);
+  add_residuals(log, terms, windows, f, id);
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Parameter& p = f.parameters[i];
     if ((terms[i].name == "inertia" || terms[i].name == "coulomb") &&

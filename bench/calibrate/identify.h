@@ -3,16 +3,16 @@
 /// Identifies a one-joint model that is linear in its parameters, like (36), from a recorded motion
 /// without contact: section 6.1 of the paper, with standard errors.
 ///
-/// Over a window [t_a, t_b) of length T, (3) integrates to
-///     theta_1 (qd_b - qd_a) / T + sum_i theta_i mean(f_i(q, qd)) = mean(tau)               (i)
-/// so the acceleration is the difference quotient of the velocity over the window, and every other
-/// term goes through the same mean (tau as it is sampled; the f_i by the trapezium rule).
-/// The terms stay in phase, and nothing is lost to a filter. Windows do not overlap; that
-/// neighbours share a velocity at their common end hardly correlates their errors. A window is left
-/// out where the joint is slower than `min_speed`, where nobody knows dry friction, where it is
-/// touched, or across a gap in the log.
+/// Over a window, (3) integrates to
+///     theta_1 mean(qdd) + sum_i theta_i mean(f_i(q, qd)) = mean(tau)                       (i)
+/// with the weighted means of windows.h: the acceleration is made of the changes of the velocity,
+/// and every other term goes through the same mean (tau as it is sampled; the f_i by the trapezium
+/// rule). The terms stay in phase, and nothing is lost to a filter. Windows do not overlap. A
+/// window is left out where the joint is slower than `min_speed`, where nobody knows dry friction,
+/// where it is touched, or across a gap in the log.
 ///
-/// (i) is solved by linear least squares over all windows; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2
+/// (i) is solved by linear least squares over all windows, with an instrument for the acceleration,
+/// whose noise would make the inertia too small; sigma_i^2 is s^2 (A^T A)^-1_ii with s^2
 /// the residuals' variance, which holds if they are white noise. least_squares.h says whether they
 /// are, what a sigma is if not, and which term is probably missing. What no term here can tell: a
 /// loadcell's hysteresis looks like dry friction, and its gain like all of theta.

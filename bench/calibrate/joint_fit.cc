@@ -26,7 +26,6 @@ using Free = MatrixXd;
 // what a fit says: the parameters, and for currents the gain before them
 struct Answer {
   Fit fit;
-  MatrixXd A;                       // of which it is
   VectorXd theta, errors;           // in the terms' units; one standard error, robust
   double gain = 1, gain_error = 0;  // [N m/A], or 1
 };
@@ -40,10 +39,11 @@ Answer answer(const Rows& r, const Free& free, const Names& names, bool currents
     free.col(j).cwiseAbs().maxCoeff(&k);
     columns.push_back(names[static_cast<std::size_t>(k)]);
   }
-  a.A.resize(r.rigid.size(), static_cast<Index>(columns.size()));
-  if (currents) a.A.col(0) = r.rigid;
-  a.A.rightCols(free.cols()) = r.terms * free;
-  a.fit = fit(a.A, currents ? r.measured : VectorXd(r.measured - r.rigid), columns);
+  MatrixXd A(r.rigid.size(), static_cast<Index>(columns.size())), Z(A.rows(), A.cols());
+  if (currents) A.col(0) = r.rigid, Z.col(0) = r.rigid_instrument;
+  A.rightCols(free.cols()) = r.terms * free;
+  Z.rightCols(free.cols()) = r.term_instruments * free;
+  a.fit = fit(A, Z, currents ? r.measured : VectorXd(r.measured - r.rigid), columns);
   VectorXd robust(free.cols());
   for (Index j = 0; j < free.cols(); ++j)
     robust[j] = a.fit.parameters[columns.size() - robust.size() + j].robust;
@@ -67,8 +67,10 @@ Rows part(const Rows& r, int stretch, bool without) {
   std::vector<Index> chosen;
   for (Index i = 0; i < m; ++i)
     if ((i >= from && i < to) != without) chosen.push_back(i);
-  return {r.terms(chosen, Eigen::indexing::all), r.rigid(chosen), r.measured(chosen),
-          r.others(chosen, Eigen::indexing::all)};
+  using Eigen::indexing::all;
+  return {r.terms(chosen, all), r.term_instruments(chosen, all),
+          r.rigid(chosen),      r.rigid_instrument(chosen),
+          r.measured(chosen),   r.others(chosen, all)};
 }
 
 double rms(const VectorXd& v) {
@@ -218,7 +220,7 @@ CalibratedJoint calibrated_joint(const Rows& r, const Names& names, bool current
         joint.after, joint.torque));
   if (joint.after <= 1e-6 * joint.torque) return joint;  // no noise, but the integration's error
   joint.colour = colour(a.fit.residuals);
-  joint.missing = suspects(a.A, a.fit.inverse, a.fit.residuals, r.others, r.suspects);
+  joint.missing = suspects(a.fit.shown, a.fit.inverse, a.fit.residuals, r.others, r.suspects);
   return joint;
 }
 

@@ -80,7 +80,9 @@ struct CalibratedJoint {
 /// The windows of a joint, a row for each.
 struct JointRows {
   Eigen::MatrixXd terms;              ///< what the parameters multiply
+  Eigen::MatrixXd term_instruments;   ///< of these (windows.h)
   Eigen::VectorXd rigid;              ///< [N m] what the masses take
+  Eigen::VectorXd rigid_instrument;   ///< of that
   Eigen::VectorXd measured;           ///< [N m] or [A]
   Eigen::MatrixXd others;             ///< what may be missing
   std::vector<std::string> suspects;  ///< the names of these

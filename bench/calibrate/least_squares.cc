@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,16 @@ Index lags(const VectorXd& r) {
                          r.size() / 4);
 }
 
+constexpr double kLeast = 1e-100;  // in the place of a norm or a singular value of 0
+
+// what Z's columns can make of A's
+MatrixXd projected(const MatrixXd& A, const MatrixXd& Z) {
+  const VectorXd norm = Z.colwise().norm().cwiseMax(kLeast);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(Z * norm.cwiseInverse().asDiagonal());
+  const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(Z.rows(), qr.rank());
+  return Q * (Q.transpose() * A);
+}
+
 }  // namespace
 
 VectorXd Fit::theta() const {
@@ -40,20 +51,21 @@ VectorXd Fit::theta() const {
   return all;
 }
 
-Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& names,
-        const char* remedy) {
-  constexpr double kLeast = 1e-100;  // in the place of a norm or a singular value of 0
+Fit fit(const MatrixXd& A, const MatrixXd& Z, const VectorXd& y,
+        const std::vector<std::string>& names, const char* remedy) {
   const Eigen::Index m = A.rows(), n = A.cols();
-  if (n == 0) return {{}, MatrixXd(0, 0), y, 1, y.norm() / std::sqrt(m), y.norm() / std::sqrt(m)};
+  if (n == 0)
+    return {{}, A, MatrixXd(0, 0), y, 1, y.norm() / std::sqrt(m), y.norm() / std::sqrt(m)};
   const VectorXd norm = A.colwise().norm();
-  const MatrixXd scaled = A * norm.cwiseMax(kLeast).cwiseInverse().asDiagonal();
+  Fit f;
+  f.shown = &A == &Z ? A : projected(A, Z);
+  const MatrixXd scaled = f.shown * norm.cwiseMax(kLeast).cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const VectorXd& s = svd.singularValues();
-  // The norm of row i of V S^-1 is the root of the i-th diagonal element of (A^T A)^-1, A with its
+  // The norm of row i of V S^-1 is the root of the i-th diagonal element of the inverse, with
   // columns scaled; its inverse is the share of column i that the others cannot imitate.
   const VectorXd root =
       (svd.matrixV() * s.cwiseMax(kLeast).cwiseInverse().asDiagonal()).rowwise().norm();
-  Fit f;
   f.condition = s[0] / s[n - 1];
   if (!(f.condition < 1e6)) {
     Eigen::Index least = 0;
@@ -63,11 +75,11 @@ Fit fit(const MatrixXd& A, const VectorXd& y, const std::vector<std::string>& na
                     names[static_cast<std::size_t>(least)], f.condition, remedy));
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
-  f.inverse = (A.transpose() * A).ldlt().solve(MatrixXd::Identity(n, n));
+  f.inverse = (f.shown.transpose() * f.shown).ldlt().solve(MatrixXd::Identity(n, n));
   f.residuals = y - A * theta;
   f.y = std::sqrt(y.squaredNorm() / static_cast<double>(m));
   f.residual = std::sqrt(f.residuals.squaredNorm() / static_cast<double>(m - n));
-  const VectorXd robust = robust_errors(A, f.inverse, f.residuals);
+  const VectorXd robust = robust_errors(f.shown, f.inverse, f.residuals);
   for (Eigen::Index i = 0; i < n; ++i) {
     f.parameters.push_back({theta[i], f.residual * root[i] / norm[i], robust[i],
                             norm[i] / std::sqrt(static_cast<double>(m)),

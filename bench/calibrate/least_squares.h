@@ -21,25 +21,32 @@ struct Parameter {
   double sigma = 0;       ///< standard error, in the same unit, if the residuals are white
   double robust = 0;      ///< standard error whatever they are
   double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
-  double own = 0;         ///< [1] share of the column that the others cannot imitate, 0 to 1
+  double own = 0;  ///< [1] share of the column that its instruments show and others do not, 0 to 1
 };
 
-/// y = A theta + residuals, the sum of whose squares is least.
+/// y = A theta + residuals, the sum of whose squares is least, or which have nothing of the
+/// instruments.
 struct Fit {
   std::vector<Parameter> parameters;  ///< in the order of the columns
-  Eigen::MatrixXd inverse;            ///< (A^T A)^-1
+  Eigen::MatrixXd shown;              ///< A, or what the instruments show of it
+  Eigen::MatrixXd inverse;            ///< (shown^T shown)^-1
   Eigen::VectorXd residuals;          ///< in the unit of y
-  double condition = 0;               ///< [1] of A with its columns scaled to norm 1
+  double condition = 0;               ///< [1] of it, with A's columns scaled to norm 1
   double y = 0;                       ///< rms of y
   double residual = 0;                ///< standard deviation of the residuals
 
   Eigen::VectorXd theta() const;  ///< all parameters
 };
 
+/// Where A itself has noise, least squares makes its parameters too small. Columns that have none of
+/// that noise, as many, are instruments: least squares in two stages (Wooldridge, "Econometric
+/// analysis of cross section and panel data", 2010, 5.2), whose errors hold likewise.
+/// @param Z A, or instruments of its columns
 /// @param names of A's columns, which may be none
 /// @param remedy against a column that the others imitate, for the error
 /// @throws std::invalid_argument naming the column that the others imitate
-Fit fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const std::vector<std::string>& names,
+Fit fit(const Eigen::MatrixXd& A, const Eigen::MatrixXd& Z, const Eigen::VectorXd& y,
+        const std::vector<std::string>& names,
         const char* remedy = "record one that excites it, or leave it out (--terms)");
 
 /// Into how many stretches recordings are cut, of which a jackknife leaves out one after the other.
@@ -58,7 +65,7 @@ double colour(const Eigen::VectorXd& residuals);
 /// Standard errors of the parameters of y = A theta, which hold for residuals of any colour and
 /// variance: Newey and West, Econometrica 1987, with Bartlett's weights over as many lags as
 /// Andrews, Econometrica 1991, takes for their first autocorrelation; times n / (n - k).
-/// @param inverse (A^T A)^-1
+/// @param inverse (A^T A)^-1, of Fit::shown where there are instruments
 Eigen::VectorXd robust_errors(const Eigen::MatrixXd& A, const Eigen::MatrixXd& inverse,
                               const Eigen::VectorXd& residuals);
 

@@ -69,7 +69,7 @@ VectorXd expected(const ArmTree& arm, const std::vector<Place>& places) {
 Fit payload_fit(const MatrixXd& A, const VectorXd& y) {
   static const std::vector<std::string> terms = {"mass", "moment along x", "moment along y",
                                                  "moment along z"};
-  return fit(A, y, terms,
+  return fit(A, A, y, terms,
              "record one that turns the payload about more axes; an arm that moves in one plane "
              "cannot weigh it");
 }

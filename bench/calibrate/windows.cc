@@ -9,7 +9,8 @@
 namespace tauext {
 namespace {
 
-constexpr double kLongestGap = 0.05;  // [s]
+constexpr double kLongestGap = 0.05;    // [s]
+constexpr double kNextToAWindow = 0.2;  // [1] of its length
 
 bool usable(const Trace& log, int joint, const Window& w, double min_speed) {
   const auto [a, b] = w;
@@ -41,15 +42,39 @@ std::vector<Window> windows_of(const Trace& log, int joint, const Windows& w, in
   return all;
 }
 
+double weight(const Trace& log, const Window& w, int k) {
+  const auto sum_before = [&](int sample) {
+    const double s = (log.t[sample] - log.t[w.first]) / (log.t[w.second] - log.t[w.first]);
+    return s * s * (3 - 2 * s);
+  };
+  return sum_before(k + 1) - sum_before(k);
+}
+
+std::pair<Window, Window> around(const Trace& log, const Window& w) {
+  const double T = log.t[w.second] - log.t[w.first], near = kNextToAWindow * T;
+  // from w's end in steps of 1 or -1 to the sample that is T away, or nowhere
+  const auto part = [&](int from, int step) {
+    int k = from, begin = -1;
+    const auto away = [&] { return std::abs(log.t[k] - log.t[from]); };
+    while (away() < T * (1 - 1e-9)) {
+      const int next = k + step;
+      if (next < 0 || next >= log.size() || std::abs(log.t[next] - log.t[k]) > kLongestGap)
+        return Window{0, 0};
+      k = next;
+      if (begin < 0 && away() >= near) begin = k;
+    }
+    return step > 0 ? Window{begin, k + 1} : Window{k, begin + 1};
+  };
+  const Window before = part(w.first, -1), after = part(w.second, 1);
+  if (before.second == 0 || after.second == 0) return {};
+  return {before, after};
+}
+
 double mean_torque(const Trace& log, int joint, const Window& w) {
   if (log.torque_at_instants) return mean_over(log, w, [&](int k) { return log.tau(joint, k); });
   double sum = 0;
-  for (int k = w.first; k < w.second; ++k) sum += (log.t[k + 1] - log.t[k]) * log.tau(joint, k);
-  return sum / (log.t[w.second] - log.t[w.first]);
-}
-
-double mean_acceleration(const Trace& log, int joint, const Window& w) {
-  return (log.qd(joint, w.second) - log.qd(joint, w.first)) / (log.t[w.second] - log.t[w.first]);
+  for (int k = w.first; k < w.second; ++k) sum += weight(log, w, k) * log.tau(joint, k);
+  return sum;
 }
 
 void check_windows(const Windows& w) {

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A log in windows of time, over which equation (3) is integrated.
+/// A log in windows of time, over which equation (3) is integrated with a weight.
+///
+/// The weight is 6 s (1 - s) / T, with s from 0 to 1 in a window of length T: it is 0 at both ends
+/// (a modulating function: Shinbrot, "On the analysis of linear and nonlinear systems", 1957), so
+/// that what an acceleration is made of is every speed in the window, not the two at its ends, and
+/// noise of the speed is averaged like that of the torque.
+///
+/// What is left of that noise is in the acceleration that multiplies an inertia, and would make the
+/// inertia too small. So each change has an instrument (least_squares.h): the same change as the
+/// windows before and after show it, whose noise is another one.
 #pragma once
 
 #include <cstddef>
@@ -26,23 +35,52 @@ using Window = std::pair<int, int>;
 /// @param left_out counts the others
 std::vector<Window> windows_of(const Trace& log, int joint, const Windows& w, int& left_out);
 
+/// [1] of the time from sample k to the next; 1 in all of a window.
+double weight(const Trace& log, const Window& w, int k);
+
+/// The samples before and after a window that change_around() takes; none of both at an end of the
+/// log or a gap.
+std::pair<Window, Window> around(const Trace& log, const Window& w);
+
 /// The mean over a window of f(k), known at each sample k, by the trapezium rule.
 template <class F>
 double mean_over(const Trace& log, const Window& w, F&& f) {
   double sum = 0, at = f(w.first);
   for (int k = w.first; k < w.second; ++k) {
     const double next = f(k + 1);
-    sum += (log.t[k + 1] - log.t[k]) * (at + next) / 2;
+    sum += weight(log, w, k) * (at + next) / 2;
     at = next;
   }
-  return sum / (log.t[w.second] - log.t[w.first]);
+  return sum;
+}
+
+/// The mean over a window of the derivative of f [1/s].
+template <class F>
+double mean_change(const Trace& log, const Window& w, F&& f) {
+  double sum = 0;
+  for (int k = w.first; k < w.second; ++k)
+    sum += weight(log, w, k) / (log.t[k + 1] - log.t[k]) * (f(k + 1) - f(k));
+  return sum;
+}
+
+/// Its instrument [1/s]: from the mean over as long before the window to that over as long behind
+/// it, without the fifth of that time that is next to it, as noise of a filtered speed lasts. 0
+/// where there are no such samples.
+template <class F>
+double change_around(const Trace& log, const Window& w, F&& f) {
+  const auto [before, after] = around(log, w);
+  if (before.first == before.second) return 0;
+  const auto mean = [&](const Window& part, auto&& of) {
+    double sum = 0;
+    for (int k = part.first; k < part.second; ++k) sum += of(k);
+    return sum / (part.second - part.first);
+  };
+  const auto time = [&](int k) { return log.t[k]; };
+  return (mean(after, f) - mean(before, f)) / (mean(after, time) - mean(before, time));
 }
 
 /// [N m] the mean of a joint's torque, as the log has it: held, or read at instants.
 double mean_torque(const Trace& log, int joint, const Window& w);
-
-/// [rad/s^2] the mean of a joint's acceleration.
-double mean_acceleration(const Trace& log, int joint, const Window& w);
 
 /// @throws std::invalid_argument for a length or a speed that is none
 void check_windows(const Windows& w);

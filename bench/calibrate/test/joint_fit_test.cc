@@ -24,6 +24,7 @@ TEST(JointFit, WhatIsHeldIsHeldAndTheOthersAreFittedAgain) {
     rows.measured[i] = rows.rigid[i] + 2 * s - 0.01 * rows.terms(i, 0) + 1.5 * qd +
                        1.55 * std::abs(qd) + 0.2 + noise;
   }
+  rows.term_instruments = rows.terms, rows.rigid_instrument = rows.rigid;
   const CalibratedJoint j =
       calibrated_joint(rows, {"armature", "coulomb", "viscous", "viscous_skew", "offset"}, false);
   ASSERT_EQ(j.held.size(), 2u);
