@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -22,40 +25,94 @@ constexpr double kMaxRatio = 0.1;         // [1] of mean squares: what a cause m
 constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
 constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
+constexpr double kFullSlip = 0.01;         // [rad/s] at which dry friction acts
+constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
+constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
+constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
+
+enum Rate { kRest, kGravityTorque, kSpeed, kDirection };  // of a sample, by column
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 std::string listed(const std::vector<int>& joints) {
   return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
 }
 
-// the mean square of of(window) [N m], without the worst fifth
+// y - C x, where the last two of x are friction, which is not below 0
+VectorXd rest_of(const MatrixXd& C, const VectorXd& y, const MatrixXd& all_C, const VectorXd& all) {
+  const Index free = C.cols() - 2;
+  VectorXd best = all;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& friction : {std::vector<Index>{free, free + 1}, {free}, {free + 1}, {}}) {
+    std::vector<Index> columns(static_cast<std::size_t>(free));
+    std::iota(columns.begin(), columns.end(), 0);
+    columns.insert(columns.end(), friction.begin(), friction.end());
+    if (columns.empty()) {
+      if (y.squaredNorm() < least) best = all;
+      continue;
+    }
+    const MatrixXd some = C(Eigen::indexing::all, columns);
+    const VectorXd x = some.colPivHouseholderQr().solve(y);
+    const double misses = (y - some * x).squaredNorm();
+    if ((x.tail(static_cast<Index>(friction.size())).array() < 0).any() || !(misses < least))
+      continue;
+    least = misses;
+    best = all - all_C(Eigen::indexing::all, columns) * x;
+  }
+  return best;
+}
+
+std::vector<Index> best_fifths(const VectorXd& rest) {
+  std::vector<Index> order(static_cast<std::size_t>(rest.size()));
+  std::iota(order.begin(), order.end(), 0);
+  const std::size_t kept = order.size() - order.size() / 5;
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
+                   order.end(),
+                   [&](Index i, Index k) { return std::abs(rest[i]) < std::abs(rest[k]); });
+  order.resize(kept);
+  return order;
+}
+
+// the mean square of of(window) [N m], without the worst fifth, and without what friction of joint
+// j explains, and a constant load
 template <class Windows, class Of>
-double misfit(const Windows& windows, Of of) {
+double misfit(const Windows& windows, int j, Of of, bool load = false) {
   if (windows.empty()) return 0;
-  std::vector<double> squares;
-  for (const auto* w : windows) squares.push_back(std::pow(of(*w), 2));
-  const std::size_t kept = squares.size() - squares.size() / 5;
-  std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
-                   squares.end());
-  double sum = 0;
-  for (std::size_t i = 0; i < kept; ++i) sum += squares[i];
-  return sum / static_cast<double>(kept);
+  const auto m = static_cast<Index>(windows.size());
+  MatrixXd C = MatrixXd::Ones(m, load ? 3 : 2);
+  VectorXd y(m);
+  for (Index i = 0; i < m; ++i) {
+    const auto& w = *windows[static_cast<std::size_t>(i)];
+    y[i] = of(w);
+    C.row(i).tail(2) << w.direction[j], w.speed[j];
+  }
+  const auto kept = best_fifths(rest_of(C, y, C, y));
+  const VectorXd rest = rest_of(C(kept, Eigen::indexing::all), y(kept), C, y);
+  return rest(best_fifths(rest)).squaredNorm() / static_cast<double>(kept.size());
 }
 
 template <class Windows, class Of>
-double median(const Windows& windows, Of of) {
-  std::vector<double> all;
-  for (const auto* w : windows) all.push_back(of(*w));
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  return *middle;
+double mean_square(const Windows& windows, Of of) {
+  double sum = 0;
+  for (const auto* w : windows) sum += std::pow(of(*w), 2);
+  return sum / static_cast<double>(windows.size());
 }
 
-// what the model and a constant load leave
+// by which joint j's torques are those of the model, with any friction
 template <class Windows>
-double misfit_with_load(const Windows& windows, int j) {
-  const auto left = [j](const auto& w) { return w.tau[j] - w.model[j]; };
-  const double load = median(windows, left);
-  return misfit(windows, [&](const auto& w) { return left(w) - load; });
+double factor(const Windows& windows, int j) {
+  MatrixXd C(static_cast<Index>(windows.size()), 3);
+  VectorXd y(C.rows());
+  for (Index i = 0; i < C.rows(); ++i) {
+    const auto& w = *windows[static_cast<std::size_t>(i)];
+    y[i] = w.tau[j];
+    C.row(i) << w.model[j], w.direction[j], w.speed[j];
+  }
+  const VectorXd first = C.colPivHouseholderQr().solve(y);
+  const auto kept = best_fifths(y - C * first);
+  return MatrixXd(C(kept, Eigen::indexing::all)).colPivHouseholderQr().solve(y(kept))[0];
 }
 
 }  // namespace
@@ -69,15 +126,18 @@ TorqueFit::ModelSample TorqueFit::sample_of(const Sample& y) const {
   at.t = y.t, at.q.setZero();
   at.q.head(n_) = y.q, qd.head(n_) = y.qd;
   const auto d = model_.momentum_dynamics(at.q, qd);
-  at.momentum = d.B * qd, at.rest = model_.friction(qd) - d.bias;
-  at.gravity = model_.gravity(at.q);
+  at.momentum = d.B * qd;
+  at.rates.col(kRest) = model_.friction(qd) - d.bias;
+  at.rates.col(kGravityTorque) = model_.gravity(at.q);
+  at.rates.col(kSpeed) = qd;
+  at.rates.col(kDirection) = (qd / kFullSlip).array().tanh();
   return at;
 }
 
 void TorqueFit::begin(const Sample& y) {
   begun_ = true;
   first_ = newest_ = sample_of(y);
-  for (VectorN* v : {&tau_, &rest_, &gravity_}) v->setZero();
+  tau_.setZero(), rates_.setZero();
 }
 
 void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext) {
@@ -95,8 +155,7 @@ void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_e
   }
   if (y.t - newest_.t < kStep * (1 - 1e-6)) return;
   const ModelSample at = sample_of(y);
-  rest_ += (at.t - newest_.t) / 2 * (at.rest + newest_.rest);
-  gravity_ += (at.t - newest_.t) / 2 * (at.gravity + newest_.gravity);
+  rates_ += (at.t - newest_.t) / 2 * (at.rates + newest_.rates);
   newest_ = at;
   if (at.t - first_.t >= kWindow * (1 - 1e-6)) close(at);
 }
@@ -104,15 +163,16 @@ void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_e
 void TorqueFit::close(const ModelSample& at) {
   const double T = at.t - first_.t;
   if (count_++ % every_ == 0)
-    windows_.push_back({tau_ / T, (at.momentum - first_.momentum + rest_) / T, gravity_ / T,
-                        (at.q + first_.q) / 2});
+    windows_.push_back({tau_ / T, (at.momentum - first_.momentum + rates_.col(kRest)) / T,
+                        rates_.col(kGravityTorque) / T, rates_.col(kSpeed) / T,
+                        rates_.col(kDirection) / T, (at.q + first_.q) / 2});
   if (windows_.size() == kMaxWindows) {
     for (std::size_t i = 0; 2 * i < windows_.size(); ++i) windows_[i] = windows_[2 * i];
     windows_.resize(kMaxWindows / 2);
     every_ *= 2;
   }
   first_ = at;
-  for (VectorN* v : {&tau_, &rest_, &gravity_}) v->setZero();
+  tau_.setZero(), rates_.setZero();
 }
 
 // at most 512, from all of the recording
@@ -137,25 +197,27 @@ TorqueFit::Windows TorqueFit::slow(int j) const {
 // without gravity, or in another unit, in joints that carry most of what is carried
 TorqueFit::Cause TorqueFit::by_gravity() const {
   std::vector<int> without, scaled;
-  std::vector<double> factors;
+  std::vector<double> factors, same;
   bool without_varied = false, scaled_varied = true;
   int seen = 0;
-  double all = 0, power_without = 0, power_scaled = 0;
+  double all = 0, power_without = 0, power_scaled = 0, power_same = 0;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
-    const double residual =
-        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    const double power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
+    const double residual = misfit(windows, j, left);
     ++seen, all += power;
+    const double s = factor(windows, j);
+    const double by_factor = s * s * misfit(windows, j, [j, s](const WindowMean& w) {
+                               return w.tau[j] / s - w.model[j];
+                             });
+    if (by_factor < kMaxRatioOfUnit * residual) same.push_back(s), power_same += power;
     if (residual < kMinMisfit * power) continue;
-    const double s = median(windows, [j](const WindowMean& w) { return w.tau[j] / w.model[j]; });
     const double without_gravity =
-        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j] + w.gravity[j]; });
-    const double by_factor =
-        misfit(windows, [j, s](const WindowMean& w) { return w.tau[j] - s * w.model[j]; });
+        misfit(windows, j, [&](const WindowMean& w) { return left(w) + w.gravity[j]; });
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
-    const double load = misfit_with_load(windows, j);
+    const double load = misfit(windows, j, left, true);
     const double by_load = load > kMinVariation * residual ? kMaxRatio * load : 0;
     if (without_gravity < kMaxRatio * residual &&
         (without_gravity < 10 * by_factor || std::abs(s) < 0.02)) {
@@ -174,6 +236,15 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
                         "recording has it removed, use [tau_without_gravity] in a map (--columns)",
                         listed(without)),
             without_varied};
+  if (same.size() > 1 && power_same > all / 2 && scaled.empty()) {
+    const auto [least, most] = std::minmax_element(same.begin(), same.end());
+    if (*most < kSame * *least && std::max(*most, 1 / *least) > kMinUnit)
+      return {fmt::format("in slow poses all torques are {:.3g} times those of the model: is this "
+                          "another unit (lbf ft: 0.738)? `unit` or `gain` of [tau] in a map "
+                          "(--columns) says so",
+                          same[0]),
+              false};
+  }
   if (scaled.empty() || !(power_scaled > all / 2)) return {};
   const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
   // other masses than the file's, and loads, make factors, too, but each joint its own
@@ -216,13 +287,13 @@ std::string TorqueFit::by_sign() const {
   std::vector<int> reversed;
   const Windows windows = thinned();
   for (int j = 0; j < n_; ++j) {
-    const double power = misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
-    const double residual =
-        misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    const double power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
+    const double residual = misfit(windows, j, left);
     const double other =
-        misfit(windows, [j](const WindowMean& w) { return w.tau[j] + w.model[j]; });
+        misfit(windows, j, [j](const WindowMean& w) { return -w.tau[j] - w.model[j]; });
     if (residual > kMinMisfit * power && other < kMaxRatio * residual &&
-        other < kMaxRatio * misfit_with_load(windows, j))
+        other < kMaxRatio * misfit(windows, j, left, true))
       reversed.push_back(j + 1);
   }
   if (reversed.empty()) return "";
@@ -235,21 +306,23 @@ std::string TorqueFit::by_sign() const {
 // two joints in each other's columns, tau alone or all of them
 std::string TorqueFit::by_order() const {
   const Windows windows = thinned();
-  // of residual(window, number of the window, joint), over all joints, by their size
-  const auto missed_by = [&](auto&& residual) {
+  // of residual(window, number of the window, joint), over all joints, by their size; moves(joint)
+  // is the one whose motion is that joint's
+  const auto missed_by = [&](auto&& moves, auto&& residual, bool load = false) {
     double sum = 0;
     for (int j = 0; j < n_; ++j) {
       std::size_t k = 0;
-      sum += misfit(windows, [&](const WindowMean& w) { return residual(w, k++, j); }) /
-             std::pow(arm_.usual_torque[j], 2);
+      sum +=
+          misfit(
+              windows, moves(j), [&](const WindowMean& w) { return residual(w, k++, j); }, load) /
+          std::pow(arm_.usual_torque[j], 2);
     }
     return sum;
   };
-  const double missed =
-      missed_by([](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; });
-  double with_loads = 0;  // a constant one on each joint, like the offset of a sensor
-  for (int j = 0; j < n_; ++j)
-    with_loads += misfit_with_load(windows, j) / std::pow(arm_.usual_torque[j], 2);
+  const auto itself = [](int j) { return j; };
+  const auto left = [](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; };
+  const double missed = missed_by(itself, left);
+  const double with_loads = missed_by(itself, left, true);  // like the offset of a sensor
   double least = kMaxRatio * std::min(missed, with_loads);
   std::string best;
   std::vector<VectorN> gravity(windows.size());
@@ -264,9 +337,8 @@ std::string TorqueFit::by_order() const {
             "(--columns), or set its `order`",
             what, a + 1, b + 1);
       };
-      consider(missed_by([&](const WindowMean& w, std::size_t, int j) {
-                 return w.tau[other(j)] - w.model[j];
-               }),
+      consider(missed_by(itself, [&](const WindowMean& w, std::size_t,
+                                     int j) { return w.tau[other(j)] - w.model[j]; }),
                "tau");
       // the model's motion is that of the wrong joints, so only gravity is compared
       for (std::size_t k = 0; k < windows.size(); ++k) {
@@ -274,14 +346,15 @@ std::string TorqueFit::by_order() const {
         std::swap(q[a], q[b]);
         gravity[k] = model_.gravity(q);
       }
-      consider(missed_by([&](const WindowMean& w, std::size_t k, int j) {
-                 return w.tau[other(j)] - gravity[k][j];
-               }),
+      consider(missed_by(other, [&](const WindowMean& w, std::size_t k,
+                                    int j) { return w.tau[other(j)] - gravity[k][j]; }),
                "q, qd and tau");
     }
   }
-  const double power =
-      missed_by([](const WindowMean& w, std::size_t, int j) { return w.model[j]; });
+  double power = 0;
+  for (int j = 0; j < n_; ++j)
+    power += mean_square(windows, [j](const WindowMean& w) { return w.model[j]; }) /
+             std::pow(arm_.usual_torque[j], 2);
   return missed > kMinOrderMisfit * power ? best : "";
 }
 
@@ -304,8 +377,8 @@ std::string TorqueFit::doubt() const {
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    power += misfit(windows, [j](const WindowMean& w) { return w.model[j]; });
-    residual += misfit(windows, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
+    power += mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    residual += misfit(windows, j, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
   }
   if (!(residual > power)) return "";
   return fmt::format(

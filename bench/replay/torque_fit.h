@@ -5,8 +5,10 @@
 ///
 /// Over windows of 0.1 s the mean torque is compared with that of the arm's model, by (ii) of
 /// bench/calibrate/arm_motion.h, and with what it would be if the recording had it otherwise:
-/// without gravity, with another sign, in another unit, of another joint. The fifth of the windows
-/// that fits worst is left out each time: outliers, and touches that nobody labelled.
+/// without gravity, with another sign, in another unit, of another joint; each time with the
+/// Coulomb's and viscous friction of each joint that explains most of the rest, as hardly a file
+/// knows it. The fifth of the windows that fits worst is left out: outliers, and touches that
+/// nobody labelled.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,13 +49,14 @@ class TorqueFit {
   using VectorN = Vec<kMostCoordinates>;
   // means over a window, of the measured torque, of the model's, and of gravity's share of it
   struct WindowMean {
-    VectorN tau, model, gravity, q;
+    VectorN tau, model, gravity, speed, direction, q;
   };
   using Windows = std::vector<const WindowMean*>;
   // a sample at which the model was asked
   struct ModelSample {
     double t = 0;
-    VectorN momentum, rest, gravity, q;
+    VectorN momentum, q;
+    Eigen::Matrix<double, kMostCoordinates, 4> rates;  // whose means are taken
   };
   struct Cause {
     std::string words;    // "": none
@@ -73,11 +76,12 @@ class TorqueFit {
   ArmTree arm_;
   TiedTree model_;
   bool at_instants_;
-  int n_;                         // joints
-  double t_ = 0;                  // [s] of the last sample
-  Eigen::VectorXd torque_;        // and its tau
-  ModelSample first_, newest_;    // of the window
-  VectorN tau_, rest_, gravity_;  // integrals over it
+  int n_;                       // joints
+  double t_ = 0;                // [s] of the last sample
+  Eigen::VectorXd torque_;      // and its tau
+  ModelSample first_, newest_;  // of the window
+  VectorN tau_;                 // integrals over it
+  Eigen::Matrix<double, kMostCoordinates, 4> rates_;
   std::vector<WindowMean> windows_;
   std::size_t every_ = 1, count_ = 0;
   bool begun_ = false;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "mjcf/plant/simulated.h"
@@ -132,6 +133,46 @@ TEST_F(TorqueFits, JointsInEachOthersColumnsAreNamed) {
       other.q.row(a).swap(other.q.row(b)), other.qd.row(a).swap(other.qd.row(b));
       EXPECT_NE(robot.words(other), "") << a + 1 << " " << b + 1;
     }
+  }
+}
+
+// friction of nearly what the masses take, which the file does not know
+TEST_F(TorqueFits, FrictionHidesNoCause) {
+  const Robot robot = arm6();
+  ArmTree bare = robot.arm;
+  for (TreeJoint& j : bare.joints) j.armature = j.viscous = j.dry = j.offset = j.viscous_skew = 0;
+  Trace log = robot.run("in_motion");
+  for (int k = 0; k < log.size(); ++k)
+    for (int j = 0; j < 6; ++j)
+      log.tau(j, k) += 0.5 * robot.arm.usual_torque[j] * std::tanh(log.qd(j, k) / 0.01);
+  EXPECT_EQ(Robot::words_of(bare, log), "");
+  const auto contradiction = [&](const Trace& other) {
+    return Robot::fit_of(bare, other).contradiction();
+  };
+  Trace other = log;
+  other.tau *= -1;
+  expect(contradiction(other), "sign");
+  other = log;
+  other.tau.row(1).swap(other.tau.row(2));
+  expect(contradiction(other), "of joints 2 and 3");
+  for (const double factor : {0.1, 2., 8.851}) {
+    other.tau = factor * log.tau;
+    expect(Robot::words_of(bare, other), "times the torque of the model");
+  }
+  other = log;
+  const auto gravity = gravity_of(bare);
+  for (int k = 0; k < log.size(); ++k) other.tau.col(k) -= gravity(log.q.col(k));
+  expect(contradiction(other), "[tau_without_gravity]");
+}
+
+// so small a factor may be masses' in one joint, but not in all alike
+TEST_F(TorqueFits, FeetAndPoundsAreADoubt) {
+  const Robot robot = arm6();
+  for (const double factor : {0.7376, 1.3558, 0.87}) {
+    Trace log = robot.run("in_motion");
+    log.tau *= factor;
+    EXPECT_EQ(robot.contradiction(log), "") << factor;
+    expect(robot.words(log), "another unit");
   }
 }
 
