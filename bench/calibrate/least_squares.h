@@ -21,7 +21,7 @@ struct Parameter {
   double sigma = 0;       ///< standard error, in the same unit, if the residuals are white
   double robust = 0;      ///< standard error whatever they are
   double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
-  double own = 0;  ///< [1] share of the column that its instruments show and others do not, 0 to 1
+  double own = 0;         ///< [1] share of it, as shown, that other columns cannot imitate
 };
 
 /// y = A theta + residuals, the sum of whose squares is least, or which have nothing of the
@@ -38,8 +38,8 @@ struct Fit {
   Eigen::VectorXd theta() const;  ///< all parameters
 };
 
-/// Where A itself has noise, least squares makes its parameters too small. Columns that have none of
-/// that noise, as many, are instruments: least squares in two stages (Wooldridge, "Econometric
+/// Where A itself has noise, least squares makes its parameters too small. As many columns that have
+/// none of that noise are instruments: least squares in two stages (Wooldridge, "Econometric
 /// analysis of cross section and panel data", 2010, 5.2), whose errors hold likewise.
 /// @param Z A, or instruments of its columns
 /// @param names of A's columns, which may be none

@@ -194,41 +194,50 @@ TorqueFit::Windows TorqueFit::slow(int j) const {
   return some;
 }
 
-// without gravity, or in another unit, in joints that carry most of what is carried
-TorqueFit::Cause TorqueFit::by_gravity() const {
-  std::vector<int> without, scaled;
-  std::vector<double> factors, same;
-  bool without_varied = false, scaled_varied = true;
-  int seen = 0;
-  double all = 0, power_without = 0, power_scaled = 0, power_same = 0;
+// those that carry something, in slow poses
+std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
+  std::vector<SlowJoint> all;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    const double power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
     const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
-    const double residual = misfit(windows, j, left);
-    ++seen, all += power;
-    const double s = factor(windows, j);
-    const double by_factor = s * s * misfit(windows, j, [j, s](const WindowMean& w) {
-                               return w.tau[j] / s - w.model[j];
-                             });
-    if (by_factor < kMaxRatioOfUnit * residual) same.push_back(s), power_same += power;
-    if (residual < kMinMisfit * power) continue;
-    const double without_gravity =
+    SlowJoint fit{.number = j + 1, .factor = factor(windows, j)};
+    const double s = fit.factor;
+    fit.power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    fit.residual = misfit(windows, j, left);
+    fit.by_factor = s * s * misfit(windows, j, [j, s](const WindowMean& w) {
+                      return w.tau[j] / s - w.model[j];
+                    });
+    fit.without_gravity =
         misfit(windows, j, [&](const WindowMean& w) { return left(w) + w.gravity[j]; });
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
     const double load = misfit(windows, j, left, true);
-    const double by_load = load > kMinVariation * residual ? kMaxRatio * load : 0;
-    if (without_gravity < kMaxRatio * residual &&
-        (without_gravity < 10 * by_factor || std::abs(s) < 0.02)) {
-      without.push_back(j + 1);
-      power_without += power;
-      without_varied = without_varied || without_gravity < by_load;
-    } else if (by_factor < kMaxRatio * residual && (s < 0.7 || s > 1.4)) {
-      scaled.push_back(j + 1);
-      factors.push_back(s);
-      power_scaled += power;
-      scaled_varied = scaled_varied && by_factor < by_load;
+    fit.by_load = load > kMinVariation * fit.residual ? kMaxRatio * load : 0;
+    all.push_back(fit);
+  }
+  return all;
+}
+
+// without gravity, or in another unit, in joints that carry most of what is carried
+TorqueFit::Cause TorqueFit::by_gravity() const {
+  const std::vector<SlowJoint> joints = slow_joints();
+  std::vector<int> without, scaled;
+  std::vector<double> factors;
+  bool without_varied = false, scaled_varied = true;
+  double all = 0, power_without = 0, power_scaled = 0;
+  for (const SlowJoint& j : joints) {
+    all += j.power;
+    if (j.residual < kMinMisfit * j.power) continue;
+    if (j.without_gravity < kMaxRatio * j.residual &&
+        (j.without_gravity < 10 * j.by_factor || std::abs(j.factor) < 0.02)) {
+      without.push_back(j.number);
+      power_without += j.power;
+      without_varied = without_varied || j.without_gravity < j.by_load;
+    } else if (j.by_factor < kMaxRatio * j.residual && (j.factor < 0.7 || j.factor > 1.4)) {
+      scaled.push_back(j.number);
+      factors.push_back(j.factor);
+      power_scaled += j.power;
+      scaled_varied = scaled_varied && j.by_factor < j.by_load;
     }
   }
   if (!without.empty() && power_without > all / 2)
@@ -236,16 +245,7 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
                         "recording has it removed, use [tau_without_gravity] in a map (--columns)",
                         listed(without)),
             without_varied};
-  if (same.size() > 1 && power_same > all / 2 && scaled.empty()) {
-    const auto [least, most] = std::minmax_element(same.begin(), same.end());
-    if (*most < kSame * *least && std::max(*most, 1 / *least) > kMinUnit)
-      return {fmt::format("in slow poses all torques are {:.3g} times those of the model: is this "
-                          "another unit (lbf ft: 0.738)? `unit` or `gain` of [tau] in a map "
-                          "(--columns) says so",
-                          same[0]),
-              false};
-  }
-  if (scaled.empty() || !(power_scaled > all / 2)) return {};
+  if (scaled.empty() || !(power_scaled > all / 2)) return {by_unit(joints), false};
   const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
   // other masses than the file's, and loads, make factors, too, but each joint its own
   const double spread =
@@ -258,7 +258,27 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
                                 : "are these currents, or is this another unit? In a map "
                                   "(--columns), [current] with `gain` (N m/A), or `unit`, `gain` "
                                   "and `sign` of [tau], say so"),
-          scaled_varied && far && spread < kMaxSpreadOfGains && (factors.size() > 1 || seen == 1)};
+          scaled_varied && far && spread < kMaxSpreadOfGains &&
+              (factors.size() > 1 || joints.size() == 1)};
+}
+
+// a factor near 1, which other masses might make in one joint, but not in all alike
+std::string TorqueFit::by_unit(const std::vector<SlowJoint>& joints) {
+  std::vector<double> factors;
+  double all = 0, power = 0;
+  for (const SlowJoint& j : joints) {
+    all += j.power;
+    if (!(j.by_factor < kMaxRatioOfUnit * j.residual)) continue;
+    factors.push_back(j.factor);
+    power += j.power;
+  }
+  if (factors.size() < 2 || !(power > all / 2)) return "";
+  const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+  if (*most > kSame * *least || std::max(*most, 1 / *least) < kMinUnit) return "";
+  return fmt::format(
+      "in slow poses all torques are {:.3g} times those of the model: is this another unit (lbf "
+      "ft: 0.738)? `unit` or `gain` of [tau] in a map (--columns) says so",
+      *least);
 }
 
 // a channel that says the same all the time, though the arm moves

@@ -58,6 +58,16 @@ class TorqueFit {
     VectorN momentum, q;
     Eigen::Matrix<double, kMostCoordinates, 4> rates;  // whose means are taken
   };
+  // of a joint that carries something, mean squares in slow poses [(N m)^2]
+  struct SlowJoint {
+    int number;                  // from 1
+    double factor;               // [1] of the measured torque
+    double power = 0;            // of the model's torque
+    double residual = 0;         // that the model leaves
+    double by_factor = 0;        // that the factor leaves
+    double without_gravity = 0;  // that the model without gravity leaves
+    double by_load = 0;          // that a cause may leave, or else it might be a load
+  };
   struct Cause {
     std::string words;    // "": none
     bool varied = false;  // no constant load explains it
@@ -68,7 +78,9 @@ class TorqueFit {
   void close(const ModelSample& at);
   Windows thinned() const;
   Windows slow(int joint) const;
+  std::vector<SlowJoint> slow_joints() const;
   Cause by_gravity() const;
+  static std::string by_unit(const std::vector<SlowJoint>& joints);
   std::string by_sign() const;
   std::string by_order() const;
   std::string by_rest() const;
