@@ -38,7 +38,7 @@ struct Fit {
   Eigen::VectorXd theta() const;  ///< all parameters
 };
 
-/// Where A itself has noise, least squares makes its parameters too small. As many columns that have
+/// Where A has noise, least squares makes its parameters too small. As many columns that have
 /// none of that noise are instruments: least squares in two stages (Wooldridge, "Econometric
 /// analysis of cross section and panel data", 2010, 5.2), whose errors hold likewise.
 /// @param Z A, or instruments of its columns
