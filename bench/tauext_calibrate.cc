@@ -16,6 +16,7 @@
 #include "bench/logs/read_log.h"
 #include "bench/program/program.h"
 #include "bench/replay/torque_fit.h"
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
@@ -28,7 +29,12 @@ struct Flags {
   std::vector<std::string> logs, loaded, terms;
   std::string channel, columns, contacts, robot, lock, out, format = "text";
   Windows windows;
-  bool list = false;
+  bool list = false, apply = false;
+};
+
+struct Arm {
+  ArmTree tree;
+  Eigen::VectorXd torque_gain;  // [1] of logs of torques
 };
 
 void add_flags(CLI::App& app, Flags& f) {
@@ -57,6 +63,9 @@ void add_flags(CLI::App& app, Flags& f) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,..");
+  app.add_flag("--apply", f.apply,
+               "write the torque scales that are seen into the robot file, which then multiplies "
+               "the torques of logs by them, and fit the rest to these");
   app.add_option("--window", f.windows.length, "length of a difference and of the means [s]")
       ->capture_default_str();
   app.add_option("--min_speed", f.windows.min_speed,
@@ -127,38 +136,42 @@ std::vector<std::string> all_logs(const Flags& f) {
 }
 
 // all of them; `usable` becomes false where most of one was skipped
-std::vector<Trace> read_logs(const Flags& f, const ArmTree& arm,
-                             const std::vector<std::string>& paths, bool& usable) {
+std::vector<Trace> read_logs(const Flags& f, const Arm& arm, const std::vector<std::string>& paths,
+                             bool& usable) {
   const auto contacts = contacts_of(f.contacts, all_logs(f));
   std::vector<Trace> all;
   for (const std::string& path : paths) {
-    RecordedLog log = read_any_log(path, {f.channel, f.columns, arm.joint_names(), true, contacts});
+    RecordedLog log =
+        read_any_log(path, {f.channel, f.columns, arm.tree.joint_names(), true, contacts});
     log.require_consistent(path);
     usable = usable && log.usable();
-    if (log.trace.dof() != arm.dof())
+    if (log.trace.dof() != arm.tree.dof())
       throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,
-                                              log.trace.dof(), f.robot, arm.dof()));
-    add_gravity(log.trace, arm);
+                                              log.trace.dof(), f.robot, arm.tree.dof()));
+    if (!log.trace.tau_is_current) log.trace.tau = arm.torque_gain.asDiagonal() * log.trace.tau;
+    add_gravity(log.trace, arm.tree);
     all.push_back(std::move(log.trace));
   }
   return all;
 }
 
 // says what is wrong with the robot's file
-ArmTree arm_of(const Flags& f) {
+Arm arm_of(const Flags& f) {
   std::string changes;
   const Model model = load_mjcf(f.robot, {f.lock, {}}, &changes);
   if (!changes.empty()) say(fmt::format("{}: {}", f.robot, changes));
   try {
-    return tree_of(model);
+    return {tree_of(model), torque_gains_of(model)};
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", f.robot, e.what()));
   }
 }
 
-int calibrate(const Flags& f, const ArmTree& arm) {
+int calibrate(const Flags& f, const Arm& robot_arm) {
+  const ArmTree& arm = robot_arm.tree;
   bool usable = true;
-  std::vector<Trace> logs = read_logs(f, arm, f.logs, usable);
+  std::vector<Trace> logs = read_logs(f, robot_arm, f.logs, usable);
+  const bool currents = !logs.empty() && logs.front().tau_is_current;
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
   for (std::size_t i = 0; i < logs.size(); ++i)
@@ -166,9 +179,16 @@ int calibrate(const Flags& f, const ArmTree& arm) {
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;
+  o.scale = f.apply;
   NewRobotFile robot{f.robot, f.lock, {}, nullptr, f.logs};
   robot.joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
   judge_by_file(robot, logs, f.windows);
+  if (!currents || !logs.front().tau_is_current)  // what was scaled had a gain before
+    for (int i = 0; i < arm.dof(); ++i) {
+      CalibratedJoint& j = robot.joints[static_cast<std::size_t>(i)];
+      j.of_currents = currents;
+      j.gain_before = currents ? arm.gain[i] : robot_arm.torque_gain[i];
+    }
   std::FILE* const to = f.out == "-" ? stderr : stdout;
   const TableFormat format = table_format(f.format);
   fmt::print(to, "{}", parameter_table(robot.joints, format));
@@ -185,10 +205,11 @@ int calibrate(const Flags& f, const ArmTree& arm) {
   return usable ? kGood : kAnswerIsNo;
 }
 
-int weigh_payload(const Flags& f, const ArmTree& arm) {
+int weigh_payload(const Flags& f, const Arm& robot_arm) {
+  const ArmTree& arm = robot_arm.tree;
   bool usable = true;
-  std::vector<Trace> empty = read_logs(f, arm, f.logs, usable),
-                     loaded = read_logs(f, arm, f.loaded, usable);
+  std::vector<Trace> empty = read_logs(f, robot_arm, f.logs, usable),
+                     loaded = read_logs(f, robot_arm, f.loaded, usable);
   for (std::vector<Trace>* const all : {&empty, &loaded})
     for (Trace& log : *all) make_torques(log, arm.gain);
   const auto w = naming(f.loaded, [&] { return weigh(arm, loaded, empty, f.windows); });
@@ -212,7 +233,7 @@ int run(const CLI::App& app, Flags& f) {
     return kGood;
   }
   if (f.robot.empty()) {
-    require_mode(app, false, "--robot", {"--weigh", "--lock"});
+    require_mode(app, false, "--robot", {"--weigh", "--lock", "--apply"});
     return identify_one(f);
   }
   table_format(f.format);
@@ -222,9 +243,9 @@ int run(const CLI::App& app, Flags& f) {
           fmt::format("--out {}: the name of a robot file ends in .json", f.out));
     const AtomicFile probe(f.out);  // an unwritable path should not cost a run
   }
-  const ArmTree arm = arm_of(f);
+  const Arm arm = arm_of(f);
   if (!f.loaded.empty()) {
-    require_mode(app, false, "calibrating, not with --weigh", {"--terms"});
+    require_mode(app, false, "calibrating, not with --weigh", {"--terms", "--apply"});
     return weigh_payload(f, arm);
   }
   if (f.logs.empty())

@@ -24,6 +24,7 @@
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "mjcf/plant/any_tree.h"
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
@@ -210,6 +211,7 @@ int replay(Flags& f) {
   LogReader log(f.log, options);
   const RecordingContents& contents = log.contents();
   r.require_joints(contents.dof, f.log);
+  if (r.is_from_file()) log.scale_torques(torque_gains_of(r.model()));
   log.use_gains(r.gains());
   if (contents.without_gravity) log.use_gravity(gravity_of(tree_of(r.model())));
   std::optional<TorqueFit> fit;

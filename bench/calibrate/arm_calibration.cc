@@ -173,14 +173,14 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
         throw std::invalid_argument(
             too_few(static_cast<std::size_t>(r.rigid.size()), needed, r.left_out, o.windows));
       for (int pass = 0; pass < 3; ++pass) {  // how friction slips depends on what is found
-        const double slip =
-            slip_speed(arm, static_cast<int>(leader), calibrated_joint(r, names, currents).terms);
+        const double slip = slip_speed(arm, static_cast<int>(leader),
+                                       calibrated_joint(r, names, currents, o.scale).terms);
         // smooth over more than it moves, dry friction would be viscous friction
         Windows faster = o.windows;
         faster.min_speed = std::max(faster.min_speed, std::min(kFullSlip * slip, r.fastest / 4));
         r = rows_of(logs, motions, i, terms, faster, std::min(slip, r.fastest / 2));
       }
-      CalibratedJoint joint = calibrated_joint(r, names, currents);
+      CalibratedJoint joint = calibrated_joint(r, names, currents, o.scale);
       joint.slip = slip_speed(arm, static_cast<int>(leader), joint.terms);
       joint.name = name;
       for (const Trace& log : logs)

@@ -27,6 +27,7 @@ namespace tauext {
 struct CalibrateOptions {
   std::vector<std::string> terms;  ///< of them; none: all
   Windows windows;                 ///< of the logs
+  bool scale = false;              ///< whether torques are multiplied by their scale
 };
 
 /// The name of a coordinate's joint in a robot file: its own, or what the import calls it.

@@ -46,7 +46,9 @@ std::string parameter_table(const std::vector<CalibratedJoint>& joints, TableFor
       table.add({format == TableFormat::kText ? std::exchange(name, "") : name, term, unit,
                  number(value), fmt::format("{:.2g}", error), excitation, own});
     };
-    if (j.gain != 0) add("gain", "N m/A", j.gain, j.gain_error, "", "");
+    if (j.gain != 0)
+      add(j.of_currents ? "gain" : "torque_gain", j.of_currents ? "N m/A" : "1",
+          j.gain * j.gain_before, std::abs(j.gain_error * j.gain_before), "", "");
     for (const CalibratedTerm& t : j.terms) {
       const JointTerm& known =
           find_known(kJointTerms, "term", t.name, [](const JointTerm& k) { return k.name; });
@@ -65,7 +67,7 @@ std::string fit_report(const std::vector<CalibratedJoint>& joints) {
                      {"held out", "N m rms"},
                      {"windows"},
                      {"left out"},
-                     {"torque's scale"},
+                     {"torque scale"},
                      {"std error"}});
   std::string sentences;
   bool unseen = false, currents = false;
@@ -74,19 +76,19 @@ std::string fit_report(const std::vector<CalibratedJoint>& joints) {
     table.add({printable_name(j.name), number(j.torque), number(j.rigid), number(j.before),
                number(j.after), number(j.held_out), fmt::format("{}", j.windows),
                fmt::format("{}", j.left_out),
-               j.gain != 0 ? "gain"
-               : seen      ? fmt::format("{:.3f}", j.scale)
-                           : "unseen",
-               j.gain != 0 || !seen ? "" : fmt::format("{:.2g}", j.scale_error)});
+               j.gain != 0 && !seen ? "gain"
+               : seen               ? fmt::format("{:.3f}", j.scale)
+                                    : "unseen",
+               !seen ? "" : fmt::format("{:.2g}", j.scale_error)});
     unseen = unseen || (j.gain == 0 && !seen);
-    currents = currents || j.gain != 0;
+    currents = currents || (j.gain != 0 && j.of_currents);
     sentences += missing(j.missing, printable_name(j.name) + ": ");
   }
   sentences +=
       "What no motion without contact can tell: f times all torques from f times all masses, "
       "friction and rotors.\nIf the masses are wrong by a factor, so are the ";
   sentences +=
-      currents ? "gains, friction and every estimate" : "torque's scale above and every estimate";
+      currents ? "gains, friction and every estimate" : "torque scale above and every estimate";
   sentences += ", by the same; a known payload shows it (--weigh).\n";
   const bool all_unseen = std::all_of(joints.begin(), joints.end(), [](const CalibratedJoint& j) {
     return j.gain == 0 && j.scale == 0;

@@ -176,10 +176,8 @@ Answer within_bounds(const Rows& r, const Names& names, bool currents, Calibrate
   return a;
 }
 
-// [1] and its error, from another fit in which it is free
-void find_scale(const Rows& r, const Names& names, CalibratedJoint& joint) {
-  const auto n = static_cast<Index>(names.size());
-  const Answer a = answer(r, MatrixXd::Identity(n, n), names, true);
+// [1] and its error, from a fit in which it is free
+void take_scale(const Answer& a, CalibratedJoint& joint) {
   joint.scale = a.gain;
   joint.scale_error = a.gain_error;
   if ((a.gain > kMostScale || a.gain < 1 / kMostScale) &&
@@ -192,25 +190,29 @@ void find_scale(const Rows& r, const Names& names, CalibratedJoint& joint) {
 
 }  // namespace
 
-CalibratedJoint calibrated_joint(const Rows& r, const Names& names, bool currents) {
+CalibratedJoint calibrated_joint(const Rows& r, const Names& names, bool currents, bool scale) {
   CalibratedJoint joint;
-  const Answer a = within_bounds(r, names, currents, joint);
+  joint.of_currents = currents;
+  scale = scale && !currents && rms(r.rigid) >= kSeen * rms(r.measured);
+  const Answer a = within_bounds(r, names, currents || scale, joint);
   joint.windows = static_cast<int>(r.rigid.size());
   joint.left_out = r.left_out;
   joint.fastest = r.fastest;
   joint.torque = rms(a.gain * r.measured);
   joint.rigid = rms(r.rigid);
   const bool seen = joint.rigid >= kSeen * joint.torque;
-  if (currents) {
+  if (currents || scale) {
     joint.gain = a.gain;
     joint.gain_error = a.gain_error;
-    if (!seen)
+    if (scale) take_scale(a, joint);
+    if (currents && !seen)
       throw std::invalid_argument(fmt::format(
           "the gain of its drive cannot be seen, as its masses take {:.3g} of {:.3g} N m in these "
           "motions; `gain` in the map of columns gives that of each drive [N m/A]",
           joint.rigid, joint.torque));
   } else if (seen) {
-    find_scale(r, names, joint);
+    const auto n = static_cast<Index>(names.size());
+    take_scale(answer(r, MatrixXd::Identity(n, n), names, true), joint);
   }
   joint.before = rms(a.gain * r.measured - r.rigid);
   joint.after = rms(left_over(r, a));

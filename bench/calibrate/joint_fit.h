@@ -54,8 +54,10 @@ struct CalibratedTerm {
 struct CalibratedJoint {
   std::string name;                   ///< in the arm's file
   std::vector<CalibratedTerm> terms;  ///< in the order that was asked for
-  double gain = 0;                    ///< [N m/A] of the drive, from a log of currents; else 0
-  double gain_error = 0;              ///< [N m/A] likewise
+  double gain = 0;           ///< [N m/A] of the drive, of a log of currents; else [1], or 0: none
+  double gain_error = 0;     ///< [same] its robust error
+  double gain_before = 1;    ///< [same] by which the log was multiplied before
+  bool of_currents = false;  ///< whether the log had them
   /// [1] the factor on this joint's measured torques at which they fit the file's masses best; 0
   /// for currents, whose gain it is, and where these masses take less than kSeen of the torque
   double scale = 0;
@@ -92,8 +94,9 @@ struct JointRows {
 
 /// @param names of the terms
 /// @param currents whether they are what was measured
+/// @param scale whether the gain of torques is to be found, where it is seen
 /// @throws std::invalid_argument for a gain that cannot be seen, and as fit()
 CalibratedJoint calibrated_joint(const JointRows& rows, const std::vector<std::string>& names,
-                                 bool currents);
+                                 bool currents, bool scale = false);
 
 }  // namespace tauext

@@ -48,8 +48,9 @@ Json joint_json(const CalibratedJoint& j) {
     json["offset"] = rounded(found["offset"], 6);
   }
   if (j.gain != 0) {
-    json["gain"] = rounded(j.gain, 6);
-    errors["gain"] = rounded(j.gain_error, 2);
+    const char* const key = j.of_currents ? "gain" : "torque_gain";
+    json[key] = rounded(j.gain * j.gain_before, 6);
+    errors[key] = rounded(std::abs(j.gain_error * j.gain_before), 2);
   }
   json["standard_errors"] = errors;
   return json;

@@ -212,7 +212,7 @@ struct LogReader::Impl {
   std::optional<ContactLabels> labels;  // of it
   bool own_labels = false;              // which the log has, too
   std::int64_t differing = 0;           // samples
-  VectorXd gain;                        // [N m/A] of the drives, if tau is to be made of currents
+  VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents; or [1]
   std::function<VectorXd(const VectorXd&)> gravity;  // [N m] of q, if it is to be added to tau
   std::unique_ptr<detail::UnitDoubt> doubt;
 };
@@ -226,6 +226,10 @@ void LogReader::use_gains(const VectorXd& gain) {
   require_gains(gain, impl_->contents.dof);
   impl_->gain = gain;
   impl_->contents.tau_is_current = false;
+}
+
+void LogReader::scale_torques(const VectorXd& by) {
+  if (!impl_->contents.tau_is_current) impl_->gain = by;
 }
 
 void LogReader::use_gravity(std::function<VectorXd(const VectorXd&)> gravity) {

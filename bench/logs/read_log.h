@@ -41,6 +41,8 @@ class LogReader final : public SampleSource {
   /// Makes torques of currents, if it has these, by the gains of the drives [N m/A].
   /// @throws std::invalid_argument as require_gains does
   void use_gains(const Eigen::VectorXd& gain);
+  /// Multiplies torques that are none of currents [1].
+  void scale_torques(const Eigen::VectorXd& by);
   /// Adds gravity(q) [N m] to a tau without it, if that is what it has.
   void use_gravity(std::function<Eigen::VectorXd(const Eigen::VectorXd& q)> gravity);
 

@@ -26,6 +26,7 @@ constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
 constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
 constexpr double kFullSlip = 0.01;         // [rad/s] at which dry friction acts
+constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
 constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
 constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
@@ -185,9 +186,13 @@ TorqueFit::Windows TorqueFit::thinned() const {
 
 // those in which a joint carries something, and hardly more than that
 TorqueFit::Windows TorqueFit::slow(int j) const {
+  const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
+  const bool has_dry = arm_.joints[leader].dry > 0;
   Windows some;
   for (const WindowMean& w : windows_) {
     const double g = std::abs(w.gravity[j]);
+    // at rest dry friction may take anything
+    if (has_dry && std::abs(w.direction[j]) < kMoving) continue;
     if (g > kMinTorqueShare * arm_.usual_torque[j] && std::abs(w.model[j] - w.gravity[j]) < 0.2 * g)
       some.push_back(&w);
   }
@@ -210,6 +215,7 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
                     });
     fit.without_gravity =
         misfit(windows, j, [&](const WindowMean& w) { return left(w) + w.gravity[j]; });
+    fit.without_model = misfit(windows, j, [j](const WindowMean& w) { return w.tau[j]; });
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
     const double load = misfit(windows, j, left, true);
     fit.by_load = load > kMinVariation * fit.residual ? kMaxRatio * load : 0;
@@ -228,8 +234,8 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
   for (const SlowJoint& j : joints) {
     all += j.power;
     if (j.residual < kMinMisfit * j.power) continue;
-    if (j.without_gravity < kMaxRatio * j.residual &&
-        (j.without_gravity < 10 * j.by_factor || std::abs(j.factor) < 0.02)) {
+    // what is a small part of the model has gravity in it, in another unit
+    if (j.without_gravity < kMaxRatio * j.residual && j.by_factor > kMinMisfit * j.without_model) {
       without.push_back(j.number);
       power_without += j.power;
       without_varied = without_varied || j.without_gravity < j.by_load;

@@ -66,6 +66,7 @@ class TorqueFit {
     double residual = 0;         // that the model leaves
     double by_factor = 0;        // that the factor leaves
     double without_gravity = 0;  // that the model without gravity leaves
+    double without_model = 0;    // that is measured
     double by_load = 0;          // that a cause may leave, or else it might be a load
   };
   struct Cause {

@@ -15,6 +15,7 @@
 
 #include "bench/roster/baselines.h"
 #include "mjcf/plant/any_tree.h"
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
@@ -119,7 +120,10 @@ std::unique_ptr<const ArmForces> Robot::forces_at(const std::string& site, bool 
 }
 
 void Robot::make_torques(Trace& trace) const {
-  tauext::make_torques(trace, gains());
+  if (trace.tau_is_current)
+    tauext::make_torques(trace, gains());
+  else if (file_)
+    trace.tau = torque_gains_of(file_).asDiagonal() * trace.tau;
   if (trace.tau_without_gravity) add_gravity(trace, tree_of(model()));
 }
 

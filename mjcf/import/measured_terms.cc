@@ -132,14 +132,15 @@ void put_measured(XMLElement& mujoco, const MeasuredTerms& terms) {
       const auto [torque, speed] = remove_numeric(mujoco, std::string(kRated) + name);
       put_rated(mujoco, name, t.effort.value_or(torque), t.velocity.value_or(speed));
     }
-    if (!t.offset && !t.viscous_skew && !t.gain) continue;
+    if (!t.offset && !t.viscous_skew && !t.gain && !t.torque_gain) continue;
     const std::string place = std::string(kMeasured) + name;
     remove_numeric(mujoco, place);
     if (custom == nullptr) custom = mujoco.InsertNewChildElement("custom");
     XMLElement* const numbers = custom->InsertNewChildElement("numeric");
     numbers->SetAttribute("name", place.c_str());
-    numbers->SetAttribute("data", fmt::format("{:.17g} {:.17g} {:.17g}", t.offset.value_or(0),
-                                              t.viscous_skew.value_or(0), t.gain.value_or(0))
+    numbers->SetAttribute("data", fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}",
+                                              t.offset.value_or(0), t.viscous_skew.value_or(0),
+                                              t.gain.value_or(0), t.torque_gain.value_or(0))
                                       .c_str());
   }
   if (terms.payload) put_payload(mujoco, *terms.payload);

@@ -22,6 +22,7 @@ struct MeasuredJoint {
   std::optional<double> viscous_skew;  ///< [N m s/rad] more of it where qd > 0, less where qd < 0
   std::optional<double> offset;        ///< [N m] that tau is always too large by
   std::optional<double> gain;          ///< [N m/A] of the drive
+  std::optional<double> torque_gain;   ///< [1] of the torques of logs
   std::optional<double> effort;        ///< [N m] what the drive can do at most
   std::optional<double> velocity;      ///< [rad/s] likewise
 };

@@ -35,8 +35,8 @@ std::optional<double> number(const JsonObject& o, const char* key, double least)
 
 MeasuredJoint joint_of(const Json& json, const std::string& where) {
   const JsonObject o(json, where,
-                     {"armature", "coulomb", "viscous", "offset", "gain", "effort", "velocity",
-                      "standard_errors", "about"});
+                     {"armature", "coulomb", "viscous", "offset", "gain", "torque_gain", "effort",
+                      "velocity", "standard_errors", "about"});
   MeasuredJoint j;
   j.armature = number(o, "armature", 0);
   j.offset = number(o, "offset", -kMuch);
@@ -51,6 +51,7 @@ MeasuredJoint joint_of(const Json& json, const std::string& where) {
   j.gain = number(o, "gain", -kMuch);
   if (j.gain && *j.gain == 0)
     throw std::invalid_argument(where + ": \"gain\" is 0: a current would do nothing");
+  j.torque_gain = number(o, "torque_gain", kLittle);
   j.effort = number(o, "effort", kLittle);
   j.velocity = number(o, "velocity", kLittle);
   return j;

@@ -13,6 +13,7 @@
 ///           "viscous": 9.8,                   // N m s/rad; likewise
 ///           "offset": 0.3,                    // N m that tau is always too large by
 ///           "gain": 9.6,                      // N m/A of the drive, for logs of currents
+///           "torque_gain": 1.04,              // by which torques of logs are multiplied
 ///           "effort": 150, "velocity": 3.1,   // N m and rad/s that the drive can do at most
 ///           "standard_errors": {..}           // of the same keys; for the reader
 ///         }

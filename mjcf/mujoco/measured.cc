@@ -33,7 +33,7 @@ class Numeric {
 
 Measured measured(const mjModel& m, int joint) {
   const Numeric numbers(m, "tauext:", joint);
-  return {numbers[0], numbers[1], numbers[2]};
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 Rated rated_of(const mjModel& m, int joint) {

@@ -8,11 +8,12 @@
 namespace tauext {
 
 /// It stands in `custom` as a `numeric` called `tauext:JOINT`, with the joint's name, whose data
-/// are offset, viscous_skew and gain; what is missing is 0.
+/// are offset, viscous_skew, gain and torque_gain; what is missing is 0.
 struct Measured {
   double offset = 0;        ///< [N m] or [N] that tau is always too large by
   double viscous_skew = 0;  ///< [N m s/rad] more friction where qd > 0, less where qd < 0
   double gain = 0;          ///< [N m/A] or [N/A] of the drive; 0: nobody knows
+  double torque_gain = 0;   ///< [1] of the torques of logs; 0: nobody knows
 };
 
 /// @param joint its number, from 0

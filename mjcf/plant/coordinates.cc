@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "mjcf/mujoco/layout.h"
+#include "mjcf/mujoco/measured.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
 
@@ -136,6 +137,15 @@ ArmCoordinates coordinates_of(const mjModel& m) {
   set_ranges(m, c);
   set_usual(m, c);
   return c;
+}
+
+VectorXd torque_gains_of(const Model& model) {
+  const std::vector<int> leaders = coordinates_of(*model).leaders;
+  VectorXd gains = VectorXd::Ones(static_cast<Eigen::Index>(leaders.size()));
+  for (std::size_t i = 0; i < leaders.size(); ++i)
+    if (const double gain = measured(*model, leaders[i]).torque_gain; gain != 0)
+      gains[static_cast<Eigen::Index>(i)] = gain;
+  return gains;
 }
 
 VectorXd usual_torque_of(const Model& model) {
