@@ -135,22 +135,27 @@ std::vector<std::string> all_logs(const Flags& f) {
   return all;
 }
 
-// all of them; `usable` becomes false where most of one was skipped
-std::vector<Trace> read_logs(const Flags& f, const Arm& arm, const std::vector<std::string>& paths,
-                             bool& usable) {
+struct Recordings {
+  std::vector<Trace> logs;
+  bool usable = true;          // most of each
+  bool gravity_added = false;  // to the torques of one
+};
+
+Recordings read_logs(const Flags& f, const Arm& arm, const std::vector<std::string>& paths) {
   const auto contacts = contacts_of(f.contacts, all_logs(f));
-  std::vector<Trace> all;
+  Recordings all;
   for (const std::string& path : paths) {
     RecordedLog log =
         read_any_log(path, {f.channel, f.columns, arm.tree.joint_names(), true, contacts});
     log.require_consistent(path);
-    usable = usable && log.usable();
+    all.usable = all.usable && log.usable();
+    all.gravity_added = all.gravity_added || log.trace.tau_without_gravity;
     if (log.trace.dof() != arm.tree.dof())
       throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,
                                               log.trace.dof(), f.robot, arm.tree.dof()));
     if (!log.trace.tau_is_current) log.trace.tau = arm.torque_gain.asDiagonal() * log.trace.tau;
     add_gravity(log.trace, arm.tree);
-    all.push_back(std::move(log.trace));
+    all.logs.push_back(std::move(log.trace));
   }
   return all;
 }
@@ -169,13 +174,15 @@ Arm arm_of(const Flags& f) {
 
 int calibrate(const Flags& f, const Arm& robot_arm) {
   const ArmTree& arm = robot_arm.tree;
-  bool usable = true;
-  std::vector<Trace> logs = read_logs(f, robot_arm, f.logs, usable);
-  const bool currents = !logs.empty() && logs.front().tau_is_current;
+  auto [logs, usable, gravity_added] = read_logs(f, robot_arm, f.logs);
+  const bool currents = logs.front().tau_is_current;
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
-  for (std::size_t i = 0; i < logs.size(); ++i)
-    usable = (logs[i].tau_is_current || torques_fit(arm, logs[i], f.logs[i])) && usable;
+  if (!logs.front().tau_is_current) {
+    TorqueFit fit(arm, logs.front().torque_at_instants, gravity_added);
+    for (const Trace& log : logs) fit.take(log);
+    usable = fits(fit, fmt::format("{}", fmt::join(f.logs, ", "))) && usable;
+  }
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;
@@ -183,7 +190,7 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
   NewRobotFile robot{f.robot, f.lock, {}, nullptr, f.logs};
   robot.joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
   judge_by_file(robot, logs, f.windows);
-  if (!currents || !logs.front().tau_is_current)  // what was scaled had a gain before
+  if (!logs.front().tau_is_current)  // what was scaled had a gain before
     for (int i = 0; i < arm.dof(); ++i) {
       CalibratedJoint& j = robot.joints[static_cast<std::size_t>(i)];
       j.of_currents = currents;
@@ -207,12 +214,10 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
 
 int weigh_payload(const Flags& f, const Arm& robot_arm) {
   const ArmTree& arm = robot_arm.tree;
-  bool usable = true;
-  std::vector<Trace> empty = read_logs(f, robot_arm, f.logs, usable),
-                     loaded = read_logs(f, robot_arm, f.loaded, usable);
-  for (std::vector<Trace>* const all : {&empty, &loaded})
-    for (Trace& log : *all) make_torques(log, arm.gain);
-  const auto w = naming(f.loaded, [&] { return weigh(arm, loaded, empty, f.windows); });
+  Recordings empty = read_logs(f, robot_arm, f.logs), loaded = read_logs(f, robot_arm, f.loaded);
+  for (Recordings* const all : {&empty, &loaded})
+    for (Trace& log : all->logs) make_torques(log, arm.gain);
+  const auto w = naming(f.loaded, [&] { return weigh(arm, loaded.logs, empty.logs, f.windows); });
   fmt::print(f.out == "-" ? stderr : stdout, "{}", weighing_table(w, table_format(f.format)));
   std::string why = doubt(w);
   if (why.empty() && !f.out.empty() && !(w.payload.mass > 0))
@@ -224,7 +229,7 @@ int weigh_payload(const Flags& f, const Arm& robot_arm) {
   if (!f.out.empty()) {
     write_file(robot_file_text({f.robot, f.lock, {}, &w, all_logs(f)}, f.out), f.out);
   }
-  return usable ? kGood : kAnswerIsNo;
+  return empty.usable && loaded.usable ? kGood : kAnswerIsNo;
 }
 
 int run(const CLI::App& app, Flags& f) {

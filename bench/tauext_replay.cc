@@ -213,9 +213,10 @@ int replay(Flags& f) {
   r.require_joints(contents.dof, f.log);
   if (r.is_from_file()) log.scale_torques(torque_gains_of(r.model()));
   log.use_gains(r.gains());
-  if (contents.without_gravity) log.use_gravity(gravity_of(tree_of(r.model())));
   std::optional<TorqueFit> fit;
-  if (r.is_from_file()) fit.emplace(tree_of(r.model()), contents.torque_at_instants);
+  if (r.is_from_file())
+    fit.emplace(tree_of(r.model()), contents.torque_at_instants, contents.without_gravity);
+  if (contents.without_gravity) log.use_gravity(gravity_of(tree_of(r.model())));
 
   Trace truth;  // truth and delayed_truth copy it; nothing else needs the log in memory
   if (contents.has_truth && std::any_of(f.estimators.begin(), f.estimators.end(), needs_truth)) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/outside/outside_score.h"
@@ -219,10 +220,24 @@ void require_flags(const Flags& f) {
   }
 }
 
+int tune_on_recordings(const Flags& f, const Robot& r, TuneOptions o, TableFormat format) {
+  std::FILE* const words = format == TableFormat::kText ? stdout : stderr;
+  const Recordings training(f, r, f.logs), test(f, r, f.test_logs);
+  o.score = [&](const TunedPair& p) { return training(p); };
+  const Tuned t = tune(o);
+  print_found(t, o.minimize, words);
+  fmt::print(words, "\nOn recordings that no tuning has seen:\n\n");
+  const std::vector<Row> rows = {test.row(t.start), test.row(t.best)};
+  const std::vector<Metric> also = {Metric::kRecall, Metric::kFalseAlarmsPerHour, o.minimize};
+  fmt::print("{}", format_table(rows, format, also));
+  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
+  return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
+}
+
 int run(const CLI::App& app, Flags& f) {
   require_mode(app, !f.conditions.empty(), "--conditions", {"--out", "--shard"});
   if (!f.conditions.empty()) {
-    const char* why = "one pair, not with --conditions";
+    const char* const why = "one pair, not with --conditions";
     require_mode(app, false, why,
                  {"--tune", "--minimize", "--limit", "--scenario", "--scenarios", "--seeds",
                   "--test_seeds", "--log", "--test_log", "--columns", "--channel", "--contacts"});
@@ -232,9 +247,10 @@ int run(const CLI::App& app, Flags& f) {
   }
   require_flags(f);
   const TableFormat format = table_format(f.format);
-  require_mode(app, f.logs.empty(), "simulated runs, not with --log",
+  const char* const simulated = "simulated runs, not with --log";
+  require_mode(app, f.logs.empty(), simulated,
                {"--scenario", "--scenarios", "--seeds", "--test_seeds"});
-  require_mode(app, f.logs.empty(), "simulated runs, not with --log", recording_flags());
+  require_mode(app, f.logs.empty(), simulated, recording_flags());
   require_mode(app, !f.logs.empty(), "--log and --test_log", {"--contacts"});
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
@@ -246,9 +262,9 @@ int run(const CLI::App& app, Flags& f) {
       f.pair.detector.empty() ? std::vector<FieldHelp>() : r.detector_fields(f.pair.detector));
   o.pair = without(f.pair, o.keys);
   o.check = [&](const TunedPair& p) { r.check(p.estimator, p.detector); };
-  if (f.minimize.empty())
-    f.minimize = key_of(f.pair.detector.empty() ? Metric::kRmse : Metric::kDelay);
-  o.minimize = metric_of(f.minimize);
+  o.minimize = !f.minimize.empty()       ? metric_of(f.minimize)
+               : f.pair.detector.empty() ? Metric::kRmse
+                                         : Metric::kDelay;
   o.limits = limits_of(f.limits);
   if (o.minimize == Metric::kDelay && o.limits.empty()) {
     // else the lowest threshold is the quickest, and a missed collision is never late
@@ -269,16 +285,7 @@ int run(const CLI::App& app, Flags& f) {
     fmt::print("{}", format_seeds(test.rows({t.start, t.best}), name_of(t.start), format));
     return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
   }
-  const Recordings training(f, r, f.logs), test(f, r, f.test_logs);
-  o.score = [&](const TunedPair& p) { return training(p); };
-  const Tuned t = tune(o);
-  print_found(t, o.minimize, words);
-  fmt::print(words, "\nOn recordings that no tuning has seen:\n\n");
-  const std::vector<Row> rows = {test.row(t.start), test.row(t.best)};
-  const std::vector<Metric> also = {Metric::kRecall, Metric::kFalseAlarmsPerHour, o.minimize};
-  fmt::print("{}", format_table(rows, format, also));
-  if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
-  return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
+  return tune_on_recordings(f, r, std::move(o), format);
 }
 
 }  // namespace

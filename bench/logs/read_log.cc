@@ -116,16 +116,19 @@ class UnitDoubt {
 
   // sums over the steps of q, by qd (x) and by q (y)
   struct Joint {
-    double xx = 0, xy = 0, yy = 0;
+    double xx = 0, xy = 0, yy = 0, path = 0;  // of |x|
   };
 
   static bool rests(const Joint& sum) { return sum.xx < 1e-6 * sum.yy; }
 
   bool is_wrong(std::size_t j) const {
-    constexpr double kMoved = 0.1;  // [rad], more than a joint at rest trembles
-    const auto [xx, xy, yy] = joints_[j];
+    constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
+    constexpr double kNudged = 0.02;  // [rad], more than it creeps in steps of its encoder
+    const auto [xx, xy, yy, path] = joints_[j];
     const auto at = static_cast<Eigen::Index>(j);
-    if (rests(joints_[j])) return most_[at] - least_[at] > kMoved;
+    const double range = most_[at] - least_[at];
+    if (rests(joints_[j])) return range > kMoved;
+    if (std::max(range, path) < kNudged) return false;
     const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy);
     return alike && (xy > 2 * xx || xy < 0.5 * xx);
   }
@@ -148,6 +151,7 @@ class UnitDoubt {
       const auto at = static_cast<Eigen::Index>(j);
       const double x = h * (s.qd[at] + last_.qd[at]) / 2, y = s.q[at] - last_.q[at];
       joints_[j].xx += x * x, joints_[j].xy += x * y, joints_[j].yy += y * y;
+      joints_[j].path += std::abs(x);
     }
     last_ = s;
   }

@@ -12,8 +12,10 @@ RecordedLog robot_log(const Robot& robot, const std::string& path, const std::st
   RecordedLog log =
       read_any_log(path, {channel, columns, robot.joints(), true, std::move(contacts)});
   robot.require_joints(log.trace, path);
+  const bool without_gravity = log.trace.tau_without_gravity;
   robot.make_torques(log.trace);
-  if (robot.is_from_file()) log.doubtful = !torques_fit(tree_of(robot.model()), log.trace, path);
+  if (robot.is_from_file())
+    log.doubtful = !torques_fit(tree_of(robot.model()), log.trace, without_gravity, path);
   return log;
 }
 

@@ -101,14 +101,14 @@ double mean_square(const Windows& windows, Of of) {
   return sum / static_cast<double>(windows.size());
 }
 
-// by which joint j's torques are those of the model, with any friction
-template <class Windows>
-double factor(const Windows& windows, int j) {
+// by which of(window) is the model's torque of joint j, with any friction
+template <class Windows, class Of>
+double factor(const Windows& windows, int j, Of of) {
   MatrixXd C(static_cast<Index>(windows.size()), 3);
   VectorXd y(C.rows());
   for (Index i = 0; i < C.rows(); ++i) {
     const auto& w = *windows[static_cast<std::size_t>(i)];
-    y[i] = w.tau[j];
+    y[i] = of(w);
     C.row(i) << w.model[j], w.direction[j], w.speed[j];
   }
   const VectorXd first = C.colPivHouseholderQr().solve(y);
@@ -118,8 +118,12 @@ double factor(const Windows& windows, int j) {
 
 }  // namespace
 
-TorqueFit::TorqueFit(const ArmTree& arm, bool at_instants)
-    : arm_(arm), model_(detail::filled<TiedTree>(arm)), at_instants_(at_instants), n_(arm.dof()) {}
+TorqueFit::TorqueFit(const ArmTree& arm, bool at_instants, bool gravity_added)
+    : arm_(arm),
+      model_(detail::filled<TiedTree>(arm)),
+      at_instants_(at_instants),
+      gravity_added_(gravity_added),
+      n_(arm.dof()) {}
 
 TorqueFit::ModelSample TorqueFit::sample_of(const Sample& y) const {
   ModelSample at;
@@ -159,6 +163,14 @@ void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_e
   rates_ += (at.t - newest_.t) / 2 * (at.rates + newest_.rates);
   newest_ = at;
   if (at.t - first_.t >= kWindow * (1 - 1e-6)) close(at);
+}
+
+void TorqueFit::take(const Trace& log) {
+  for (int k = 0; k < log.size(); ++k)
+    take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
+         !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
+         log.has_truth() ? Eigen::VectorXd(log.tau_ext.col(k)) : Eigen::VectorXd());
+  begun_ = false;
 }
 
 void TorqueFit::close(const ModelSample& at) {
@@ -206,7 +218,8 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
     const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
-    SlowJoint fit{.number = j + 1, .factor = factor(windows, j)};
+    const auto measured = [j](const WindowMean& w) { return w.tau[j]; };
+    SlowJoint fit{.number = j + 1, .factor = factor(windows, j, measured)};
     const double s = fit.factor;
     fit.power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
     fit.residual = misfit(windows, j, left);
@@ -215,7 +228,7 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
                     });
     fit.without_gravity =
         misfit(windows, j, [&](const WindowMean& w) { return left(w) + w.gravity[j]; });
-    fit.without_model = misfit(windows, j, [j](const WindowMean& w) { return w.tau[j]; });
+    fit.without_model = misfit(windows, j, measured);
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
     const double load = misfit(windows, j, left, true);
     fit.by_load = load > kMinVariation * fit.residual ? kMaxRatio * load : 0;
@@ -285,6 +298,34 @@ std::string TorqueFit::by_unit(const std::vector<SlowJoint>& joints) {
       "in slow poses all torques are {:.3g} times those of the model: is this another unit (lbf "
       "ft: 0.738)? `unit` or `gain` of [tau] in a map (--columns) says so",
       *least);
+}
+
+// what a recording has without gravity is still a small part of it
+std::string TorqueFit::by_added_gravity() const {
+  constexpr double kMostPart = 0.2;  // [1] more is a load, or masses
+  std::vector<int> joints;
+  std::vector<double> factors;
+  double all = 0, power = 0;
+  for (int j = 0; j < n_; ++j) {
+    const Windows windows = slow(j);
+    if (windows.size() < kMinWindows) continue;
+    const auto measured = [j](const WindowMean& w) { return w.tau[j] - w.gravity[j]; };
+    const double s = factor(windows, j, measured);
+    const double carried = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    all += carried;
+    const double by_factor =
+        misfit(windows, j, [&](const WindowMean& w) { return measured(w) - s * w.model[j]; });
+    if (std::abs(s) > kMostPart || by_factor > kMinMisfit * misfit(windows, j, measured)) continue;
+    joints.push_back(j + 1);
+    factors.push_back(s);
+    power += carried;
+  }
+  if (joints.empty() || !(power > all / 2)) return "";
+  return fmt::format(
+      "what is read as torque without gravity is, in slow poses, {:.3g} times the model's torque "
+      "with it in {}: is gravity in it, in another unit (currents, or the motor's side of a gear)? "
+      "In a map (--columns), [current], or `unit` and `gain` of [tau], say so",
+      fmt::join(factors, ", "), listed(joints));
 }
 
 // a channel that says the same all the time, though the arm moves
@@ -397,6 +438,8 @@ std::string TorqueFit::contradiction() const {
 }
 
 std::string TorqueFit::doubt() const {
+  if (gravity_added_)
+    if (std::string why = by_added_gravity(); !why.empty()) return why + ". Or it carries a load";
   if (const Cause cause = by_gravity(); !cause.varied && !cause.words.empty())
     return cause.words + ". Or else its masses are not those of the file, or it carries a load";
   double power = 0, residual = 0;
@@ -427,12 +470,10 @@ bool fits(const TorqueFit& fit, const std::string& path) {
   return why.empty();
 }
 
-bool torques_fit(const ArmTree& arm, const Trace& log, const std::string& path) {
-  TorqueFit fit(arm, log.torque_at_instants);
-  for (int k = 0; k < log.size(); ++k)
-    fit.take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
-             !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
-             log.has_truth() ? Eigen::VectorXd(log.tau_ext.col(k)) : Eigen::VectorXd());
+bool torques_fit(const ArmTree& arm, const Trace& log, bool gravity_added,
+                 const std::string& path) {
+  TorqueFit fit(arm, log.torque_at_instants, gravity_added);
+  fit.take(log);
   return fits(fit, path);
 }
 

@@ -27,12 +27,15 @@ namespace tauext {
 class TorqueFit {
  public:
   /// @param at_instants Trace::torque_at_instants
+  /// @param gravity_added whether it had torques without gravity, before
   /// @throws std::invalid_argument for an arm that is too large for estimators
-  TorqueFit(const ArmTree& arm, bool at_instants);
+  TorqueFit(const ArmTree& arm, bool at_instants, bool gravity_added);
 
   /// The next sample; none in a contact.
   /// @param tau_ext [N m] true, which is no part of what the masses take; empty if nobody knows
   void take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext);
+  /// All of a recording, which may be one of several.
+  void take(const Trace& log);
 
   /// Whether there are windows enough to judge by.
   bool is_long_enough() const;
@@ -82,13 +85,14 @@ class TorqueFit {
   std::vector<SlowJoint> slow_joints() const;
   Cause by_gravity() const;
   static std::string by_unit(const std::vector<SlowJoint>& joints);
+  std::string by_added_gravity() const;
   std::string by_sign() const;
   std::string by_order() const;
   std::string by_rest() const;
 
   ArmTree arm_;
   TiedTree model_;
-  bool at_instants_;
+  bool at_instants_, gravity_added_;
   int n_;                       // joints
   double t_ = 0;                // [s] of the last sample
   Eigen::VectorXd torque_;      // and its tau
@@ -104,7 +108,7 @@ class TorqueFit {
 /// @throws std::invalid_argument naming the path where it contradicts the arm
 bool fits(const TorqueFit& fit, const std::string& path);
 
-/// The same of a whole recording.
-bool torques_fit(const ArmTree& arm, const Trace& log, const std::string& path);
+/// The same of one recording.
+bool torques_fit(const ArmTree& arm, const Trace& log, bool gravity_added, const std::string& path);
 
 }  // namespace tauext

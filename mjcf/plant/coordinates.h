@@ -31,8 +31,8 @@ std::pair<double, double> finite_range(double lower, double upper, bool slides);
 /// @throws std::invalid_argument as tree_of of an arm alone, for motors on tendons and for ranges
 ArmCoordinates coordinates_of(const mjModel& m);
 
-/// [1] by which what a log calls torque is to be multiplied, coordinate by coordinate, as the robot's
-/// file has it; else 1.
+/// [1] by which what a log calls torque is to be multiplied, coordinate by coordinate, as the file
+/// of the robot has it; else 1.
 /// @throws std::invalid_argument as coordinates_of
 Eigen::VectorXd torque_gains_of(const Model& model);
 

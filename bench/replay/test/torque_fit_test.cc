@@ -32,11 +32,9 @@ struct Robot {
     log.contact.clear();
     return log;
   }
-  static TorqueFit fit_of(const ArmTree& arm, const Trace& log) {
-    TorqueFit f(arm, log.torque_at_instants);
-    for (int k = 0; k < log.size(); ++k)
-      f.take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
-             false, {});
+  static TorqueFit fit_of(const ArmTree& arm, const Trace& log, bool gravity_added = false) {
+    TorqueFit f(arm, log.torque_at_instants, gravity_added);
+    f.take(log);
     return f;
   }
   static std::string words_of(const ArmTree& arm, const Trace& log) {
@@ -94,6 +92,26 @@ TEST_F(TorqueFits, GravityThatIsMissingIsNamed) {
     add_gravity(log, robot.arm);
     EXPECT_EQ(robot.contradiction(log), "");
   }
+}
+
+// the motor's side of a gear, a hundredth of the link's torque, lacks no gravity
+TEST_F(TorqueFits, ASmallTorqueWithGravityIsNoneWithoutIt) {
+  const Robot robot = arm6();
+  for (const double factor : {1. / 136, 0.001, 0.1}) {
+    Trace log = robot.run("in_motion");
+    log.tau *= factor;
+    expect(robot.words(log), "another unit");
+    log.tau_without_gravity = true;  // as somebody might try
+    add_gravity(log, robot.arm);
+    expect(Robot::fit_of(robot.arm, log, true).doubt(), "is gravity in it, in another unit");
+  }
+  Trace right = robot.run("in_motion");
+  const auto gravity = gravity_of(robot.arm);
+  for (int k = 0; k < right.size(); ++k) right.tau.col(k) -= gravity(right.q.col(k));
+  right.tau_without_gravity = true;
+  add_gravity(right, robot.arm);
+  const TorqueFit fit = Robot::fit_of(robot.arm, right, true);
+  EXPECT_EQ(fit.contradiction() + fit.doubt(), "");
 }
 
 TEST_F(TorqueFits, CurrentsAndOtherUnitsAreNamedWithTheirFactors) {
