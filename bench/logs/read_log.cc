@@ -92,8 +92,11 @@ class UnitDoubt {
       const Joint& sum = joints_[j];
       const std::string what =
           rests(sum) ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
-                     : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1,
-                                   sum.xy / sum.xx, j + 1);
+          : sum.alike() < kForeign
+              ? fmt::format("q{} moves otherwise than qd{} says: is that another joint's", j + 1,
+                            j + 1)
+              : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, sum.xy / sum.xx,
+                            j + 1);
       say(fmt::format("{}: {}: {}", path, what, remedy));
       break;
     }
@@ -114,9 +117,12 @@ class UnitDoubt {
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  // sums over the steps of q, by qd (x) and by q (y)
+  // sums over windows of the motion by qd (x) and by q (y)
   struct Joint {
+    double x = 0, y = 0;                      // of the window
     double xx = 0, xy = 0, yy = 0, path = 0;  // of |x|
+
+    double alike() const { return std::abs(xy) / std::sqrt(xx * yy); }
   };
 
   static bool rests(const Joint& sum) { return sum.xx < 1e-6 * sum.yy; }
@@ -124,13 +130,13 @@ class UnitDoubt {
   bool is_wrong(std::size_t j) const {
     constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
     constexpr double kNudged = 0.02;  // [rad], more than it creeps in steps of its encoder
-    const auto [xx, xy, yy, path] = joints_[j];
+    const Joint& sum = joints_[j];
     const auto at = static_cast<Eigen::Index>(j);
     const double range = most_[at] - least_[at];
-    if (rests(joints_[j])) return range > kMoved;
-    if (std::max(range, path) < kNudged) return false;
-    const bool alike = std::abs(xy) > 0.9 * std::sqrt(xx * yy);
-    return alike && (xy > 2 * xx || xy < 0.5 * xx);
+    if (rests(sum)) return range > kMoved;
+    if (std::max(range, sum.path) < kNudged) return false;
+    if (range > kMoved && sum.alike() < kForeign) return true;
+    return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
 
   // takes the first samples, whose median step tells what a gap is
@@ -150,13 +156,21 @@ class UnitDoubt {
     for (std::size_t j = 0; j < joints_.size() && h <= longest_; ++j) {
       const auto at = static_cast<Eigen::Index>(j);
       const double x = h * (s.qd[at] + last_.qd[at]) / 2, y = s.q[at] - last_.q[at];
-      joints_[j].xx += x * x, joints_[j].xy += x * y, joints_[j].yy += y * y;
+      joints_[j].x += x, joints_[j].y += y;
       joints_[j].path += std::abs(x);
     }
     last_ = s;
+    if (s.t - window_ < kWindow && h <= longest_) return;
+    window_ = s.t;
+    for (Joint& sum : joints_) {
+      sum.xx += sum.x * sum.x, sum.xy += sum.x * sum.y, sum.yy += sum.y * sum.y;
+      sum.x = sum.y = 0;
+    }
   }
 
   static constexpr std::size_t kFirst = 1000;
+  static constexpr double kWindow = 0.1;   // [s]
+  static constexpr double kForeign = 0.5;  // [1] correlation of what is another joint's
 
   VectorXd least_, most_;
   std::vector<Joint> joints_;
@@ -165,6 +179,7 @@ class UnitDoubt {
   std::int64_t samples_ = 0;
   double longest_ = 0;        // [s] over a gap qd says nothing; 0 until settle()
   double from_ = 0, to_ = 0;  // [s]
+  double window_ = -kNever;   // [s] where it began
 };
 
 }  // namespace detail
