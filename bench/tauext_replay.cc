@@ -262,12 +262,13 @@ int replay(Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Runs estimators over a recorded log (an LCM log, or CSV with the columns of tauext-record;\n"
-      "tau_ext and contact may be missing) and writes their estimates, one row per usable sample.\n"
-      "Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged, 5 bad time,\n"
-      "6 beyond a limit, 7 jump, 8 frozen, 9 unlikely; with all but 0 the old estimate is held.\n"
-      "With the truth in the log, prints the errors too. Exit code 1 if most rows or samples "
-      "were unusable.\n\n"
+      "Runs estimators over a log (LCM, or CSV with the columns of tauext-record, of which tau_ext "
+      "and\n"
+      "contact may be missing), writes a row per usable sample, and prints the errors. Exit code "
+      "1:\n"
+      "unusable. Status: 0 ok, 1 started, 2 bad sample, 3 singular inertia, 4 diverged, 5 bad "
+      "time, 6\n"
+      "beyond a limit, 7 jump, 8 frozen, 9 unlikely; all but 0 hold the old estimate.\n\n"
       "  tauext-replay log.csv --robot wallmobot3 --estimator ekf,ndob --out est.csv\n",
       "tauext-replay");
   Flags flags;
