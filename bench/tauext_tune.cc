@@ -213,6 +213,7 @@ void require_flags(const Flags& f) {
     }
   }
   if (!f.logs.empty()) return;
+  if (!f.contacts.empty()) throw std::invalid_argument("--contacts goes with --log and --test_log");
   for (const std::uint64_t seed : seeds_of(f.seeds)) {
     const std::vector<std::uint64_t> test = seeds_of(f.test_seeds, "--test_seeds");
     if (std::count(test.begin(), test.end(), seed) > 0)
@@ -251,7 +252,6 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, f.logs.empty(), simulated,
                {"--scenario", "--scenarios", "--seeds", "--test_seeds"});
   require_mode(app, f.logs.empty(), simulated, recording_flags());
-  require_mode(app, !f.logs.empty(), "--log and --test_log", {"--contacts"});
   const Robot& r = robot(with_lock(f.robot, f.lock));
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   r.check(f.pair.estimator, f.pair.detector);
