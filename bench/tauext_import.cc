@@ -134,8 +134,7 @@ int main(int argc, char** argv) {
                  "fix joints whose whole name matches where they are 0; mass stays")
       ->type_name("REGEX")
       ->check(not_empty);
-  app.add_flag("--balance", options.balance,
-               "mend a URDF's inertias that no body has, and say by how much");
+  app.add_flag("--balance", options.balance, "mend inertias that no body has, and say by how much");
   app.add_option("--out,-o", out, "file to write; - is standard output")->required();
   return run_program(app, argc, argv, [&] { return import(file, options, out); });
 }

@@ -16,7 +16,7 @@ struct ImportOptions {
   /// with the mass behind them. None if it is empty.
   std::string lock;
   MeasuredTerms measured;  ///< in the place of what the file says
-  bool balance = false;    ///< mend a URDF's inertias that no body has
+  bool balance = false;    ///< mend inertias that no body has
 
   /// Whether the file is to be taken as it is.
   bool changes_nothing() const {

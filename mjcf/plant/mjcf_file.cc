@@ -12,6 +12,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
@@ -58,9 +59,10 @@ void check_numbers(const mjModel& m, const Numbers& n, Problems& problems) {
     const double value = n.values[i];
     if (value >= n.least && value <= n.most) continue;
     const int id = n.of == nullptr ? i / n.width : n.of[i / n.width];
-    problems.push_back(fmt::format(
-        "{}: {} is {:g}, and must be {}{}", element(m, n.type, n.kind, id), n.attribute, value,
-        range_of(n.least, n.most), n.type == mjOBJ_JOINT ? ", or --lock REGEX fixes it" : ""));
+    std::string problem =
+        fmt::format("{}: {} is {:g}, and must be {}", element(m, n.type, n.kind, id), n.attribute,
+                    value, range_of(n.least, n.most));
+    if (problems.empty() || problems.back() != problem) problems.push_back(std::move(problem));
   }
 }
 
