@@ -129,22 +129,14 @@ void drop_attribute(const XMLElement& e, const std::string& owner, std::string_v
   ++dropped[fmt::format("{}.{}", name_of(e), name)];
 }
 
-// Whether an element may be meant for another place, around it or beside it, that has none; where
-// there is no such place, an <origin> has nothing to turn or move.
-bool is_astray(const XMLElement& e, std::string_view within) {
-  if (has_word(within, "robot")) return true;
-  bool found = false;
-  const auto lacks_it = [&](const XMLElement& place) {
-    const XMLElement* const own = place.FirstChildElement(e.Name());
-    found = found || (own != nullptr && own != &e);
-    return has_word(within, name_of(place)) && (own == nullptr || own == &e);
-  };
-  for (const tinyxml2::XMLNode* at = e.Parent(); at->ToElement() != nullptr; at = at->Parent())
-    if (lacks_it(*at->ToElement())) return true;
+// An <origin> has nothing to turn or move where it stands, unless a place beside it has none.
+bool is_idle(const XMLElement& e, std::string_view within) {
+  if (name_of(e) != "origin") return false;
   for (const XMLElement* beside = e.Parent()->FirstChildElement(); beside != nullptr;
        beside = beside->NextSiblingElement())
-    if (lacks_it(*beside)) return true;
-  return !found && name_of(e) != "origin";
+    if (has_word(within, name_of(*beside)) && beside->FirstChildElement("origin") == nullptr)
+      return false;
+  return true;
 }
 
 // typing errors would change the arm, and nobody would see it
@@ -166,7 +158,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
     return;
   }
   if (!has_word(known->within, parent_name(e))) {
-    if (is_astray(e, known->within))
+    if (!is_idle(e, known->within))
       fail(e, "{}: <{}> stands within <{}>, and belongs into{}", owner, name_of(e), parent_name(e),
            known->within.substr(0, known->within.size() - 1));
     ++dropped[fmt::format("{} in <{}>", name_of(e), parent_name(e))];
