@@ -3,11 +3,8 @@
 /// The terms of equation (3) of a robot's arm, as its estimators know it.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <memory>
-#include <stdexcept>
 #include <tuple>
 
 #include "bench/roster/robot.h"
@@ -18,8 +15,8 @@ namespace tauext::python {
 class Arm {
  public:
   virtual ~Arm() = default;
-  /// B [kg m^2], C qd + g, C^T qd - g and F [N m] at q [rad], qd [rad/s].
-  /// @throws std::invalid_argument for another number of joints
+  virtual int joints() const = 0;  ///< how many
+  /// B [kg m^2], C qd + g, C^T qd - g and F [N m] at q [rad], qd [rad/s] of each joint.
   virtual std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd, Eigen::VectorXd> terms(
       const Eigen::VectorXd& q, const Eigen::VectorXd& qd) const = 0;
 };
@@ -30,11 +27,10 @@ class ArmOf final : public Arm {
  public:
   explicit ArmOf(const M& model) : model_(model) {}
 
+  int joints() const override { return M::kDof; }
+
   std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd, Eigen::VectorXd> terms(
       const Eigen::VectorXd& q, const Eigen::VectorXd& qd) const override {
-    if (q.size() != M::kDof || qd.size() != M::kDof)
-      throw std::invalid_argument(
-          fmt::format("q and qd of {} joints, and the arm has {}", q.size(), M::kDof));
     const Vec<M::kDof> at = q, rate = qd;
     return {model_.inertia(at), model_.bias(at, rate), model_.momentum_bias(at, rate),
             model_.friction(rate)};

@@ -2,14 +2,15 @@
 #include "bench/python/python_estimator.h"
 
 #include <fmt/format.h>
-#include <pybind11/numpy.h>
 
+#include <Eigen/Core>
 #include <exception>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "bench/python/arrays.h"
 #include "bench/registry.h"
 
 namespace tauext::python {
@@ -78,12 +79,8 @@ bool Object::update(double t, int n, const double* q, const double* qd, const do
   const py::gil_scoped_acquire lock;
   if (it_->object.is_none()) return false;
   try {
-    using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-    const Array said = it_->object.attr("update")(t, Array(n, q), Array(n, qd), Array(n, tau));
-    if (said.ndim() != 1 || said.shape(0) != n)
-      throw std::invalid_argument(
-          fmt::format("update() of an estimator returns {} numbers, one for each joint", n));
-    for (int j = 0; j < n; ++j) tau_ext[j] = said.at(j);
+    const py::object said = it_->object.attr("update")(t, Array(n, q), Array(n, qd), Array(n, tau));
+    Eigen::Map<Eigen::VectorXd>(tau_ext, n) = vector(said, "what update() returns", n);
     return true;
   } catch (...) {
     keep_error();

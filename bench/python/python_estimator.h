@@ -24,6 +24,17 @@ std::string add_maker(pybind11::object make);
 /// Throws what an estimator in Python threw since the last call, the first of several.
 void rethrow();
 
+/// work() without the interpreter's lock; then throws what an estimator in Python threw meanwhile.
+template <class Work>
+auto unlocked(const Work& work) {
+  const auto answer = [&] {
+    const pybind11::gil_scoped_release free;
+    return work();
+  }();
+  rethrow();
+  return answer;
+}
+
 /// Lists `python` among the estimators of every robot, once and before these are first asked for.
 void register_estimators();
 

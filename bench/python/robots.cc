@@ -13,6 +13,7 @@
 
 #include "bench/python/arm.h"
 #include "bench/python/arrays.h"
+#include "bench/python/python_estimator.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/roster.h"
 #include "bench/roster/threshold_file.h"
@@ -55,11 +56,10 @@ Output estimated(const Robot& robot, const std::string& estimator, const Trace& 
 }
 
 // of estimates that anybody made
-Output given(const Array& tau_ext) {
-  if (tau_ext.ndim() != 2) throw std::invalid_argument("tau_ext has a row for each sample");
+Output given(const py::object& tau_ext, const py::object& joint_names) {
   Output out;
-  out.tau_ext = columns(tau_ext, tau_ext.shape(0), tau_ext.shape(1), "tau_ext");
-  out.status.assign(static_cast<std::size_t>(tau_ext.shape(0)), Status::kOk);
+  out.tau_ext = columns(arrays("table", tau_ext, "tau_ext", py::none(), py::none(), joint_names));
+  out.status.assign(static_cast<std::size_t>(out.tau_ext.cols()), Status::kOk);
   return out;
 }
 
@@ -97,7 +97,8 @@ py::list fields(const std::vector<FieldHelp>& all) {
 
 void bind_answers(py::module_& m) {
   py::class_<Output>(m, "Estimates", "What an estimator made of a run.")
-      .def(py::init(&given), py::arg("tau_ext"))
+      .def(py::init(&given), py::arg("tau_ext"), py::kw_only(),
+           py::arg("joint_names") = py::tuple())
       .def_property_readonly(
           "tau_ext", [](const Output& o) { return rows(o.tau_ext); }, "[N m] a row for each sample")
       .def_property_readonly(
@@ -148,6 +149,7 @@ void bind_robots(py::module_& m) {
   py::class_<Robot, std::unique_ptr<Robot, py::nodelete>>(m, "Robot")
       .def_property_readonly("name", &Robot::name)
       .def_property_readonly("joints", &Robot::dof)
+      .def_property_readonly("joint_names", &Robot::joints)
       .def("scenarios",
            [](const Robot& r) {
              std::vector<std::pair<std::string, std::string>> all;
@@ -165,9 +167,10 @@ void bind_robots(py::module_& m) {
       .def("detect", &detected)
       .def("arm", &arm_of);
   py::class_<Arm, std::shared_ptr<Arm>>(m, "Arm").def(
-      "terms", [](const Arm& a, const Array& q, const Array& qd) {
+      "terms",
+      [](const Arm& a, const py::object& q, const py::object& qd, const py::object& names) {
         const auto [B, bias, momentum_bias, friction] =
-            a.terms(q.cast<Eigen::VectorXd>(), qd.cast<Eigen::VectorXd>());
+            a.terms(vector(q, "q", a.joints(), names), vector(qd, "qd", a.joints(), names));
         return py::make_tuple(rows(B.transpose()), bias, momentum_bias, friction);
       });
   m.def(

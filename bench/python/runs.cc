@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <stdexcept>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,27 +20,18 @@ namespace py = pybind11;
 
 namespace {
 
-Trace made(const Array& t, const Array& q, const Array& qd, const Array& tau,
-           const py::object& tau_ext, const py::object& contact, bool torque_at_instants) {
-  if (t.ndim() != 1 || q.ndim() != 2)
-    throw std::invalid_argument("a run has t with a number, and q with a row, for each sample");
-  const py::ssize_t n = t.shape(0), joints = q.shape(1);
+Trace made(const py::object& t, const py::object& q, const py::object& qd, const py::object& tau,
+           const py::object& tau_ext, const py::object& contact, bool torque_at_instants,
+           const py::object& joint_names) {
+  const py::tuple all = arrays("run", t, q, qd, tau, tau_ext, contact, joint_names);
   Trace run;
-  run.t.assign(t.data(), t.data() + n);
-  for (std::size_t k = 1; k < run.t.size(); ++k) {
-    if (!(run.t[k] > run.t[k - 1]))
-      throw std::invalid_argument(
-          fmt::format("t must increase, and does not from {} to {} s", run.t[k - 1], run.t[k]));
-  }
-  run.q = columns(q, n, joints, "q");
-  run.qd = columns(qd, n, joints, "qd");
-  run.tau = columns(tau, n, joints, "tau");
-  if (!tau_ext.is_none()) run.tau_ext = columns(tau_ext.cast<Array>(), n, joints, "tau_ext");
-  if (!contact.is_none()) {
-    const auto touches = contact.cast<Array>();
-    if (touches.ndim() != 1 || touches.shape(0) != n)
-      throw std::invalid_argument("contact has a number for each sample");
-    for (py::ssize_t k = 0; k < n; ++k) run.contact.push_back(touches.at(k) != 0);
+  const auto times = all[0].cast<Array>();
+  run.t.assign(times.data(), times.data() + times.size());
+  run.q = columns(all[1]), run.qd = columns(all[2]), run.tau = columns(all[3]);
+  if (!all[4].is_none()) run.tau_ext = columns(all[4]);
+  if (!all[5].is_none()) {
+    const auto touches = all[5].cast<py::array_t<std::uint8_t, py::array::forcecast>>();
+    run.contact.assign(touches.data(), touches.data() + touches.size());
   }
   run.torque_at_instants = torque_at_instants;
   return run;
@@ -70,7 +61,7 @@ void bind_runs(py::module_& m) {
       "sample and a column for each joint; each attribute is a copy.")
       .def(py::init(&made), py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("tau"),
            py::arg("tau_ext") = py::none(), py::arg("contact") = py::none(), py::kw_only(),
-           py::arg("torque_at_instants") = false)
+           py::arg("torque_at_instants") = false, py::arg("joint_names") = py::tuple())
       .def_property_readonly(
           "t",
           [](const Trace& r) { return Array(static_cast<py::ssize_t>(r.t.size()), r.t.data()); },

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/outside/outside_score.h"
-#include "bench/python/arrays.h"
+#include "bench/python/python_estimator.h"
 #include "bench/python/robots.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"

@@ -8,7 +8,10 @@
     marks = arm.detect("pan_tompkins", run, estimates)
     print(arm.score(run, estimates, marks, scenario="contact"))
 
-Arrays have a row for each sample and a column for each joint. Everything is in SI units and
+Arrays have a row for each sample and a column for each joint: what NumPy makes an array of will do,
+and what is of another shape, or no number, is an error that names the argument. Columns of a pandas
+DataFrame are found by the joints' names, rows are taken in their order. Masked and missing values
+become NaN, and Estimates.status says which samples could not be used. Everything is in SI units and
 radians. tau_ext has the sign of B qdd + C qd + F + g + tau_ext = tau: a force f that acts on the
 arm gives tau_ext = -J^T f. Wherever an estimator or a detector is named, a specification with its
 parameters is understood: "mo2:bandwidth=50".
@@ -28,7 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 if importlib.util.find_spec(f"{__name__}._core") is None:
     raise ImportError("tauext._core is not built for this Python: in a clone, ci/install_deps and then "
                       "ci/build release tauext_python build it for /usr/bin/python3")
-from . import _core
+from . import _arrays, _core
 from ._core import Detections, Estimates, Run
 
 __all__ = ["Arm", "CONTACTS", "Detections", "Estimates", "Estimator", "Robot", "Run", "Terms", "estimator",
@@ -62,12 +65,12 @@ class Terms(NamedTuple):
 class Arm:
     """An arm as estimators know it."""
 
-    def __init__(self, arm: _core.Arm):
-        self._arm = arm
+    def __init__(self, arm: _core.Arm, joint_names: Sequence[str] = ()):
+        self._arm, self._names = arm, joint_names
 
     def terms(self, q: ArrayLike, qd: ArrayLike) -> Terms:
-        """At q [rad] and qd [rad/s]."""
-        return Terms(*self._arm.terms(q, qd))
+        """At q [rad] and qd [rad/s], a number for each joint."""
+        return Terms(*self._arm.terms(q, qd, self._names))
 
 
 def estimator(make: Callable[[Arm], Estimator] | Callable[[], Estimator]) -> str:
@@ -103,7 +106,8 @@ def read_log(path: str | os.PathLike[str], *, columns: str = "", channel: str = 
 
     columns: a preset (libfranka, ur_rtde, ...) or a TOML file that says which column is what
     channel: of an LCM log the channel, of a bag the topic
-    robot: whose joints it must have, and whose gains make torques of currents
+    robot: whose joints it must have, by whose names they are found in a bag, and whose gains make
+    torques of currents; without it a bag's joints have the order of its first message
     """
     return _core.read_log(os.fspath(path), columns, channel, robot)
 
@@ -151,6 +155,11 @@ class Robot:
         """How many it has."""
         return self._robot.joints
 
+    @property
+    def joint_names(self) -> list[str]:
+        """What a robot's file calls them; none of a robot that is known by name."""
+        return self._robot.joint_names
+
     def scenarios(self) -> dict[str, str]:
         """What can happen to it: names, and a line on each."""
         return dict(self._robot.scenarios())
@@ -172,7 +181,7 @@ class Robot:
         """The arm as its estimators know it, at q [rad] and qd [rad/s]; wallmobot3 with 150 kg. In a
         study its estimators may know another panel, as the arm does that make(arm) of estimator() gets."""
         if not hasattr(self, "_arm"):
-            self._arm = Arm(self._robot.arm())
+            self._arm = Arm(self._robot.arm(), self.joint_names)
         return self._arm.terms(q, qd)
 
     def record(self, scenario: str, *, degrade: Degrade = None, seed: int = 1) -> Run:
@@ -198,7 +207,8 @@ class Robot:
         thresholds: a file of tauext-detect --calibrate, which has those behind `estimator`
         condition: of the study, for which such a file may have others
         """
-        return self._robot.detect(detector, run, _estimates(estimates), os.fspath(thresholds), estimator, condition)
+        return self._robot.detect(detector, run, self._estimates(estimates, run), os.fspath(thresholds), estimator,
+                                  condition)
 
     def score(self, run: Run, estimates: Estimates | ArrayLike, detections: Detections | None = None, *,
               scenario: str = "", score_from: float | None = None) -> dict[str, float]:
@@ -208,7 +218,7 @@ class Robot:
         score_from: [s] errors before do not count
         """
         marks = [] if detections is None else detections.mark.tolist()
-        return _core.score(run, _estimates(estimates), marks, self._robot, scenario,
+        return _core.score(run, self._estimates(estimates, run), marks, self._robot, scenario,
                            float("nan") if score_from is None else score_from)
 
     def suite(self, estimators: str | Sequence[str] | None = None, *,
@@ -241,8 +251,9 @@ class Robot:
         written: dict[str, Any] = json.loads(text)
         return written
 
-
-def _estimates(estimates: Estimates | ArrayLike) -> Estimates:
-    return estimates if isinstance(estimates, Estimates) else Estimates(np.asarray(estimates, dtype=float))
+    def _estimates(self, estimates: Estimates | ArrayLike, run: Run) -> Estimates:
+        if isinstance(estimates, Estimates):
+            return estimates
+        return Estimates(_arrays.table(estimates, "estimates", len(run), run.joints, self.joint_names))
 
 

@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of what C++ gives to __init__.py. Run, Estimates and Detections are public; the rest is for that file."""
 from collections.abc import Callable, Sequence
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 class Run:
-    """What the sensors said and, if it is known, what was true; a row for each sample, a column for each joint."""
+    """What the sensors said and, if it is known, what was true; a row for each sample, a column for each joint.
 
-    def __init__(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, tau_ext: ArrayLike | None = None,
-                 contact: ArrayLike | None = None, *, torque_at_instants: bool = False) -> None: ...
+    t: [s]; of dates (datetime64, a DatetimeIndex, ..) the time since the first
+    q, qd, tau, tau_ext: [rad, rad/s, N m]; of one joint a number for each sample will do
+    joint_names: Robot.joint_names, into whose order columns with names are brought
+    """
+
+    def __init__(self, t: ArrayLike | Sequence[datetime], q: ArrayLike, qd: ArrayLike, tau: ArrayLike,
+                 tau_ext: ArrayLike | None = None, contact: ArrayLike | None = None, *,
+                 torque_at_instants: bool = False, joint_names: Sequence[str] = ()) -> None: ...
     @property
     def t(self) -> NDArray[np.float64]: ...
     @property
@@ -33,7 +40,7 @@ class Run:
 class Estimates:
     """What an estimator made of a run."""
 
-    def __init__(self, tau_ext: ArrayLike) -> None: ...
+    def __init__(self, tau_ext: ArrayLike, *, joint_names: Sequence[str] = ()) -> None: ...
     @property
     def tau_ext(self) -> NDArray[np.float64]: ...
     @property
@@ -52,14 +59,16 @@ class Detections:
     def __len__(self) -> int: ...
 
 class Arm:
-    def terms(self, q: ArrayLike, qd: ArrayLike, /) -> tuple[NDArray[np.float64], NDArray[np.float64],
-                                                             NDArray[np.float64], NDArray[np.float64]]: ...
+    def terms(self, q: ArrayLike, qd: ArrayLike, joint_names: Sequence[str],
+              /) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 
 class Robot:
     @property
     def name(self) -> str: ...
     @property
     def joints(self) -> int: ...
+    @property
+    def joint_names(self) -> list[str]: ...
     def scenarios(self) -> list[tuple[str, str]]: ...
     def estimators(self) -> list[str]: ...
     def detectors(self) -> list[str]: ...
