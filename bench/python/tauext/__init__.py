@@ -11,8 +11,8 @@
 Arrays have a row for each sample and a column for each joint: what NumPy makes an array of will do,
 and what is of another shape, or no number, is an error that names the argument. Columns of a pandas
 DataFrame are found by the joints' names, rows are taken in their order. Masked and missing values
-become NaN, and Estimates.status says which samples could not be used. Everything is in SI units and
-radians. tau_ext has the sign of B qdd + C qd + F + g + tau_ext = tau: a force f that acts on the
+of q, qd and tau become NaN, and Estimates.status says which samples could not be used. Everything is
+in SI units and radians. tau_ext has the sign of B qdd + C qd + F + g + tau_ext = tau: a force f that acts on the
 arm gives tau_ext = -J^T f. Wherever an estimator or a detector is named, a specification with its
 parameters is understood: "mo2:bandwidth=50".
 """

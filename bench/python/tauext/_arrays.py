@@ -31,7 +31,10 @@ def run(t: Any, q: Any, qd: Any, tau: Any, tau_ext: Any, contact: Any,
     at = table(q, "q", n, None, joint_names)
     joints = at.shape[1]
     rate, torque = table(qd, "qd", n, joints, joint_names), table(tau, "tau", n, joints, joint_names)
-    truth = None if tau_ext is None else table(tau_ext, "tau_ext", n, joints, joint_names)
+    truth = None
+    if tau_ext is not None:
+        truth = table(tau_ext, "tau_ext", n, joints, joint_names)
+        _require_finite(truth, "tau_ext", "nothing can be scored by that: leave such samples out, or tau_ext")
     return times, at, rate, torque, truth, None if contact is None else _flags(contact, "contact", n)
 
 
@@ -69,10 +72,15 @@ def vector(x: Any, what: str, joints: int, joint_names: Sequence[str]) -> Floats
 def _flags(x: Any, what: str, samples: int) -> NDArray[np.bool_]:
     a = _numbers(x, what, "True or False is wanted", "biuf")
     a = _line(a, x, what, samples, "True or False for each sample")
-    if not np.isfinite(a).all():
-        k = int(np.argmin(np.isfinite(a)))
-        raise ValueError(f"{what}[{k}] is {a[k]}, and True or False is wanted")
+    _require_finite(a, what, "True or False is wanted")
     return np.asarray(a != 0)
+
+
+def _require_finite(a: Floats, what: str, why: str) -> None:
+    is_bad = ~np.isfinite(a).reshape(len(a), -1).all(axis=1)
+    if is_bad.any():
+        k = int(np.argmax(is_bad))
+        raise ValueError(f"{what}[{k}] is {a[k]}, and {why}")
 
 
 def _times(t: Any) -> Floats:
@@ -81,9 +89,7 @@ def _times(t: Any) -> Floats:
     if a.dtype.kind in "mMO" and a.size > 0:
         a = _since_first(a)
     s = _line(_numbers(a, "t", "seconds or dates (datetime64) are wanted", given=t), t, "t", None, "a time for each sample")
-    if not np.isfinite(s).all():
-        k = int(np.argmin(np.isfinite(s)))
-        raise ValueError(f"t[{k}] is {s[k]}, and each sample needs a time")
+    _require_finite(s, "t", "each sample needs a time")
     steps = np.diff(s)
     if (steps <= 0).any():
         k = int(np.argmax(steps <= 0))

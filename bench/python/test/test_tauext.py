@@ -282,6 +282,7 @@ def test_what_is_masked_is_not_there():
     ({"tau": TAU[:, :2]}, ValueError, r"^tau is float64 of shape \(8, 2\), and \(8, 3\) is wanted"),
     ({"tau": TAU[:, 0]}, ValueError, r"^tau is float64 of shape \(8,\), and \(8, 3\) is wanted"),
     ({"tau_ext": TRUTH[np.newaxis]}, ValueError, r"^tau_ext is float64 of shape \(1, 8, 3\)"),
+    ({"tau_ext": np.ma.array(TRUTH, mask=TRUTH == TRUTH[2, 1])}, ValueError, r"^tau_ext\[2\] is \[.* nan .*\], and nothing"),
     ({"q": Q[:, :0]}, ValueError, r"^q is float64 of shape \(8, 0\)"),
     ({"q": Q + 1j}, TypeError, r"^q is complex128 of shape \(8, 3\), and numbers are wanted"),
     ({"qd": QD > 0}, TypeError, "^qd is bool of shape"),
