@@ -33,6 +33,7 @@
 #include "lcmtypes/wire.h"
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/plant/model.h"
+#include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/column_map_file.h"
 #include "mjcf/trace/read/recording.h"
 #include "regression/accuracy/golden_file.h"
@@ -123,6 +124,18 @@ void contacts(Bytes input) {
     demand(what.starts_with(path + ": "), "an error names the file");
     demand(what.find('\n') == what.npos && what.size() < 2000, "an error is a line");
   }
+}
+
+// a topic of any type, too
+void bag(Bytes input) {
+  recording(input);
+  const std::string path = file_of(input);
+  refused_or(path, [&] {
+    BagRows rows(path, "/a");
+    SkippedRows skipped;
+    for (std::vector<double> row; rows.next(row, skipped);)
+      demand(row.size() == rows.columns().size(), "a row has a number for each column");
+  });
 }
 
 void map(Bytes input) {
@@ -277,7 +290,7 @@ void mjcf(Bytes input) {
 }
 
 const std::map<std::string_view, void (*)(Bytes)> kTargets{
-    {"csv", recording},       {"npy", recording},     {"bag", recording},     {"map", map},
+    {"csv", recording},       {"npy", recording},     {"bag", bag},           {"map", map},
     {"joined", joined},       {"contacts", contacts}, {"log", log},           {"wire", wire},
     {"datagrams", datagrams}, {"json", json},         {"baseline", baseline}, {"mjcf", mjcf}};
 

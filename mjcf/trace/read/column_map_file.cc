@@ -296,6 +296,13 @@ ColumnMap column_map(const std::string& name) {
   return map;
 }
 
+std::string preset_of_messages(const std::string& type) {
+  for (const auto& p : detail::kColumnPresets)
+    if (fmt::format(" {} ", p.messages).find(fmt::format(" {} ", type)) != std::string::npos)
+      return std::string(p.name);
+  return "";
+}
+
 std::string list_column_presets() {
   std::string all;
   for (const auto& p : detail::kColumnPresets) all += fmt::format("{:12} {}\n", p.name, p.what);

@@ -21,6 +21,9 @@ ColumnMap column_map(const std::string& name);
 /// @throws as column_map
 ColumnMap column_map_of(std::string_view toml, const std::string& name);
 
+/// The preset that reads messages of a type of ROS 2, like "sensor_msgs/JointState"; "": none.
+std::string preset_of_messages(const std::string& type);
+
 /// The presets: their names, and what each one is for.
 std::string list_column_presets();
 

@@ -20,6 +20,7 @@ struct ColumnPreset {
   std::string_view what;                 ///< it reads
   std::span<const NamedQuantity> names;  ///< the map, if there is no more to say
   std::string_view toml;                 ///< else this
+  std::string_view messages = "";        ///< types of ROS 2's that it reads, apart by blanks
 };
 
 /// What quantities are called in our own files.
@@ -80,6 +81,22 @@ columns = 'et(\d)|.*external_torque.*?(\d)\D*'
 sign = -1
 )";
 
+/// Its LBRState, in a bag of ROS 2 or from one: the controller's clock.
+inline constexpr std::string_view kLbrState = R"(
+preset = "kuka_fri"
+[t]
+columns = ["time_stamp_sec", "time_stamp_nano_sec"]
+unit = ["s", "ns"]
+)";
+
+/// Franka's state in a bag of ROS 2 (bag_rows.h), old and new: tau_ext_hat_filtered as libfranka's.
+inline constexpr NamedQuantity kFrankaState[] = {
+    {"t", "t"},
+    {"q", R"(q\[(\d)\]|measured_joint_state\.position\..*)"},
+    {"qd", R"(dq\[(\d)\]|measured_joint_state\.velocity\..*)"},
+    {"tau_instant", R"(tau_[jJ]\[(\d)\]|measured_joint_state\.effort\..*)"},
+    {"driver", R"(tau_ext_hat_filtered(?:\[(\d)\]|\.effort\..*))"}};
+
 /// In a bag of ROS 2 (bag_rows.h).
 inline constexpr NamedQuantity kJointState[] = {{"t", "t"},
                                                 {"q", R"(position\..*)"},
@@ -91,8 +108,16 @@ inline constexpr ColumnPreset kColumnPresets[] = {
     {"tauext", "CSV, .npy and .npz of tauext", kTauext, ""},
     {"libfranka", "franka::logToCSV of libfranka (Panda, FR3), old and new", {}, kLibfranka},
     {"ur_rtde", "Universal Robots' RTDE (record.py, ur_rtde); [current] wants a gain", {}, kUrRtde},
-    {"kuka_fri", "KUKA's FRI as pyfri writes it, and exports of LBRState", {}, kKukaFri},
-    {"joint_state", "sensor_msgs/JointState of ROS 2 bags (.db3)", kJointState, ""},
+    {"kuka_fri", "KUKA's FRI as pyfri writes it", {}, kKukaFri},
+    {"lbr_state",
+     "LBRState of lbr_fri_idl or lbr_fri_msgs, in ROS 2 bags",
+     {},
+     kLbrState,
+     "lbr_fri_idl/LBRState lbr_fri_msgs/LBRState"},
+    {"franka_state", "FrankaRobotState or FrankaState of franka_msgs, in ROS 2 bags", kFrankaState,
+     "", "franka_msgs/FrankaRobotState franka_msgs/FrankaState"},
+    {"joint_state", "sensor_msgs/JointState of ROS 2 bags", kJointState, "",
+     "sensor_msgs/JointState"},
 };
 
 }  // namespace tauext::detail

@@ -16,7 +16,9 @@
 #include <utility>
 
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/bag/bag_messages.h"
 #include "mjcf/trace/read/bag/bag_rows.h"
+#include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/column_map_file.h"
 #include "mjcf/trace/read/joined_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
@@ -102,6 +104,18 @@ bool begins_as_arrays(std::string_view begin) {
 }
 bool is_bag(const std::string& path) {
   return begins_as_bag(magic_of(path));
+}
+
+// the map of a recording where nobody names one
+std::string usual_map(const std::string& path, const std::string& topic) {
+  const std::string of_bag =
+      is_bag(path) ? preset_of_messages(short_type_name(topic_of_bag(path, topic).type)) : "";
+  return of_bag.empty() ? "tauext" : of_bag;
+}
+
+// "q[0]": numbers of a message that have no joints' names
+bool is_numbered(const std::string& column) {
+  return column.ends_with(']');
 }
 
 }  // namespace
@@ -228,9 +242,7 @@ struct RecordingReader::Impl {
   Impl(const std::string& file, const RecordingOptions& o)
       : path(file_in(file)),
         joints(o.joints),
-        map(column_map(!o.columns.empty() ? o.columns
-                       : is_bag(path)     ? "joint_state"
-                                          : "tauext")),
+        map(column_map(!o.columns.empty() ? o.columns : usual_map(path, o.topic))),
         options{o.columns, o.topic,
                 map.leaves_order_open() ? o.joints : std::vector<std::string>()},
         rows(open_rows(path, options, csv())),
@@ -292,7 +304,9 @@ struct RecordingReader::Impl {
           fmt::format("the time is counted, {:g} rows a second, as the map says", map.rate()));
     if (std::string note = map.choose_torque(all); !note.empty())
       skipped.notes.push_back(std::move(note));
-    if (is_bag(path) && joints.empty() && map.leaves_order_open() && all.at("q").columns.size() > 1)
+    const std::vector<int>& q = all.at("q").columns;
+    if (is_bag(path) && joints.empty() && map.leaves_order_open() && q.size() > 1 &&
+        !is_numbered(rows->columns()[static_cast<std::size_t>(q[0])]))
       skipped.notes.push_back(
           "no joints' names to compare with: their order is that of the first message");
     return all;

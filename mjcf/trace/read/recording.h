@@ -18,9 +18,10 @@ namespace tauext {
 
 /// How a recording is to be read.
 struct RecordingOptions {
-  /// A preset or a TOML file of column_map.h; "": `joint_state` for a bag, else `tauext`.
+  /// A preset or a TOML file of column_map.h; "": of a bag the preset for the topic's type, else
+  /// `tauext`.
   std::string columns;
-  std::string topic;  ///< of a bag; "": the only one of JointState
+  std::string topic;  ///< of a bag; "": as BagRows chooses it
   /// The robot's joints by name, in its order: by these a bag's are found, unless the map names
   /// columns or has an `order`. Empty: unknown.
   std::vector<std::string> joints;

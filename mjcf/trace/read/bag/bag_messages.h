@@ -20,12 +20,14 @@ struct BagMessage {
 /// A topic of a bag.
 struct BagTopic {
   std::string name, type, format;  ///< of its messages the type, and how they are serialized
+  std::string language = "",
+              definition = "";  ///< of the type, where the bag has it: "ros2msg", or IDL
 };
 
-/// Those of topics of sensor_msgs/msg/JointState.
+/// Those of some topics of one type.
 class BagMessages {
  public:
-  /// How long a message may be.
+  /// How long a message may be, and a definition.
   static constexpr std::int64_t kMost = 1 << 20;  // [bytes]
 
   virtual ~BagMessages() = default;
@@ -38,18 +40,21 @@ class BagMessages {
   /// At the end what a reader should know; else "".
   virtual std::string note() const { return ""; }
   const std::string& path() const { return path_; }
-  /// Their names, apart by commas.
-  const std::string& topic() const { return topic_; }
+  /// Of several their names apart by commas, and the type of all.
+  const BagTopic& topic() const { return topic_; }
 
  protected:
-  /// Chooses them among these. "": the only one of that type; else names apart by commas.
+  /// Chooses them among these. "": the only one of sensor_msgs/msg/JointState or, where there is
+  /// none, of the types that presets.h knows; else names apart by commas.
   /// @throws std::runtime_error naming the path, and the topics that there are
   void set_topics(const std::string& path, const std::vector<BagTopic>& topics,
                   const std::string& wanted);
   bool is_chosen(std::string_view topic) const;
+  void set_definition(std::string language, std::string definition);
 
  private:
-  std::string path_, topic_;
+  std::string path_;
+  BagTopic topic_;
 };
 
 }  // namespace tauext

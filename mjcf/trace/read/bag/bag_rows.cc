@@ -16,8 +16,8 @@
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/bag_messages.h"
-#include "mjcf/trace/read/bag/joint_state.h"
 #include "mjcf/trace/read/bag/mcap_messages.h"
+#include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/bag/sqlite_messages.h"
 #include "mjcf/trace/read/numpy/byte_file.h"
 
@@ -36,10 +36,12 @@ std::unique_ptr<BagMessages> open_bag(const std::string& path, const std::string
   file.fail("begins as no bag of ROS 2 does (.db3, .mcap)");
 }
 
+constexpr std::size_t kMostColumns = 4096;
+
 // nullptr, or why not
-const char* read_message(const BagMessage& message, JointState& state) {
+const char* read_message(const MessageType& type, const BagMessage& message, MessageNumbers& to) {
   if (message.size > BagMessages::kMost) return "it is longer than 1 MB";
-  return read_joint_state(message.bytes, state);
+  return type.read(message.bytes, to);
 }
 
 // for messages to people
@@ -54,38 +56,86 @@ std::string listed(const Names& names) {
 
 }  // namespace
 
+BagTopic topic_of_bag(const std::string& path, const std::string& topic) {
+  return open_bag(path, topic)->topic();
+}
+
 BagRows::BagRows(const std::string& path, const std::string& topic, std::vector<std::string> joints)
     : messages_(open_bag(path, topic)), joints_(std::move(joints)) {
+  read_type();
   look_ahead();
-  look_for_quantities();
-  columns_.emplace_back("t");
-  constexpr std::array kQuantities{"position", "velocity", "effort"};
-  for (std::size_t i = 0; i < kQuantities.size(); ++i)
-    for (const std::string& joint : joints_)
-      if (has_[i]) columns_.push_back(fmt::format("{}.{}", kQuantities[i], joint));
+  look_for_numbers();
+  name_columns();
 }
 
 BagRows::~BagRows() = default;
 
+void BagRows::read_type() {
+  const BagTopic& t = messages_->topic();
+  const auto fail = [&](const std::string& why) {
+    throw std::runtime_error(
+        one_line(fmt::format("{}: topic {}, {}: {}", messages_->path(), printable_name(t.name),
+                             printable_name(t.type), why)));
+  };
+  if (!MessageType::is_joint_state(t.type)) {
+    if (t.definition.empty())
+      fail(
+          "the bag has no definition of its type, as those of ROS 2 Iron and later have: where "
+          "its package is installed, ros2 bag convert to the storage mcap adds it");
+    if (t.language != "ros2msg")
+      fail(fmt::format("its type is defined in '{}', and not in 'ros2msg'",
+                       printable_name(t.language)));
+  }
+  try {
+    type_ = std::make_unique<MessageType>(t.type, t.definition);
+  } catch (const std::runtime_error& e) {
+    fail(e.what());
+  }
+  for (std::size_t i = 0; i < type_->fields().size(); ++i) {
+    const std::string& name = type_->fields()[i].begin;
+    if (name == "header.stamp.sec") seconds_ = static_cast<int>(i);
+    if (name == "header.stamp.nanosec") nanoseconds_ = static_cast<int>(i);
+  }
+  counts_.assign(type_->fields().size(), 0);
+  begins_.assign(type_->fields().size(), 0);
+  at_.resize(type_->lists());
+}
+
+// whether it is in t
+bool BagRows::is_stamp(std::size_t field) const {
+  return static_cast<int>(field) == seconds_ || static_cast<int>(field) == nanoseconds_;
+}
+
+// [s] 0: it has none
+double BagRows::stamp_of(const MessageNumbers& message) const {
+  if (seconds_ < 0 || nanoseconds_ < 0) return 0;
+  return message.numbers[static_cast<std::size_t>(seconds_)][0] +
+         1e-9 * message.numbers[static_cast<std::size_t>(nanoseconds_)][0];
+}
+
 // for all joints, and for the first stamp that is not 0
 void BagRows::look_ahead() {
   BagMessage message;
-  JointState state;
+  MessageNumbers numbers;
   const char* first = "there is none";
-  std::vector<std::string> missing = joints_;
+  std::vector<std::string> missing;
+  if (type_->lists() > 0) missing = joints_;
   std::set<std::string> named;
   bool any = false;
-  for (bool begin = true; !(any && missing.empty() && use_stamps_) && messages_->next(message);
+  for (bool begin = true;
+       !(any && missing.empty() && (use_stamps_ || seconds_ < 0)) && messages_->next(message);
        begin = false) {
-    const char* const why = read_message(message, state);
+    const char* const why = read_message(*type_, message, numbers);
     if (begin && why != nullptr) first = why;
     if (why != nullptr) continue;
-    if (joints_.empty()) joints_ = state.name;
     any = true;
-    use_stamps_ = use_stamps_ || state.stamp != 0;
-    for (const std::string& name : state.name) {
-      std::erase(missing, name);
-      keep_some(named, name);
+    use_stamps_ = use_stamps_ || stamp_of(numbers) != 0;
+    for (const auto& names : numbers.names) {
+      if (joints_.empty()) joints_ = names;
+      for (const std::string& name : names) {
+        std::erase(missing, name);
+        keep_some(named, name);
+      }
     }
   }
   messages_->rewind();
@@ -93,26 +143,57 @@ void BagRows::look_ahead() {
   if (any && (missing.empty() || find_by_prefix(named))) return;
   if (any) fail_missing(missing, named);
   throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}",
-                                       messages_->path(), printable_name(messages_->topic()),
+                                       messages_->path(), printable_name(messages_->topic().name),
                                        first));
 }
 
 // drivers leave fields empty, or NaN, at first
-void BagRows::look_for_quantities() {
+void BagRows::look_for_numbers() {
   BagMessage message;
-  JointState state;
-  while (has_ != std::array{true, true, true} && messages_->next(message)) {
-    if (read_message(message, state) != nullptr) continue;
-    for (std::size_t i = 0; i < state.name.size(); ++i) {
-      if (std::find(called_.begin(), called_.end(), state.name[i]) == called_.end()) continue;
-      std::size_t quantity = 0;
-      for (const auto* numbers : {&state.position, &state.velocity, &state.effort}) {
-        has_[quantity] = has_[quantity] || (!numbers->empty() && std::isfinite((*numbers)[i]));
-        ++quantity;
+  MessageNumbers numbers;
+  const auto& fields = type_->fields();
+  const auto found = [&] {
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (!is_stamp(i) && (counts_[i] == 0 || (fields[i].many && fields[i].names < 0)))
+        return false;
+    return true;
+  };
+  while (!found() && messages_->next(message)) {
+    if (read_message(*type_, message, numbers) != nullptr) continue;
+    find_joints(numbers);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (is_stamp(i)) continue;
+      const std::vector<double>& all = numbers.numbers[i];
+      if (fields[i].names < 0) {
+        const bool some =
+            std::any_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); });
+        if (some) counts_[i] = std::max(counts_[i], all.size());
+        continue;
       }
+      const std::vector<int>& at = at_[static_cast<std::size_t>(fields[i].names)];
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (at[k] >= 0 && std::isfinite(all[k])) counts_[i] = joints_.size();
     }
   }
   messages_->rewind();
+  strangers_.clear(), with_strangers_ = 0;
+}
+
+void BagRows::name_columns() {
+  columns_.emplace_back("t");
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const MessageField& f = type_->fields()[i];
+    begins_[i] = columns_.size();
+    for (std::size_t k = 0; k < counts_[i]; ++k)
+      columns_.push_back(f.names >= 0     ? fmt::format("{}.{}", f.begin, joints_[k])
+                         : f.many         ? fmt::format("{}[{}]{}", f.begin, k, f.end)
+                         : f.begin == "t" ? "message.t"
+                                          : f.begin);
+    if (columns_.size() > kMostColumns)
+      throw std::runtime_error(fmt::format("{}: the messages on topic {} have more than {} numbers",
+                                           messages_->path(),
+                                           printable_name(messages_->topic().name), kMostColumns));
+  }
 }
 
 // whether one text, put before each of the robot's names or taken from it, gives names of messages
@@ -145,7 +226,7 @@ bool BagRows::find_by_prefix(const std::set<std::string>& named) {
         "{}: the messages on topic {} match the robot's joints in more than one way: their names "
         "{}, or they {}; name the columns in a map (--columns): [q] columns = [\"position.NAME\", "
         "..]",
-        messages_->path(), printable_name(messages_->topic()), found.begin()->first,
+        messages_->path(), printable_name(messages_->topic().name), found.begin()->first,
         std::next(found.begin())->first));
   called_ = found.begin()->second;
   note_ = "its joints' names " + found.begin()->first;
@@ -158,50 +239,58 @@ void BagRows::fail_missing(const std::vector<std::string>& missing,
       "{}: the messages on topic {} never name {}; the robot has {}, and they name {}. Where a "
       "joint has another name there, --columns FILE.toml says which it is: [q] columns = "
       "[\"position.NAME\", ..], and [qd] and [tau_instant] likewise",
-      messages_->path(), printable_name(messages_->topic()), listed(missing), listed(joints_),
+      messages_->path(), printable_name(messages_->topic().name), listed(missing), listed(joints_),
       listed(named)));
 }
 
 bool BagRows::next(std::vector<double>& row, SkippedRows& skipped) {
   BagMessage message;
-  JointState state;
+  MessageNumbers numbers;
   while (messages_->next(message)) {
     ++number_;
-    const char* const why = read_message(message, state);
+    const char* const why = read_message(*type_, message, numbers);
     if (why != nullptr) {
       ++skipped.wrong_field_count;
       skipped.say(number_, why);
       continue;
     }
-    if (!fill(row, state)) continue;
-    row[0] = use_stamps_ ? state.stamp : message.received;
+    if (!find_joints(numbers)) continue;
+    fill(row, numbers);
+    row[0] = use_stamps_ ? stamp_of(numbers) : message.received;
     return true;
   }
   note_strangers(skipped);
   return false;
 }
 
-// whether the message has any of our joints
-bool BagRows::fill(std::vector<double>& row, const JointState& state) {
-  row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
-  std::size_t ours = 0;
-  for (std::size_t i = 0; i < state.name.size(); ++i) {
-    const auto joint = std::find(called_.begin(), called_.end(), state.name[i]);
-    if (joint == called_.end()) {
-      keep_some(strangers_, state.name[i]);
-      continue;
-    }
-    ++ours;
-    auto at = row.begin() + 1 + (joint - called_.begin());
-    std::size_t quantity = 0;
-    for (const auto* numbers : {&state.position, &state.velocity, &state.effort}) {
-      if (!has_[quantity++]) continue;
-      if (!numbers->empty()) *at = (*numbers)[i];
-      at += static_cast<std::ptrdiff_t>(joints_.size());
+// whether the message has any of our joints, or names none
+bool BagRows::find_joints(const MessageNumbers& message) {
+  bool ours = message.names.empty(), others = false;
+  for (std::size_t list = 0; list < message.names.size(); ++list) {
+    at_[list].clear();
+    for (const std::string& name : message.names[list]) {
+      const auto joint = std::find(called_.begin(), called_.end(), name);
+      const bool known = joint != called_.end();
+      at_[list].push_back(known ? static_cast<int>(joint - called_.begin()) : -1);
+      if (!known) keep_some(strangers_, name);
+      (known ? ours : others) = true;
     }
   }
-  if (ours < state.name.size()) ++with_strangers_;
-  return ours > 0;
+  if (others) ++with_strangers_;
+  return ours;
+}
+
+void BagRows::fill(std::vector<double>& row, const MessageNumbers& message) const {
+  row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const std::vector<double>& all = message.numbers[i];
+    const int list = type_->fields()[i].names;
+    double* const to = row.data() + begins_[i];
+    for (std::size_t k = 0; k < all.size() && counts_[i] > 0; ++k) {
+      const int at = list < 0 ? static_cast<int>(k) : at_[static_cast<std::size_t>(list)][k];
+      if (at >= 0 && static_cast<std::size_t>(at) < counts_[i]) to[at] = all[k];
+    }
+  }
 }
 
 void BagRows::note_strangers(SkippedRows& skipped) {

@@ -3,7 +3,6 @@
 /// Recordings of ROS 2: bags of the storages sqlite3 and mcap, that is .db3 and .mcap files.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <set>
@@ -15,29 +14,43 @@
 namespace tauext {
 
 class BagMessages;
-struct JointState;
+class MessageType;
+struct BagTopic;
+struct MessageField;
+struct MessageNumbers;
 
-/// The messages of a topic of sensor_msgs/msg/JointState in a bag, each a row.
+/// The topic that BagRows would read.
+/// @throws std::runtime_error as BagRows does
+BagTopic topic_of_bag(const std::string& path, const std::string& topic);
+
+/// The messages of a topic in a bag, each a row.
 ///
-/// The first column is "t" [s], the stamp of the header or, where that is 0 throughout, the time at
-/// which the message was recorded. Then follow "position.NAME" [rad], "velocity.NAME" [rad/s] and
-/// "effort.NAME" [N m], of each joint of the robot in its order or, where nobody says what these
-/// are, of each that the first good message names and in its order. Where the messages have the
-/// robot's names with one text before all of them, or without one that the robot's begin with,
+/// The first column is "t" [s], the stamp of the header or, where there is none or it is 0
+/// throughout, the time at which the message was recorded. Then follow the numbers of the message
+/// by their paths in it: "tau", "wrench.force.x"; of an array "q[0]", "q[1]", "motor[0].q". Arrays
+/// that names of joints stand beside (MessageType) have these in the place of numbers:
+/// "effort.NAME", of each joint of the robot in its order or, where nobody says what these are, of
+/// each that the first good message names and in its order. So a sensor_msgs/msg/JointState is
+/// "position.NAME" [rad], "velocity.NAME" [rad/s] and "effort.NAME" [N m]. Where the messages have
+/// the robot's names with one text before all of them, or without one that the robot's begin with,
 /// these are its joints; a note says so. Messages may have another order; what one does not have is
-/// NaN, and a quantity that none has of these joints has no columns. A message without any of these
-/// joints is no row; where messages name other joints, a note names them once, at the end.
+/// NaN, and a field of which none has a number has no columns. A message that names joints, and
+/// none of these, is no row; where messages name other joints, a note names them once, at the end.
+///
+/// Types other than JointState are read where the bag has their definition, as bags of ROS 2 Iron
+/// and later do, and all of mcap.
 ///
 /// The file is not believed: it is opened to be read alone, nothing is written beside it, a message
 /// may have 1 MB and 64 joints. Messages that are longer, cut off, or no CDR are skipped, and are
 /// counted in SkippedRows::wrong_field_count.
 class BagRows : public RowSource {
  public:
-  /// @param topic "": the only one of that type
+  /// @param topic "": the only one of JointState or, where there is none, of a type that one of
+  /// the presets reads
   /// @param joints the robot's, by name; empty: unknown
   /// @throws std::runtime_error naming the path and what is wrong: unreadable, no such bag, no such
-  /// topic, several to choose from, no good message, a joint of the robot that no message names; or
-  /// that SQLite was missing at build
+  /// topic, several to choose from, no definition of its type, no good message, a joint of the
+  /// robot that no message names; or that SQLite was missing at build
   explicit BagRows(const std::string& path, const std::string& topic = "",
                    std::vector<std::string> joints = {});
   ~BagRows() override;
@@ -49,19 +62,28 @@ class BagRows : public RowSource {
   long number() const override { return number_; }
 
  private:
+  void read_type();
   void look_ahead();
-  void look_for_quantities();
+  void look_for_numbers();
+  void name_columns();
   bool find_by_prefix(const std::set<std::string>& named);
   [[noreturn]] void fail_missing(const std::vector<std::string>& missing,
                                  const std::set<std::string>& named) const;
-  bool fill(std::vector<double>& row, const JointState& state);
+  bool find_joints(const MessageNumbers& message);
+  bool is_stamp(std::size_t field) const;
+  double stamp_of(const MessageNumbers& message) const;
+  void fill(std::vector<double>& row, const MessageNumbers& message) const;
   void note_strangers(SkippedRows& skipped);
 
   std::unique_ptr<BagMessages> messages_;
+  std::unique_ptr<MessageType> type_;
+  int seconds_ = -1, nanoseconds_ = -1;  // the fields of the header's stamp
   std::vector<std::string> joints_, columns_;
   std::vector<std::string> called_;  // these joints, in the messages
   std::string note_;                 // of how they were found
-  std::array<bool, 3> has_{};        // position, velocity and effort of these joints
+  // of each field: how many numbers of ours there are, and where its columns begin
+  std::vector<std::size_t> counts_, begins_;
+  std::vector<std::vector<int>> at_;  // of each list of names the joints, or -1
   bool use_stamps_ = false;
   long number_ = 0, with_strangers_ = 0;
   std::set<std::string> strangers_;  // joints that are not ours, the first few

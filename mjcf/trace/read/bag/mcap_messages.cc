@@ -51,12 +51,17 @@ class Fields {
 McapMessages::McapMessages(const std::string& path, const std::string& topic) : file_(path) {
   read_summary();
   rewind();
-  if (channels_.empty())  // a file that was not closed has no summary
+  const auto lacks_schema = [&](const auto& c) {
+    return c.second.schema != 0 && schemas_.count(c.second.schema) == 0;
+  };
+  // a file that was not closed has no summary, and who writes one may leave them out
+  if (channels_.empty() || std::any_of(channels_.begin(), channels_.end(), lacks_schema))
     for (Record record; next_record(record);) learn(record);
   std::vector<BagTopic> topics;
-  for (const auto& [id, c] : channels_)
-    topics.push_back(
-        {c.topic, schemas_.count(c.schema) > 0 ? schemas_.at(c.schema) : "", c.encoding});
+  for (const auto& [id, c] : channels_) {
+    const Schema& s = schemas_[c.schema];
+    topics.push_back({c.topic, s.type, c.encoding, s.language, s.definition});
+  }
   set_topics(path, topics, topic);
   for (const auto& [id, c] : channels_)
     if (is_chosen(c.topic)) wanted_.insert(id);
@@ -90,7 +95,10 @@ void McapMessages::learn(const Record& record) {
   Fields f(file_, record.bytes);
   if (record.kind == op::kSchema) {
     const auto id = static_cast<std::uint16_t>(f.number(2));
-    schemas_[id] = f.text();
+    Schema& s = schemas_[id];
+    s.type = f.text(), s.language = f.text();
+    const std::string_view definition = f.text();
+    s.definition = definition.size() <= kMost ? definition : "";
   } else if (record.kind == op::kChannel) {
     const auto id = static_cast<std::uint16_t>(f.number(2));
     Channel& c = channels_[id];

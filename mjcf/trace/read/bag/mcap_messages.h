@@ -15,7 +15,7 @@
 
 namespace tauext {
 
-/// Those of topics of sensor_msgs/msg/JointState. Chunks may be compressed by zstd or lz4, and
+/// Those of some topics. Chunks may be compressed by zstd or lz4, and
 /// have up to 256 MB; a file that ends too early is read up to its last whole record.
 class McapMessages final : public BagMessages {
  public:
@@ -31,6 +31,9 @@ class McapMessages final : public BagMessages {
     std::uint8_t kind = 0;
     std::string_view bytes;  // until the next one is read
     std::uint64_t size = 0;  // [bytes] even so
+  };
+  struct Schema {
+    std::string type, language, definition;  // as BagTopic has them
   };
   struct Channel {
     std::uint16_t schema = 0;
@@ -48,7 +51,7 @@ class McapMessages final : public BagMessages {
   bool cut_off_ = false;
   std::string record_, chunk_;
   std::size_t chunk_at_ = 0;
-  std::map<std::uint16_t, std::string> schemas_;  // names of types
+  std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
   std::set<std::uint16_t> wanted_;  // channels of the topics
 };

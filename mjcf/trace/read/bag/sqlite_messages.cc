@@ -107,11 +107,16 @@ std::string_view bytes_in(sqlite3_stmt* statement, int column) {
 }
 
 // tables alone: a view or a virtual table may compute for ever
-void refuse_other_schemas(sqlite3* db, const std::string& path) {
+bool has_table(sqlite3* db, const std::string& path, const char* name) {
   const Statement s = prepare(db, path,
-                              "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND "
-                              "rootpage > 0 AND name IN ('topics', 'messages')");
-  if (step(db, path, s.get()) && sqlite3_column_int(s.get(), 0) == 2) return;
+                              fmt::format("SELECT 1 FROM sqlite_master WHERE type = 'table' AND "
+                                          "rootpage > 0 AND name = '{}'",
+                                          name));
+  return step(db, path, s.get());
+}
+
+void refuse_other_schemas(sqlite3* db, const std::string& path) {
+  if (has_table(db, path, "topics") && has_table(db, path, "messages")) return;
   throw std::runtime_error(
       fmt::format("{}: is no bag of ROS 2: it lacks the tables topics and messages", path));
 }
@@ -134,6 +139,7 @@ class SqliteMessages final : public BagMessages {
     sqlite3* const db = connection_.get();
     refuse_other_schemas(db, path);
     set_topics(path, topics_in(db, path), wanted);
+    if (has_table(db, path, "message_definitions")) find_definition();
     // length() of a BLOB does not read it
     messages_ = prepare(
         db, path,
@@ -141,8 +147,7 @@ class SqliteMessages final : public BagMessages {
                     "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE instr(',' || ?1 "
                     "|| ',', ',' || name || ',') > 0) ORDER BY timestamp, id",
                     kMost));
-    sqlite3_bind_text(messages_.get(), 1, topic().data(), static_cast<int>(topic().size()),
-                      SQLITE_STATIC);
+    bind(messages_, topic().name);
   }
 
   bool next(BagMessage& message) override {
@@ -164,6 +169,23 @@ class SqliteMessages final : public BagMessages {
   }
 
  private:
+  // which must outlive the statement
+  static void bind(const Statement& s, const std::string& text) {
+    sqlite3_bind_text(s.get(), 1, text.data(), static_cast<int>(text.size()), SQLITE_STATIC);
+  }
+
+  void find_definition() {
+    sqlite3* const db = connection_.get();
+    const Statement s = prepare(db, path(),
+                                fmt::format("SELECT encoding, encoded_message_definition FROM "
+                                            "message_definitions WHERE topic_type = ?1 AND "
+                                            "length(encoded_message_definition) BETWEEN 1 AND {}",
+                                            kMost));
+    bind(s, topic().type);
+    if (step(db, path(), s.get()))
+      set_definition(std::string(bytes_in(s.get(), 0)), std::string(bytes_in(s.get(), 1)));
+  }
+
   Connection connection_;
   Statement messages_{nullptr, sqlite3_finalize};
   bool at_end_ = false;

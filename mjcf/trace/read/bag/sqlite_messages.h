@@ -10,7 +10,7 @@
 
 namespace tauext {
 
-/// @param topic "": the only one of sensor_msgs/msg/JointState
+/// @param topic "": as BagRows chooses it
 /// @throws std::runtime_error as BagRows does
 std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path, const std::string& topic);
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "mjcf/trace/read/bag/joint_state.h"
+#include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/recording.h"
 #include "mjcf/trace/read/test/recording.h"
 #include "mjcf/trace/read/test/some_bag.h"
@@ -288,17 +288,19 @@ TEST_F(Bag, ATopicIsChosenByItsName) {
   }
   const std::string file = path("x.db3");
   EXPECT_EQ(rows_of(BagRows(file, "/right"))[0][1], 2);
-  EXPECT_EQ(
-      error_of_opening(file),
-      "choose one of its topics of joint states, or several apart by commas (--channel): /left, "
-      "/right");
-  EXPECT_EQ(error_of_opening(file, "/tf"),
-            "has no joint states on topic /tf; known: /left, /right");
+  EXPECT_EQ(error_of_opening(file),
+            "choose one of its topics, or several apart by commas (--channel): /left "
+            "(sensor_msgs/msg/JointState), /right (sensor_msgs/JointState)");
+  EXPECT_EQ(error_of_opening(file, "/middle"),
+            "has no topic /middle; it has /left (sensor_msgs/msg/JointState), /right "
+            "(sensor_msgs/JointState), /tf (tf2_msgs/msg/TFMessage)");
 }
 
 TEST_F(Bag, ErrorsNameTheRemedy) {
-  EXPECT_EQ(error_of_opening(with_topic("/tf", "tf2_msgs/msg/TFMessage", "cdr", {})),
-            "has no topic of sensor_msgs/msg/JointState; it has /tf (tf2_msgs/msg/TFMessage)");
+  EXPECT_EQ(
+      error_of_opening(with_topic("/tf", "tf2_msgs/msg/TFMessage", "cdr", {})),
+      "has no topic of sensor_msgs/msg/JointState, or of another type that a preset reads; it "
+      "has /tf (tf2_msgs/msg/TFMessage)");
   EXPECT_EQ(
       error_of_opening(with_topic("/a", "sensor_msgs/msg/JointState", "fory", {})),
       "topic /a is serialized as 'fory', and not as 'cdr': write it anew by ros2 bag convert");
@@ -383,12 +385,13 @@ TEST_F(Bag, ADamagedFileEndsInAnError) {
 
 TEST_F(Bag, AMessageIsRefusedWhereverItEnds) {
   for (const std::string& whole : {kAll, kSome}) {
-    JointState state;
-    EXPECT_EQ(read_joint_state(whole, state), nullptr);
-    EXPECT_EQ(read_joint_state(whole + std::string(3, '\0'), state), nullptr);
+    const MessageType type("sensor_msgs/msg/JointState");
+    MessageNumbers to;
+    EXPECT_EQ(type.read(whole, to), nullptr);
+    EXPECT_EQ(type.read(whole + std::string(3, '\0'), to), nullptr);
     for (std::size_t n = 0; n < whole.size(); ++n) {
       const std::vector<char> exact(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
-      EXPECT_STREQ(read_joint_state({exact.data(), n}, state), "it is cut off") << n;
+      EXPECT_STREQ(type.read({exact.data(), n}, to), "it is cut off") << n;
     }
   }
 }
