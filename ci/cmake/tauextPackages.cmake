@@ -28,16 +28,25 @@ function(tauext_package component name)
   install(FILES ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/deb/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
   install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
 endfunction()
-# what no program links, so that dpkg-shlibdeps does not see it: MuJoCo and what draws pictures, which are loaded, and the Python that the module is for
+# what no program links, so that dpkg-shlibdeps does not see it: MuJoCo, libmatio and what draws pictures, which are loaded, and the Python that the
+# module is for
+function(tauext_owner package library)
+  file(REAL_PATH ${library} library)
+  execute_process(COMMAND dpkg-query -S ${library} OUTPUT_VARIABLE owner ERROR_QUIET)
+  string(REGEX MATCH "^[^:]+" owner "${owner}")
+  set(${package} ${owner} PARENT_SCOPE)
+endfunction()
 get_target_property(mujoco MuJoCo::MuJoCo IMPORTED_LOCATION)
-file(REAL_PATH ${mujoco} mujoco)
-execute_process(COMMAND dpkg-query -S ${mujoco} OUTPUT_VARIABLE owner ERROR_QUIET)
-string(REGEX MATCH "^[^:]+" mujoco "${owner}")
+tauext_owner(mujoco ${mujoco})
+set(matio "")
+if(MATIO_LIBRARY)
+  tauext_owner(matio ${MATIO_LIBRARY})
+endif()
 if(TARGET tauext_python)
   execute_process(COMMAND ${Python_EXECUTABLE} -c "import sys; print('python3 (>= 3.%d);python3 (<< 3.%d)' % (sys.version_info[1], sys.version_info[1] + 1))"
                   OUTPUT_VARIABLE python OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 endif()
-tauext_package(programs tauext DEPENDS ${mujoco} libgl1-mesa-dri RECOMMENDS bash-completion SAYS
+tauext_package(programs tauext DEPENDS ${mujoco} libgl1-mesa-dri RECOMMENDS bash-completion ${matio} SAYS
   "Estimators of external joint torque of robot arms, compared"
   "Scores and times estimators and collision detectors against the exact truth of"
   "a simulation, replays recordings, tunes, shows estimates live, and gates CI.")

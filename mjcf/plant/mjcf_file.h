@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "mjcf/import/confined.h"
 #include "mjcf/import/mjcf_text.h"
 #include "mjcf/mujoco/handles.h"
+#include "mjcf/trace/child/confined.h"
 
 namespace tauext {
 

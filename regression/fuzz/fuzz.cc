@@ -83,7 +83,7 @@ void demand_trace(const Trace& t, bool finite) {
   }
 }
 
-// CSV, .npy, .npz or a bag, as it begins
+// CSV, .npy, .npz, .mat or a bag, as it begins
 void recording(Bytes input) {
   const std::string path = file_of(input);
   refused_or(path, [&] {
@@ -290,9 +290,10 @@ void mjcf(Bytes input) {
 }
 
 const std::map<std::string_view, void (*)(Bytes)> kTargets{
-    {"csv", recording},       {"npy", recording},     {"bag", bag},           {"map", map},
-    {"joined", joined},       {"contacts", contacts}, {"log", log},           {"wire", wire},
-    {"datagrams", datagrams}, {"json", json},         {"baseline", baseline}, {"mjcf", mjcf}};
+    {"csv", recording}, {"npy", recording},       {"bag", bag},           {"mat", recording},
+    {"map", map},       {"joined", joined},       {"contacts", contacts}, {"log", log},
+    {"wire", wire},     {"datagrams", datagrams}, {"json", json},         {"baseline", baseline},
+    {"mjcf", mjcf}};
 
 void (*target)(Bytes) = nullptr;
 

@@ -21,6 +21,7 @@
 #include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/column_map_file.h"
 #include "mjcf/trace/read/joined_rows.h"
+#include "mjcf/trace/read/mat/mat_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
 #include "mjcf/trace/read/sample_layout.h"
 #include "mjcf/trace/read/text/csv_rows.h"
@@ -48,10 +49,8 @@ struct UnsupportedFormat {
 };
 constexpr UnsupportedFormat kUnsupported[] = {
     {"#ROSBAG", "a bag of ROS 1", "rosbags-convert --src {0} --dst new_bag (pip install rosbags)"},
-    {"\x89HDF", "HDF5, as MATLAB's v7.3 is",
+    {"\x89HDF", "HDF5",
      "in Python, f = h5py.File('{0}') and numpy.savez('run.npz', t=f['t'], q=f['q'], ..)"},
-    {"MATLAB 5.0", "MATLAB's .mat",
-     "in Python, scipy.io.loadmat('{0}') and numpy.savez('run.npz', t=.., q=.., ..)"},
     {"PAR1", "Parquet", "in Python, pandas.read_parquet('{0}').to_csv('run.csv', index=False)"},
     {"%PDF", "a PDF", "export a table as CSV"},
     {"\xD0\xCF\x11\xE0", "a workbook of old Excel", "save the sheet as CSV"},
@@ -79,7 +78,7 @@ void refuse_binary(const std::string& path, const std::string& begin) {
   throw std::runtime_error(
       path +
       ": unknown format of recording; known: CSV, also as .gz, .xz, .zst, .bz2 "
-      "or .lz4, .npy, .npz, .db3 and .mcap (ROS 2) or LCM");
+      "or .lz4, .npy, .npz, .mat, .db3 and .mcap (ROS 2) or LCM");
 }
 
 // of a bag's folder the file in it
@@ -130,10 +129,11 @@ std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOpt
   const std::string begin = magic_of(path);
   refuse_unsupported(path, begin);
   if (begins_as_arrays(begin)) return std::make_unique<NpyRows>(path);
+  if (begins_as_mat(begin)) return std::make_unique<MatRows>(path);
   if (is_compressed(begin)) {
     std::string inside(512, '\0');
     inside.resize(UnpackedFile(path).read(inside.data(), inside.size()));
-    if (begins_as_bag(inside) || begins_as_arrays(inside))
+    if (begins_as_bag(inside) || begins_as_arrays(inside) || begins_as_mat(inside))
       throw std::runtime_error(path + ": only text is read from compressed files: unpack it first");
     refuse_unsupported(path, inside);
     refuse_binary(path, inside);

@@ -75,7 +75,6 @@ TEST_F(Unpacked, WhatIsNotReadIsNamedWithARemedy) {
   for (const auto& [bytes, words] : std::vector<std::pair<std::string, std::string>>{
            {"#ROSBAG V2.0\n", "a bag of ROS 1, which is not read: rosbags-convert --src "},
            {"\x89HDF\r\n\x1a\n", "h5py"},
-           {"MATLAB 5.0 MAT-file, Platform: GLNXA64", "scipy.io.loadmat"},
            {"PAR1\x15\x04", "pandas.read_parquet"},
            {"PK\x03\x04\x14\0\x06\0\x08\0\0\0!\0[Content_Types].xml"s, "a workbook of Excel"},
            {"\xd0\xcf\x11\xe0", "save the sheet as CSV"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/import/confined.h"
+#include "mjcf/trace/child/confined.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
