@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +18,7 @@
 #include "mjcf/trace/read/bag/bag_messages.h"
 #include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/bag/message_type.h"
+#include "mjcf/trace/read/bag/parts.h"
 #include "mjcf/trace/read/column_map_file.h"
 #include "mjcf/trace/read/joined_rows.h"
 #include "mjcf/trace/read/mat/mat_rows.h"
@@ -81,30 +81,9 @@ void refuse_binary(const std::string& path, const std::string& begin) {
       "or .lz4, .npy, .npz, .mat, .db3 and .mcap (ROS 2) or LCM");
 }
 
-// of a bag's folder the file in it
-std::string file_in(const std::string& path) {
-  namespace fs = std::filesystem;
-  if (!fs::is_directory(path)) return path;
-  std::vector<std::string> parts;
-  for (const fs::directory_entry& e : fs::directory_iterator(path))
-    if (e.path().extension() == ".db3" || e.path().extension() == ".mcap")
-      parts.push_back(e.path().string());
-  if (parts.size() == 1) return parts[0];
-  if (parts.empty()) return path;
-  throw std::runtime_error(
-      fmt::format("{}: has {} parts of a bag: name them one by one", path, parts.size()));
-}
-
-bool begins_as_bag(std::string_view begin) {
-  return begin.starts_with("SQLite format 3") || begin.starts_with("\x89MCAP0\r\n");
-}
 bool begins_as_arrays(std::string_view begin) {
   return begin.starts_with("\x93NUMPY") || begin.starts_with("PK\x03\x04");
 }
-bool is_bag(const std::string& path) {
-  return begins_as_bag(magic_of(path));
-}
-
 // the map of a recording where nobody names one
 std::string usual_map(const std::string& path, const std::string& topic) {
   const std::string of_bag =
@@ -133,8 +112,9 @@ std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOpt
   if (is_compressed(begin)) {
     std::string inside(512, '\0');
     inside.resize(UnpackedFile(path).read(inside.data(), inside.size()));
-    if (begins_as_bag(inside) || begins_as_arrays(inside) || begins_as_mat(inside))
-      throw std::runtime_error(path + ": only text is read from compressed files: unpack it first");
+    if (begins_as_arrays(inside) || begins_as_mat(inside))
+      throw std::runtime_error(
+          path + ": only text and bags are read from compressed files: unpack it first");
     refuse_unsupported(path, inside);
     refuse_binary(path, inside);
   } else {
@@ -240,7 +220,7 @@ class Holes {
 
 struct RecordingReader::Impl {
   Impl(const std::string& file, const RecordingOptions& o)
-      : path(file_in(file)),
+      : path(file),
         joints(o.joints),
         map(column_map(!o.columns.empty() ? o.columns : usual_map(path, o.topic))),
         options{o.columns, o.topic,

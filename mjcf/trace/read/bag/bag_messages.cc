@@ -8,7 +8,6 @@
 #include <iterator>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/message_type.h"
@@ -34,21 +33,8 @@ std::vector<BagTopic> those(const std::vector<BagTopic>& topics, Fits&& fits) {
   return some;
 }
 
-// a bag may have one several times, of several writers
-std::vector<BagTopic> each_once(std::vector<BagTopic> topics) {
-  const auto key = [](const BagTopic& t) { return std::tie(t.name, t.type); };
-  std::sort(topics.begin(), topics.end(),
-            [&](const BagTopic& a, const BagTopic& b) { return key(a) < key(b); });
-  const auto same = [&](const BagTopic& a, const BagTopic& b) { return key(a) == key(b); };
-  topics.erase(std::unique(topics.begin(), topics.end(), same), topics.end());
-  return topics;
-}
-
-BagTopic choose_topic(const std::vector<BagTopic>& all, const std::string& wanted,
+BagTopic choose_topic(const std::vector<BagTopic>& topics, const std::string& wanted,
                       const std::string& path) {
-  // no topic of ROS has a comma
-  const std::vector<BagTopic> topics = each_once(
-      those(all, [](const BagTopic& t) { return t.name.find(',') == std::string::npos; }));
   const auto fail = [&](const std::string& why) {
     throw std::runtime_error(fmt::format("{}: {}", path, one_line(why)));
   };
@@ -78,32 +64,58 @@ BagTopic choose_topic(const std::vector<BagTopic>& all, const std::string& wante
   return chosen[0];
 }
 
-}  // namespace
-
-void BagMessages::set_topics(const std::string& path, const std::vector<BagTopic>& topics,
-                             const std::string& wanted) {
-  path_ = path;
+// of several the names apart by commas
+BagTopic choose_topics(const std::vector<BagTopic>& topics, const std::string& wanted,
+                       const std::string& path) {
+  BagTopic all;
   for (std::size_t at = 0, end = 0; end != wanted.npos; at = end + 1) {
     end = wanted.find(',', at);
     BagTopic topic = choose_topic(topics, wanted.substr(at, end - at), path);
     if (at == 0) {
-      topic_ = std::move(topic);
+      all = std::move(topic);
       continue;
     }
-    if (short_type_name(topic.type) != short_type_name(topic_.type))
+    if (short_type_name(topic.type) != short_type_name(all.type))
       throw std::runtime_error(
-          one_line(fmt::format("{}: topics of two types: {} ({}), {} ({})", path, topic_.name,
-                               topic_.type, topic.name, topic.type)));
-    topic_.name += "," + topic.name;
+          one_line(fmt::format("{}: topics of two types: {} ({}), {} ({})", path, all.name,
+                               all.type, topic.name, topic.type)));
+    all.name += "," + topic.name;
   }
+  return all;
 }
 
-bool BagMessages::is_chosen(std::string_view topic) const {
-  return fmt::format(",{},", topic_.name).find(fmt::format(",{},", topic)) != std::string::npos;
+}  // namespace
+
+bool BagMessages::is_chosen(const BagTopic& topic) const {
+  return short_type_name(topic.type) == short_type_name(topic_.type) &&
+         fmt::format(",{},", topic_.name).find(fmt::format(",{},", topic.name)) !=
+             std::string::npos;
 }
 
-void BagMessages::set_definition(std::string language, std::string definition) {
-  topic_.language = std::move(language), topic_.definition = std::move(definition);
+// a bag may have one several times, of several writers; no topic of ROS has a comma
+void BagMessages::add_topics(const std::vector<BagTopic>& topics) {
+  const auto key = [](const BagTopic& t) { return std::tie(t.name, t.type, t.format); };
+  const auto named =
+      those(topics, [](const BagTopic& t) { return t.name.find(',') == std::string::npos; });
+  topics_.insert(topics_.end(), named.begin(), named.end());
+  std::sort(topics_.begin(), topics_.end(),
+            [&](const BagTopic& a, const BagTopic& b) { return key(a) < key(b); });
+  const auto same = [&](const BagTopic& a, const BagTopic& b) { return key(a) == key(b); };
+  topics_.erase(std::unique(topics_.begin(), topics_.end(), same), topics_.end());
+}
+
+void BagMessages::choose(const std::string& path, const std::string& wanted) {
+  path_ = path;
+  take(choose_topics(topics_, wanted, path));
+}
+
+void BagMessages::take(const BagTopic& topic) {
+  topic_ = topic;
+  select();
+}
+
+void BagMessages::set_definition(const std::string& language, const std::string& definition) {
+  topic_.language = language, topic_.definition = definition;
 }
 
 }  // namespace tauext

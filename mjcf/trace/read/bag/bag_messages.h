@@ -24,13 +24,23 @@ struct BagTopic {
               definition = "";  ///< of the type, where the bag has it: "ros2msg", or IDL
 };
 
-/// Those of some topics of one type.
+/// Those of some topics of one type, which choose() or take() says first.
 class BagMessages {
  public:
   /// How long a message may be, and a definition.
   static constexpr std::int64_t kMost = 1 << 20;  // [bytes]
 
   virtual ~BagMessages() = default;
+
+  /// All that there are, without the definitions of their types.
+  const std::vector<BagTopic>& topics() const { return topics_; }
+  /// Chooses some of them. "": the only one of sensor_msgs/msg/JointState or, where there is none,
+  /// of the types that presets.h knows; else names apart by commas, of topics of one type.
+  /// @throws std::runtime_error naming the path, and the topics that there are
+  void choose(const std::string& path, const std::string& wanted);
+  void take(const BagTopic& topic);
+  const std::string& path() const { return path_; }  ///< of choose()
+  const BagTopic& topic() const { return topic_; }   ///< of several the names apart by commas
 
   /// @returns false at the end
   /// @throws std::runtime_error naming the path, where the file is damaged
@@ -39,21 +49,19 @@ class BagMessages {
   virtual void rewind() = 0;
   /// At the end what a reader should know; else "".
   virtual std::string note() const { return ""; }
-  const std::string& path() const { return path_; }
-  /// Of several their names apart by commas, and the type of all.
-  const BagTopic& topic() const { return topic_; }
 
  protected:
-  /// Chooses them among these. "": the only one of sensor_msgs/msg/JointState or, where there is
-  /// none, of the types that presets.h knows; else names apart by commas.
-  /// @throws std::runtime_error naming the path, and the topics that there are
-  void set_topics(const std::string& path, const std::vector<BagTopic>& topics,
-                  const std::string& wanted);
-  bool is_chosen(std::string_view topic) const;
-  void set_definition(std::string language, std::string definition);
+  /// Those that are not there yet.
+  void add_topics(const std::vector<BagTopic>& topics);
+  /// Goes to the first message of topic(), and says the definition of its type.
+  virtual void select() = 0;
+  /// Whether topic() is this one, or this one among others.
+  bool is_chosen(const BagTopic& topic) const;
+  void set_definition(const std::string& language, const std::string& definition);
 
  private:
   std::string path_;
+  std::vector<BagTopic> topics_;
   BagTopic topic_;
 };
 

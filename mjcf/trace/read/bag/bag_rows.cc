@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -16,25 +15,11 @@
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/bag_messages.h"
-#include "mjcf/trace/read/bag/mcap_messages.h"
 #include "mjcf/trace/read/bag/message_type.h"
-#include "mjcf/trace/read/bag/sqlite_messages.h"
-#include "mjcf/trace/read/numpy/byte_file.h"
+#include "mjcf/trace/read/bag/parts.h"
 
 namespace tauext {
 namespace {
-
-// of the storage that its first bytes say
-std::unique_ptr<BagMessages> open_bag(const std::string& path, const std::string& topic) {
-  if (std::filesystem::is_directory(path))
-    throw std::runtime_error(fmt::format("{}: is a folder: name the bag's file in it", path));
-  const ByteFile file(path);
-  std::string begin(std::min<std::uint64_t>(file.size(), 16), '\0');
-  file.read(0, begin.data(), begin.size());
-  if (begin.starts_with("\x89MCAP0\r\n")) return std::make_unique<McapMessages>(path, topic);
-  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(path, topic);
-  file.fail("begins as no bag of ROS 2 does (.db3, .mcap)");
-}
 
 constexpr std::size_t kMostColumns = 4096;
 

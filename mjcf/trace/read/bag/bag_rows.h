@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Recordings of ROS 2: bags of the storages sqlite3 and mcap, that is .db3 and .mcap files.
+/// Recordings of ROS 2: bags of the storages sqlite3 and mcap, that is .db3 and .mcap files,
+/// folders of them, and both of them compressed.
 #pragma once
 
 #include <cstddef>

@@ -48,7 +48,7 @@ class Fields {
 
 }  // namespace
 
-McapMessages::McapMessages(const std::string& path, const std::string& topic) : file_(path) {
+McapMessages::McapMessages(const std::string& path) : file_(path) {
   read_summary();
   rewind();
   const auto lacks_schema = [&](const auto& c) {
@@ -58,13 +58,19 @@ McapMessages::McapMessages(const std::string& path, const std::string& topic) : 
   if (channels_.empty() || std::any_of(channels_.begin(), channels_.end(), lacks_schema))
     for (Record record; next_record(record);) learn(record);
   std::vector<BagTopic> topics;
+  for (const auto& [id, c] : channels_)
+    topics.push_back({c.topic, schemas_[c.schema].type, c.encoding});
+  add_topics(topics);
+}
+
+void McapMessages::select() {
+  wanted_.clear();
   for (const auto& [id, c] : channels_) {
     const Schema& s = schemas_[c.schema];
-    topics.push_back({c.topic, s.type, c.encoding, s.language, s.definition});
+    if (!is_chosen({c.topic, s.type, c.encoding})) continue;
+    wanted_.insert(id);
+    set_definition(s.language, s.definition);
   }
-  set_topics(path, topics, topic);
-  for (const auto& [id, c] : channels_)
-    if (is_chosen(c.topic)) wanted_.insert(id);
   rewind();
 }
 

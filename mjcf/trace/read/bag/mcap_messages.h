@@ -20,11 +20,14 @@ namespace tauext {
 class McapMessages final : public BagMessages {
  public:
   /// @throws std::runtime_error as BagRows does
-  McapMessages(const std::string& path, const std::string& topic);
+  explicit McapMessages(const std::string& path);
 
   bool next(BagMessage& message) override;
   void rewind() override;
   std::string note() const override;
+
+ protected:
+  void select() override;
 
  private:
   struct Record {

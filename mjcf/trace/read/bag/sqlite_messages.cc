@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 #ifdef TAUEXT_SQLITE
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #endif
 
 #include <algorithm>
@@ -67,12 +70,46 @@ std::string uri_of(const std::string& path) {
   throw std::runtime_error(fmt::format("{}: {}", path, one_line(sqlite3_errmsg(db), 200)));
 }
 
-Connection open_database(const std::string& path) {
+// The bytes of a file that has no name, which SQLite cannot open.
+class Mapped {
+ public:
+  explicit Mapped(const std::string& path) : size_(ByteFile(path).size()) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    bytes_ = ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE, fd, 0);
+    ::close(fd);
+    if (bytes_ == MAP_FAILED) throw std::bad_alloc();
+    // no log is beside it, so its header must not ask for one: "Database File Format", 1.3.3
+    std::fill_n(static_cast<unsigned char*>(bytes_) + 18, 2, 1);
+  }
+  ~Mapped() { ::munmap(bytes_, size_); }
+  Mapped(const Mapped&) = delete;
+  Mapped& operator=(const Mapped&) = delete;
+
+  int give(sqlite3* db) const {
+    const auto size = static_cast<sqlite3_int64>(size_);
+    return sqlite3_deserialize(db, "main", static_cast<unsigned char*>(bytes_), size, size,
+                               SQLITE_DESERIALIZE_READONLY);
+  }
+
+ private:
+  std::size_t size_;
+  void* bytes_ = nullptr;
+};
+
+bool has_name(const std::string& path) {
+  struct stat file {};
+  return ::stat(path.c_str(), &file) != 0 || file.st_nlink > 0;
+}
+
+Connection open_database(const std::string& path, std::unique_ptr<Mapped>& mapped) {
   refuse_cut_off(ByteFile(path));
   refuse_unfinished(path);
+  if (!has_name(path)) mapped = std::make_unique<Mapped>(path);
   sqlite3* db = nullptr;
-  const int code =
-      sqlite3_open_v2(uri_of(path).c_str(), &db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  int code = sqlite3_open_v2(
+      mapped ? ":memory:" : uri_of(path).c_str(), &db,
+      mapped ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  if (code == SQLITE_OK && mapped) code = mapped->give(db);
   Connection connection(db, sqlite3_close);
   if (db == nullptr) throw std::bad_alloc();
   if (code != SQLITE_OK) fail_as(db, path);
@@ -134,26 +171,16 @@ std::vector<BagTopic> topics_in(sqlite3* db, const std::string& path) {
 
 class SqliteMessages final : public BagMessages {
  public:
-  SqliteMessages(const std::string& path, const std::string& wanted)
-      : connection_(open_database(path)) {
-    sqlite3* const db = connection_.get();
-    refuse_other_schemas(db, path);
-    set_topics(path, topics_in(db, path), wanted);
-    if (has_table(db, path, "message_definitions")) find_definition();
-    // length() of a BLOB does not read it
-    messages_ = prepare(
-        db, path,
-        fmt::format("SELECT timestamp, length(data), CASE WHEN length(data) <= {} THEN data END "
-                    "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE instr(',' || ?1 "
-                    "|| ',', ',' || name || ',') > 0) ORDER BY timestamp, id",
-                    kMost));
-    bind(messages_, topic().name);
+  explicit SqliteMessages(const std::string& file)
+      : file_(file), connection_(open_database(file, mapped_)) {
+    refuse_other_schemas(connection_.get(), file);
+    add_topics(topics_in(connection_.get(), file));
   }
 
   bool next(BagMessage& message) override {
     constexpr std::int64_t kNanoseconds = 1000000000;  // [1/s]
     sqlite3_stmt* const s = messages_.get();
-    at_end_ = at_end_ || !step(connection_.get(), path(), s);
+    at_end_ = at_end_ || !step(connection_.get(), file_, s);
     if (at_end_) return false;
     const std::int64_t t = sqlite3_column_int64(s, 0), seconds = t / kNanoseconds;
     message.received =
@@ -170,22 +197,39 @@ class SqliteMessages final : public BagMessages {
 
  private:
   // which must outlive the statement
-  static void bind(const Statement& s, const std::string& text) {
-    sqlite3_bind_text(s.get(), 1, text.data(), static_cast<int>(text.size()), SQLITE_STATIC);
+  static void bind(const Statement& s, int at, const std::string& text) {
+    sqlite3_bind_text(s.get(), at, text.data(), static_cast<int>(text.size()), SQLITE_STATIC);
+  }
+
+  void select() override {
+    sqlite3* const db = connection_.get();
+    // length() of a BLOB does not read it
+    messages_ = prepare(
+        db, file_,
+        fmt::format("SELECT timestamp, length(data), CASE WHEN length(data) <= {} THEN data END "
+                    "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE instr(',' || ?1 "
+                    "|| ',', ',' || name || ',') > 0 AND replace(type, '/msg/', '/') = "
+                    "replace(?2, '/msg/', '/')) ORDER BY timestamp, id",
+                    kMost));
+    bind(messages_, 1, topic().name), bind(messages_, 2, topic().type);
+    at_end_ = false;
+    if (has_table(db, file_, "message_definitions")) find_definition();
   }
 
   void find_definition() {
     sqlite3* const db = connection_.get();
-    const Statement s = prepare(db, path(),
+    const Statement s = prepare(db, file_,
                                 fmt::format("SELECT encoding, encoded_message_definition FROM "
                                             "message_definitions WHERE topic_type = ?1 AND "
                                             "length(encoded_message_definition) BETWEEN 1 AND {}",
                                             kMost));
-    bind(s, topic().type);
-    if (step(db, path(), s.get()))
+    bind(s, 1, topic().type);
+    if (step(db, file_, s.get()))
       set_definition(std::string(bytes_in(s.get(), 0)), std::string(bytes_in(s.get(), 1)));
   }
 
+  std::string file_;
+  std::unique_ptr<Mapped> mapped_;  // which must outlive the connection
   Connection connection_;
   Statement messages_{nullptr, sqlite3_finalize};
   bool at_end_ = false;
@@ -193,13 +237,13 @@ class SqliteMessages final : public BagMessages {
 
 }  // namespace
 
-std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path, const std::string& topic) {
-  return std::make_unique<SqliteMessages>(path, topic);
+std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path) {
+  return std::make_unique<SqliteMessages>(path);
 }
 
 #else
 
-std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path, const std::string&) {
+std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path) {
   throw std::runtime_error(
       path +
       ": bags of the storage sqlite3 are left out of this build: install Debian's libsqlite3-dev, "

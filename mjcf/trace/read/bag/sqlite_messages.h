@@ -10,8 +10,7 @@
 
 namespace tauext {
 
-/// @param topic "": as BagRows chooses it
 /// @throws std::runtime_error as BagRows does
-std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path, const std::string& topic);
+std::unique_ptr<BagMessages> open_sqlite_bag(const std::string& path);
 
 }  // namespace tauext

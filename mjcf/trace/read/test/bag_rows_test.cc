@@ -308,7 +308,6 @@ TEST_F(Bag, ErrorsNameTheRemedy) {
             "no message on topic /joint_states can be read; of the first: there is none");
   EXPECT_EQ(error_of_opening(put("t,q1\n", "x.csv")),
             "begins as no bag of ROS 2 does (.db3, .mcap)");
-  EXPECT_EQ(error_of_opening(folder_.string()), "is a folder: name the bag's file in it");
   EXPECT_EQ(error_of_opening(path("none")), "No such file or directory");
   const std::string file = with({kAll}), wal = put("x", "x.db3-wal");
   EXPECT_EQ(error_of_opening(file),
