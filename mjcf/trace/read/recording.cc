@@ -180,8 +180,8 @@ class Holes {
       all += fmt::format("{}{} rows (line {}{}) have no {}", all.empty() ? "" : ", ", kind.rows,
                          fmt::join(kind.lines, ", "), kind.rows > 3 ? " .." : "", listed(missing));
       if (&kind == &kinds_.begin()->second) in_none = missing;
-      std::erase_if(in_none, [&](std::size_t i) {
-        return !std::binary_search(missing.begin(), missing.end(), i);
+      std::erase_if(in_none, [&lacks = missing](std::size_t i) {
+        return !std::binary_search(lacks.begin(), lacks.end(), i);
       });
     }
     all = one_line(all, 700);
