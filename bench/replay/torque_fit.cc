@@ -27,6 +27,7 @@ constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one p
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
 constexpr double kFullSlip = 0.01;         // [rad/s] at which dry friction acts
 constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
+constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
 constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
 constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
@@ -199,12 +200,12 @@ TorqueFit::Windows TorqueFit::thinned() const {
 // those in which a joint carries something, and hardly more than that
 TorqueFit::Windows TorqueFit::slow(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
-  const bool has_dry = arm_.joints[leader].dry > 0;
+  const double stiction = kStiction * arm_.joints[leader].dry;
   Windows some;
   for (const WindowMean& w : windows_) {
     const double g = std::abs(w.gravity[j]);
-    // at rest dry friction may take anything
-    if (has_dry && std::abs(w.direction[j]) < kMoving) continue;
+    // at rest dry friction may take as much
+    if (std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction) continue;
     if (g > kMinTorqueShare * arm_.usual_torque[j] && std::abs(w.model[j] - w.gravity[j]) < 0.2 * g)
       some.push_back(&w);
   }
@@ -371,94 +372,59 @@ TorqueFit::Cause TorqueFit::by_sign() const {
           varied};
 }
 
-// what joints leave of their torques, and what they would if their columns held something else
-class TorqueFit::Columns {
- public:
-  Columns(const Windows& windows, const Eigen::VectorXd& usual_torque)
-      : windows_(windows), usual_(usual_torque) {
-    for (int j = 0; j < usual_.size(); ++j) {
-      const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
-      before_.push_back(misfit(windows_, j, left) / square(j));
-      // with a load, too, like the offset of a sensor
-      least_.push_back(std::min(before_.back(), misfit(windows_, j, left, true) / square(j)));
-      power_.push_back(mean_square(windows_, [j](const WindowMean& w) { return w.model[j]; }) /
-                       square(j));
-    }
-  }
-
-  // whether some joints leave less, and least until now, if tau of j is sign times that of
-  // column(j), which moves as moves(j), and the model's torque is model(window, its number, j)
-  template <class Column, class Moves, class Of>
-  bool is_best(const std::vector<int>& joints, double worth, double sign, Column column,
-               Moves moves, Of model) {
-    double was = 0, could_be = 0, all = 0, misses = 0;
-    for (const int j : joints) {
-      std::size_t k = 0;
-      const auto left = [&](const WindowMean& w) {
-        return sign * w.tau[column(j)] - model(w, k++, j);
-      };
-      misses += misfit(windows_, moves(j), left) / square(j);
-      const auto at = static_cast<std::size_t>(j);
-      was += before_[at], could_be += least_[at], all += power_[at];
-    }
-    if (!(was > worth * all) || !(misses < ratio_ * could_be)) return false;
-    ratio_ = misses / could_be;
-    return true;
-  }
-
- private:
-  double square(int j) const { return usual_[j] * usual_[j]; }
-
-  const Windows& windows_;
-  const Eigen::VectorXd& usual_;
-  std::vector<double> before_, least_, power_;
-  double ratio_ = kMaxRatio;
-};
-
-// of one joint or of two, whose misfits alone are compared
-std::string TorqueFit::by_columns() const {
+// two joints in each other's columns, tau alone or all of them
+std::string TorqueFit::by_order() const {
   const Windows windows = thinned();
-  Columns columns(windows, arm_.usual_torque);
-  std::string best;
-  const auto itself = [](int j) { return j; };
-  const auto as_read = [](const WindowMean& w, std::size_t, int j) { return w.model[j]; };
-  // the model's motion is that of the wrong joints, so only gravity is compared
-  std::vector<VectorN> gravity(windows.size());
-  const auto at_pose = [&](auto&& change) {
-    for (std::size_t k = 0; k < windows.size(); ++k) {
-      VectorN q = windows[k]->q;
-      change(q);
-      gravity[k] = model_.gravity(q);
+  // of residual(window, number of the window, joint), over all joints, by their size; moves(joint)
+  // is the one whose motion is that joint's
+  const auto missed_by = [&](auto&& moves, auto&& residual, bool load = false) {
+    double sum = 0;
+    for (int j = 0; j < n_; ++j) {
+      std::size_t k = 0;
+      sum +=
+          misfit(
+              windows, moves(j), [&](const WindowMean& w) { return residual(w, k++, j); }, load) /
+          std::pow(arm_.usual_torque[j], 2);
     }
-    return [&gravity](const WindowMean&, std::size_t k, int j) { return gravity[k][j]; };
+    return sum;
   };
-  constexpr const char* kExchanged =
-      "{} of joints {} and {} fit the model if they are exchanged: name the columns in a map "
-      "(--columns), or set its `order`";
+  const auto itself = [](int j) { return j; };
+  const auto left = [](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; };
+  const double missed = missed_by(itself, left);
+  const double with_loads = missed_by(itself, left, true);  // like the offset of a sensor
+  double least = kMaxRatio * std::min(missed, with_loads);
+  std::string best;
+  std::vector<VectorN> gravity(windows.size());
   for (int a = 0; a < n_; ++a) {
     for (int b = a + 1; b < n_; ++b) {
       const auto other = [a, b](int j) { return j == a ? b : j == b ? a : j; };
-      if (columns.is_best({a, b}, kMinOrderMisfit, 1, other, itself, as_read))
-        best = fmt::format(kExchanged, "tau", a + 1, b + 1);
-      if (columns.is_best({a, b}, kMinOrderMisfit, 1, other, other,
-                          at_pose([&](VectorN& q) { std::swap(q[a], q[b]); })))
-        best = fmt::format(kExchanged, "q, qd and tau", a + 1, b + 1);
-    }
-    if (columns.is_best({a}, kMinMisfit, -1, itself, itself,
-                        at_pose([&](VectorN& q) { q[a] = -q[a]; })))
-      best = fmt::format(
-          "q, qd and tau of joint {} fit the model if it turns the other way: set `sign` of [q], "
-          "[qd] and [tau] in a map (--columns)",
-          a + 1);
-    for (const int degrees : {90, -90, 180})
-      if (columns.is_best({a}, kMinMisfit, 1, itself, itself,
-                          at_pose([&](VectorN& q) { q[a] += degrees * M_PI / 180; })))
+      const auto consider = [&](double misses, const char* what) {
+        if (!(misses < least)) return;
+        least = misses;
         best = fmt::format(
-            "tau of joint {0} fits the model if q{0} is {1} degrees more: is its zero that of the "
-            "robot's file?",
-            a + 1, degrees);
+            "{} of joints {} and {} fit the model if they are exchanged: name the columns in a map "
+            "(--columns), or set its `order`",
+            what, a + 1, b + 1);
+      };
+      consider(missed_by(itself, [&](const WindowMean& w, std::size_t,
+                                     int j) { return w.tau[other(j)] - w.model[j]; }),
+               "tau");
+      // the model's motion is that of the wrong joints, so only gravity is compared
+      for (std::size_t k = 0; k < windows.size(); ++k) {
+        VectorN q = windows[k]->q;
+        std::swap(q[a], q[b]);
+        gravity[k] = model_.gravity(q);
+      }
+      consider(missed_by(other, [&](const WindowMean& w, std::size_t k,
+                                    int j) { return w.tau[other(j)] - gravity[k][j]; }),
+               "q, qd and tau");
+    }
   }
-  return best;
+  double power = 0;
+  for (int j = 0; j < n_; ++j)
+    power += mean_square(windows, [j](const WindowMean& w) { return w.model[j]; }) /
+             std::pow(arm_.usual_torque[j], 2);
+  return missed > kMinOrderMisfit * power ? best : "";
 }
 
 bool TorqueFit::is_long_enough() const {
@@ -468,7 +434,7 @@ bool TorqueFit::is_long_enough() const {
 std::string TorqueFit::contradiction() const {
   if (!is_long_enough()) return "";
   if (std::string why = by_rest(); !why.empty()) return why;
-  if (std::string why = by_columns(); !why.empty()) return why;
+  if (std::string why = by_order(); !why.empty()) return why;
   if (Cause cause = by_gravity(); cause.varied) return cause.words;
   if (Cause cause = by_sign(); cause.varied) return cause.words;
   return "";

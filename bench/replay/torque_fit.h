@@ -72,7 +72,6 @@ class TorqueFit {
     double without_model = 0;    // that is measured
     double by_load = 0;          // that a cause may leave, or else it might be a load
   };
-  class Columns;
   struct Cause {
     std::string words;    // "": none
     bool varied = false;  // no constant load explains it
@@ -88,7 +87,7 @@ class TorqueFit {
   static std::string by_unit(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
   Cause by_sign() const;
-  std::string by_columns() const;
+  std::string by_order() const;
   std::string by_rest() const;
 
   ArmTree arm_;
