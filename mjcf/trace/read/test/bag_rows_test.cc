@@ -119,7 +119,8 @@ TEST_F(Bag, SeveralTopicsAreReadAsOneAndJoined) {
             }).find("join = 0.005 in a map of columns"),
             std::string::npos);
   EXPECT_EQ(error_of_opening(path("x.db3"), "/left,/none"),
-            "has no joint states on topic /none; known: /left, /right, /grip");
+            "has no topic /none; it has /grip (sensor_msgs/msg/JointState), /left "
+            "(sensor_msgs/msg/JointState), /right (sensor_msgs/msg/JointState)");
 }
 
 TEST_F(Bag, TheHighByteMayBeTheFirst) {

@@ -113,7 +113,8 @@ TEST_F(Messages, ATopicMustBeNamedWhereSeveralFit) {
   SkippedRows skipped;
   EXPECT_EQ(error_of([&] { read_topic("", skipped); }),
             kStates +
-                ": choose one of its topics: /franka (franka_msgs/msg/FrankaRobotState), "
+                ": choose one of its topics, or several apart by commas (--channel): "
+                "/franka (franka_msgs/msg/FrankaRobotState), "
                 "/franka_old (franka_msgs/msg/FrankaState), /lbr (lbr_fri_idl/msg/LBRState)");
 }
 

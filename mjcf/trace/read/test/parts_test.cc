@@ -76,7 +76,8 @@ TEST_F(Parts, WithoutMetadataAreInTheOrderOfTheirNumbers) {
   const std::string file = path("bag");
   EXPECT_EQ(error_of([&] { BagRows x(file); }),
             file +
-                ": choose one of its topics: /joint_states (sensor_msgs/msg/JointState), "
+                ": choose one of its topics, or several apart by commas (--channel): /joint_states "
+                "(sensor_msgs/msg/JointState), "
                 "/others (sensor_msgs/msg/JointState)");
   std::vector<double> all;
   for (const auto& row : rows_of(BagRows(file, "/joint_states"))) all.push_back(row[0]);
