@@ -64,8 +64,7 @@ void add_flags(CLI::App& app, Flags& f) {
       ->allow_extra_args(false)
       ->type_name("NAME,..");
   app.add_flag("--apply", f.apply,
-               "write the torque scales that are seen into the robot file, which then multiplies "
-               "the torques of logs by them, and fit the rest to these");
+               "write torque scales into the file, which then multiplies logs by them");
   app.add_option("--window", f.windows.length, "length of a difference and of the means [s]")
       ->capture_default_str();
   app.add_option("--min_speed", f.windows.min_speed,

@@ -55,6 +55,7 @@ std::shared_ptr<const ContactsFile> contacts_of(const std::string& path,
 /// The labels of one recording, sample by sample.
 class ContactLabels {
  public:
+  /// Those of that log.
   ContactLabels(const ContactsFile& file, const std::string& log);
 
   /// The label at that time [s], which is the next one: as Trace::contact has it.

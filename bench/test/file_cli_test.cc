@@ -107,8 +107,9 @@ TEST_F(FilePrograms, RecordsAndReplaysIt) {
       run("tauext-bench --commands arm7/contact/mo2+pan_tompkins --robot " + kArm7);
   EXPECT_TRUE(commands.says("arm7.xml:lock=finger.*' --scenario contact")) << commands.text;
   EXPECT_TRUE(commands.says("--stop mo2+pan_tompkins")) << commands.text;
-  const std::string line = commands.text.substr(0, commands.text.find('\n'));
-  EXPECT_EQ(run(line.substr(line.find("tauext-record"))).code, 0);
+  const std::size_t begin = commands.text.find("tauext-record ");
+  ASSERT_NE(begin, std::string::npos) << commands.text;
+  EXPECT_EQ(run(commands.text.substr(begin, commands.text.find('\n', begin) - begin)).code, 0);
 }
 
 TEST_F(FilePrograms, SayOnceWhatTheImportChanged) {

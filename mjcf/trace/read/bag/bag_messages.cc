@@ -42,7 +42,7 @@ BagTopic choose_topic(const std::vector<BagTopic>& topics, const std::string& wa
   if (!wanted.empty() && chosen.empty())
     fail(fmt::format("has no topic {}; it has {}", wanted, listed(topics, true)));
   if (chosen.empty())
-    chosen = those(topics, [](const BagTopic& t) { return MessageType::is_joint_state(t.type); });
+    chosen = those(topics, [](const BagTopic& t) { return RosType::is_joint_state(t.type); });
   if (chosen.empty())
     chosen = those(topics, [](const BagTopic& t) {
       return !preset_of_messages(short_type_name(t.type)).empty();

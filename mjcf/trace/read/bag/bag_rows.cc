@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kMostColumns = 4096;
 
 // nullptr, or why not
-const char* read_message(const MessageType& type, const BagMessage& message, MessageNumbers& to) {
+const char* read_message(const RosType& type, const BagMessage& message, MessageNumbers& to) {
   if (message.size > BagMessages::kMost) return "it is longer than 1 MB";
   return type.read(message.bytes, to);
 }
@@ -62,7 +62,7 @@ void BagRows::read_type() {
         one_line(fmt::format("{}: topic {}, {}: {}", messages_->path(), printable_name(t.name),
                              printable_name(t.type), why)));
   };
-  if (!MessageType::is_joint_state(t.type)) {
+  if (!RosType::is_joint_state(t.type)) {
     if (t.definition.empty())
       fail(
           "the bag has no definition of its type, as those of ROS 2 Iron and later have: where "
@@ -72,7 +72,7 @@ void BagRows::read_type() {
                        printable_name(t.language)));
   }
   try {
-    type_ = std::make_unique<MessageType>(t.type, t.definition);
+    type_ = std::make_unique<RosType>(t.type, t.definition);
   } catch (const std::runtime_error& e) {
     fail(e.what());
   }

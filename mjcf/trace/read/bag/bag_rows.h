@@ -15,7 +15,7 @@
 namespace tauext {
 
 class BagMessages;
-class MessageType;
+class RosType;
 struct BagTopic;
 struct MessageField;
 struct MessageNumbers;
@@ -29,7 +29,7 @@ BagTopic topic_of_bag(const std::string& path, const std::string& topic);
 /// The first column is "t" [s], the stamp of the header or, where there is none or it is 0
 /// throughout, the time at which the message was recorded. Then follow the numbers of the message
 /// by their paths in it: "tau", "wrench.force.x"; of an array "q[0]", "q[1]", "motor[0].q". Arrays
-/// that names of joints stand beside (MessageType) have these in the place of numbers:
+/// that names of joints stand beside (RosType) have these in the place of numbers:
 /// "effort.NAME", of each joint of the robot in its order or, where nobody says what these are, of
 /// each that the first good message names and in its order. So a sensor_msgs/msg/JointState is
 /// "position.NAME" [rad], "velocity.NAME" [rad/s] and "effort.NAME" [N m]. Where the messages have
@@ -77,7 +77,7 @@ class BagRows : public RowSource {
   void note_strangers(SkippedRows& skipped);
 
   std::unique_ptr<BagMessages> messages_;
-  std::unique_ptr<MessageType> type_;
+  std::unique_ptr<RosType> type_;
   int seconds_ = -1, nanoseconds_ = -1;  // the fields of the header's stamp
   std::vector<std::string> joints_, columns_;
   std::vector<std::string> called_;  // these joints, in the messages

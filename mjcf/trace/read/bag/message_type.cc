@@ -17,7 +17,7 @@
 namespace tauext {
 
 // a field, or the whole message
-struct MessageType::Node {
+struct RosType::Node {
   enum class Kind { kNumber, kText, kStructure };
   static constexpr std::int64_t kCounted = -1;  // the message says how many there are
 
@@ -208,7 +208,7 @@ std::string short_type_name(std::string_view type) {
 // lays out a type, with all types in it
 class MessageCompiler {
  public:
-  MessageCompiler(MessageType& to, detail::Definitions definitions)
+  MessageCompiler(RosType& to, detail::Definitions definitions)
       : to_(to), definitions_(std::move(definitions)) {}
 
   // where a field stands
@@ -219,18 +219,18 @@ class MessageCompiler {
     int names = -1;        // the list beside it, or beside what it is in
   };
 
-  MessageType::Node structure(const std::string& type, Place place) {
+  RosType::Node structure(const std::string& type, Place place) {
     const auto known = definitions_.find(type);
     if (known == definitions_.end()) fail("needs the type {}, which it does not define", type);
     if (std::find(within_.begin(), within_.end(), type) != within_.end())
       fail("has the type {} within itself", type);
     if (within_.size() == kDeepest) fail("has too many structures in {}", type);
     within_.push_back(type);
-    MessageType::Node node;
+    RosType::Node node;
     const std::vector<detail::DefinedField>& fields = known->second;
     const auto list =
         std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return is_list(f, type); });
-    std::int64_t listed = MessageType::Node::kCounted;
+    std::int64_t listed = RosType::Node::kCounted;
     if (list != fields.end() && !place.in_array) {
       place.names = static_cast<int>(to_.lists_++);
       listed = list->count;
@@ -247,7 +247,7 @@ class MessageCompiler {
   }
 
  private:
-  using Node = MessageType::Node;
+  using Node = RosType::Node;
 
   static bool is_list(const detail::DefinedField& f, const std::string& type) {
     const bool named = f.name == "joint_names" || (f.name == "name" && type == kRootOfBuiltIn);
@@ -308,7 +308,7 @@ class MessageCompiler {
     return within.substr(0, within.find('/') + 1) + type;
   }
 
-  MessageType& to_;
+  RosType& to_;
   detail::Definitions definitions_;
   std::vector<std::string> within_;
   std::size_t nodes_ = 0;
@@ -375,7 +375,7 @@ class MessageWalk {
 
 }  // namespace
 
-MessageType::MessageType(const std::string& name, std::string_view definition) {
+RosType::RosType(const std::string& name, std::string_view definition) {
   const std::string type = short_type_name(name);
   if (is_joint_state(name)) definition = kBuiltIn;
   exact_ = !is_joint_state(name);
@@ -383,13 +383,13 @@ MessageType::MessageType(const std::string& name, std::string_view definition) {
   root_ = std::make_unique<Node>(compiler.structure(type, {}));
 }
 
-MessageType::~MessageType() = default;
+RosType::~RosType() = default;
 
-bool MessageType::is_joint_state(std::string_view name) {
+bool RosType::is_joint_state(std::string_view name) {
   return short_type_name(name) == kRootOfBuiltIn;
 }
 
-const char* MessageType::read(std::string_view bytes, MessageNumbers& to) const {
+const char* RosType::read(std::string_view bytes, MessageNumbers& to) const {
   if (const char* why = objection_to_encapsulation(bytes)) return why;
   to.names.resize(lists_), to.numbers.resize(fields_.size());
   for (auto& names : to.names) names.clear();

@@ -37,14 +37,14 @@ struct MessageNumbers {
 /// Lists of joints' names are `name` of a sensor_msgs/JointState, and `joint_names`. They say whose
 /// the numbers are in the arrays beside them and in the structures beside them. Arrays in arrays,
 /// and arrays of more than 256 numbers, are no fields.
-class MessageType {
+class RosType {
  public:
   /// @param name of it, like "sensor_msgs/msg/JointState", whose definition is known
   /// @param definition the text of its .msg, and behind it that of each type that it needs, each
   /// below a line "MSG: package/Type"
   /// @throws std::runtime_error naming the type and what is wrong with its definition
-  explicit MessageType(const std::string& name, std::string_view definition = "");
-  ~MessageType();
+  explicit RosType(const std::string& name, std::string_view definition = "");
+  ~RosType();
 
   /// Whether a definition is needed.
   static bool is_joint_state(std::string_view name);

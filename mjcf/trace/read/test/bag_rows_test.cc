@@ -385,7 +385,7 @@ TEST_F(Bag, ADamagedFileEndsInAnError) {
 
 TEST_F(Bag, AMessageIsRefusedWhereverItEnds) {
   for (const std::string& whole : {kAll, kSome}) {
-    const MessageType type("sensor_msgs/msg/JointState");
+    const RosType type("sensor_msgs/msg/JointState");
     MessageNumbers to;
     EXPECT_EQ(type.read(whole, to), nullptr);
     EXPECT_EQ(type.read(whole + std::string(3, '\0'), to), nullptr);

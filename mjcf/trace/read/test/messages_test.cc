@@ -120,10 +120,10 @@ TEST_F(Messages, ATopicMustBeNamedWhereSeveralFit) {
 
 // of a type with these lines
 std::string error_of_type(const std::string& definition) {
-  return error_of([&] { MessageType("a/msg/A", definition); });
+  return error_of([&] { RosType("a/msg/A", definition); });
 }
 
-TEST(MessageType, ADefinitionThatIsNoneIsAnErrorThatNamesIt) {
+TEST(RosType, ADefinitionThatIsNoneIsAnErrorThatNamesIt) {
   const std::string inner = "\n====\nMSG: a/B\n";
   for (const auto& [definition, error] : std::vector<std::pair<std::string, std::string>>{
            {"B b" + inner + "c/D d\n",
@@ -141,7 +141,7 @@ TEST(MessageType, ADefinitionThatIsNoneIsAnErrorThatNamesIt) {
 }
 
 // twelve structures, each of ten arrays of the next one; and thirty in each other
-TEST(MessageType, ADefinitionThatGrowsWithoutEndIsAnError) {
+TEST(RosType, ADefinitionThatGrowsWithoutEndIsAnError) {
   std::string wide, deep;
   for (int i = 0; i < 12; ++i) {
     if (i > 0) wide += fmt::format("MSG: a/B{}\n", i);
@@ -155,10 +155,10 @@ TEST(MessageType, ADefinitionThatGrowsWithoutEndIsAnError) {
             "its definition has too many structures in a/B20");
 }
 
-TEST(MessageType, ReadsAsManyBytesAsThereAre) {
-  const MessageType type("a/msg/A",
-                         "string[<=2] joint_names\nfloat64[] effort\nB[] all\nbool[2000000000] x\n"
-                         "MSG: a/B\nC c\nint16[3] e\nMSG: a/C\n");
+TEST(RosType, ReadsAsManyBytesAsThereAre) {
+  const RosType type("a/msg/A",
+                     "string[<=2] joint_names\nfloat64[] effort\nB[] all\nbool[2000000000] x\n"
+                     "MSG: a/B\nC c\nint16[3] e\nMSG: a/C\n");
   MessageNumbers to;
   const std::string begin =
       SomeMessage().texts({"a", "b"}).numbers({1, 2}).number(4000000000, 4).bytes();
@@ -170,8 +170,8 @@ TEST(MessageType, ReadsAsManyBytesAsThereAre) {
   }
 }
 
-TEST(MessageType, WhatItsDefinitionDoesNotSayIsNotBelieved) {
-  const MessageType type("a/A", "float64 x");
+TEST(RosType, WhatItsDefinitionDoesNotSayIsNotBelieved) {
+  const RosType type("a/A", "float64 x");
   MessageNumbers to;
   EXPECT_EQ(type.read(SomeMessage().number(0, 8).number(0, 8).bytes(), to), nullptr);
   EXPECT_EQ(type.read(SomeMessage().number(0, 8).number(0, 8).number(0, 1).bytes(), to),
