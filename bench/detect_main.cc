@@ -279,8 +279,7 @@ void add_names(CLI::App& app, const char* flag, std::vector<std::string>& to, co
 }
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("logs", f.logs,
-                 "to --calibrate from: free of contact (--columns, --contacts: see replay)");
+  app.add_option("logs", f.logs, "without contact, to --calibrate (--columns, --contacts: replay)");
   app.add_option("--channel", f.channel)->group("");
   app.add_option("--columns", f.columns)->group("");
   app.add_option("--contacts", f.contacts)->group("")->check(not_empty);

@@ -38,8 +38,7 @@ struct Flags {
 
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("estimates", f.files, "files: CSV, .npy or .npz; or --estimator alone");
-  app.add_option("--log", f.logs,
-                 "their log; with --estimator several (--columns, --contacts: see replay)")
+  app.add_option("--log", f.logs, "their log; alone several (--columns, --contacts: tauext-replay)")
       ->allow_extra_args(false)
       ->type_name("LOG");
   app.add_option("--channel", f.channel)->group("");
