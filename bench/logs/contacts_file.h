@@ -3,6 +3,7 @@
 /// Contacts that are labelled in a file beside the recordings.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
