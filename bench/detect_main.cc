@@ -83,13 +83,14 @@ std::vector<study::FreeRecording> free_stretches(const std::string& path, const 
     if (samples.empty()) return;
     Trace part = select_samples(trace, samples);
     samples.clear();
-    const double from = part.t.front(), to = part.t.back();
-    if (to - from < 2 * study::kScoreFrom) {
+    const double length = study::watched(part);
+    if (length < 2 * study::kScoreFrom) {
       ++left_out;
       return;
     }
-    seconds += to - from;
-    all.push_back({fmt::format("{} from {:g} to {:g} s", path, from, to), std::move(part)});
+    seconds += length;
+    all.push_back({fmt::format("{} from {:g} to {:g} s", path, part.t.front(), part.t.back()),
+                   std::move(part)});
   };
   double last = -std::numeric_limits<double>::infinity();  // [s] of a contact
   for (int k = 0; k < trace.size(); ++k) {
@@ -144,8 +145,8 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   std::FILE* const to = f.calibrate_to == "-" ? stderr : stdout;
   fmt::print(to, "trained on {}, margin {:g}\n", printable(thresholds.trained_on),
              thresholds.margin);
-  fmt::print(to, "{}",
-             held_out.empty() ? kOneRecording : fmt::format(kHeldOutLegend, table.format()));
+  if (!held_out.empty()) fmt::print(to, kHeldOutLegend, table.format());
+  if (f.logs.size() == 1) fmt::print(to, "{}", kOneRecording);
   return thresholds;
 }
 

@@ -178,9 +178,7 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
   if (!logs.front().tau_is_current) {
-    TorqueFit fit(arm, logs.front().torque_at_instants, gravity_added);
-    for (const Trace& log : logs) fit.take(log);
-    usable = fits(fit, fmt::format("{}", fmt::join(f.logs, ", "))) && usable;
+    usable = torques_fit(arm, logs, gravity_added, f.logs) && usable;
   }
   CalibrateOptions o;
   o.windows = f.windows;

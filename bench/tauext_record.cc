@@ -18,6 +18,7 @@
 #include "bench/score/parallel.h"
 #include "bench/study/detection/calibration.h"
 #include "bench/study/study_runs.h"
+#include "mjcf/plant/coordinates.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/layout_writer.h"
@@ -76,8 +77,18 @@ Supervisor supervisor_of(const Robot& robot, const std::string& stop, const Driv
   return robot.supervisor(for_drives(robot, stop.substr(0, plus), drives), stop.substr(plus + 1));
 }
 
+// with the torques that the robot's sensors say: whoever reads them multiplies them by its file's
+// torque_gain
+Trace sensed(Trace trace, const Robot& r) {
+  if (r.is_from_file())
+    trace.tau = torque_gains_of(r.model()).cwiseInverse().asDiagonal() * trace.tau;
+  return trace;
+}
+
 // in the layout that is asked for, or as its name ends
-void write(const Trace& trace, const Flags& f, const Robot& r) {
+void write(const Trace& moved, const Flags& f, const Robot& r) {
+  if (f.layout == "ur_rtde") return write_layout(moved, f.layout, r.gains(), r.joints(), f.out);
+  const Trace trace = sensed(moved, r);
   if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), r.joints(), f.out);
   if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
   if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
@@ -121,7 +132,7 @@ int record_set(const Flags& f) {
       jobs.push_back({plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)});
     const std::vector<Trace> truths = study::simulated(runs, jobs, model);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
-      const Trace trace = study::measured(truths[k], f.sensors, jobs[k]);
+      const Trace trace = sensed(study::measured(truths[k], f.sensors, jobs[k]), robot(arm));
       write_npz(fmt::format("{}/{}_{:04}.npz", f.out, kKinds[k].first, seed),
                 study::thinned(trace, f.every));
     }

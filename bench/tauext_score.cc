@@ -181,11 +181,12 @@ void say_what_is_short(const std::vector<Row>& rows) {
   constexpr double kUnknown = 300;  // [1/h] that 44 s without a false alarm do not exclude
   for (const Row& r : rows) {
     const auto high = r.score.get(Metric::kFalseAlarmsHigh);
-    if (!high || *high < kUnknown) continue;
+    const double low = r.score.get(Metric::kFalseAlarmsLow).value_or(0);
+    if (!high || *high < kUnknown || low > *high / 2) continue;
     say(
         fmt::format("{}: so little was watched that {:.3g} to {:.3g} false alarms an hour are "
                     "possible (95 %); longer recordings tell",
-                    r.entry.name(), r.score.get(Metric::kFalseAlarmsLow).value_or(0), *high));
+                    r.entry.name(), low, *high));
   }
 }
 

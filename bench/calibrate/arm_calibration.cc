@@ -169,16 +169,21 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
     try {
       JointRows r = rows_of(logs, motions, i, terms, o.windows, arm.joints[leader].v_s);
       const std::size_t needed = 5 * (terms.size() + (currents ? 1 : 0));
-      if (static_cast<std::size_t>(r.rigid.size()) < needed)
-        throw std::invalid_argument(
-            too_few(static_cast<std::size_t>(r.rigid.size()), needed, r.left_out, o.windows));
+      const auto usable = [](const JointRows& rows) {
+        return static_cast<std::size_t>(rows.rigid.size());
+      };
+      if (usable(r) < needed)
+        throw std::invalid_argument(too_few(usable(r), needed, r.left_out, o.windows));
       for (int pass = 0; pass < 3; ++pass) {  // how friction slips depends on what is found
         const double slip = slip_speed(arm, static_cast<int>(leader),
                                        calibrated_joint(r, names, currents, o.scale).terms);
         // smooth over more than it moves, dry friction would be viscous friction
         Windows faster = o.windows;
         faster.min_speed = std::max(faster.min_speed, std::min(kFullSlip * slip, r.fastest / 4));
-        r = rows_of(logs, motions, i, terms, faster, std::min(slip, r.fastest / 2));
+        const double v_s = std::min(slip, r.fastest / 2);
+        JointRows fast = rows_of(logs, motions, i, terms, faster, v_s);
+        r = usable(fast) < needed ? rows_of(logs, motions, i, terms, o.windows, v_s)
+                                  : std::move(fast);
       }
       CalibratedJoint joint = calibrated_joint(r, names, currents, o.scale);
       joint.slip = slip_speed(arm, static_cast<int>(leader), joint.terms);

@@ -56,6 +56,8 @@ Fit fit(const MatrixXd& A, const MatrixXd& Z, const VectorXd& y,
   const Eigen::Index m = A.rows(), n = A.cols();
   if (n == 0)
     return {{}, A, MatrixXd(0, 0), y, 1, y.norm() / std::sqrt(m), y.norm() / std::sqrt(m)};
+  if (m <= n)
+    throw std::invalid_argument(fmt::format("{} windows cannot tell {} terms: {}", m, n, remedy));
   const VectorXd norm = A.colwise().norm();
   Fit f;
   f.shown = &A == &Z ? A : projected(A, Z);

@@ -44,7 +44,8 @@ struct Fit {
 /// @param Z A, or instruments of its columns
 /// @param names of A's columns, which may be none
 /// @param remedy against a column that the others imitate, for the error
-/// @throws std::invalid_argument naming the column that the others imitate
+/// @throws std::invalid_argument for no more rows than columns, or naming the column that the
+/// others imitate
 Fit fit(const Eigen::MatrixXd& A, const Eigen::MatrixXd& Z, const Eigen::VectorXd& y,
         const std::vector<std::string>& names,
         const char* remedy = "record one that excites it, or leave it out (--terms)");

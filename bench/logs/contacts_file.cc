@@ -94,8 +94,8 @@ void ContactsFile::fail(long line, const std::string& what) const {
 void ContactsFile::read(const std::string& text) {
   long line = 0;
   char separator = ',';
-  std::vector<std::string> names;
-  std::ptrdiff_t at[4]{};  // where file, start, end and kind stand
+  std::vector<std::string> names, others;  // files that are not read
+  std::ptrdiff_t at[4]{};                  // where file, start, end and kind stand
   std::string_view rest(text);
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   while (!rest.empty()) {
@@ -124,8 +124,12 @@ void ContactsFile::read(const std::string& text) {
     const auto field = [&](int i) {
       return at[i] < std::ssize(fields) ? fields[static_cast<std::size_t>(at[i])] : std::string();
     };
-    OfLog& log = log_of(field(0), line);
-    log.named = true;
+    OfLog* const log = find(field(0), line);
+    if (log != nullptr) {
+      log->named = true;
+    } else if (std::find(others.begin(), others.end(), field(0)) == others.end()) {
+      others.push_back(field(0));
+    }
     if (field(1).empty() && field(2).empty()) continue;
     LabelledContact c{.line = line};
     if (!is_number(field(1), c.from) || !is_number(field(2), c.to))
@@ -140,12 +144,20 @@ void ContactsFile::read(const std::string& text) {
     } catch (const std::invalid_argument& e) {
       fail(line, e.what());
     }
-    log.contacts.push_back(c);
+    if (log != nullptr) log->contacts.push_back(c);
   }
   if (names.empty()) throw std::invalid_argument(path_ + ": is empty: no line names the columns");
+  if (others.empty()) return;
+  constexpr std::size_t kShown = 3;
+  std::string some;
+  for (std::size_t i = 0; i < std::min(others.size(), kShown); ++i)
+    some += (i == 0 ? "'" : ", '") + printable_name(others[i]) + "'";
+  say(fmt::format("{}: left out what it has of {} file{} that {} not read: {}{}", path_,
+                  others.size(), others.size() == 1 ? "" : "s", others.size() == 1 ? "is" : "are",
+                  some, others.size() > kShown ? ", .." : ""));
 }
 
-ContactsFile::OfLog& ContactsFile::log_of(const std::string& file, long line) {
+ContactsFile::OfLog* ContactsFile::find(const std::string& file, long line) {
   std::vector<OfLog*> by_path, by_name;
   const std::string here = real_path(file),
                     beside = real_path(fs::path(path_).parent_path() / file);
@@ -154,13 +166,11 @@ ContactsFile::OfLog& ContactsFile::log_of(const std::string& file, long line) {
     if (log.name == file) by_name.push_back(&log);
   }
   std::vector<OfLog*>& found = by_path.empty() ? by_name : by_path;
-  if (found.size() == 1) return *found[0];
-  std::string all;
-  for (const OfLog& log : logs_) all += (all.empty() ? "" : ", ") + log.log;
-  fail(line, found.empty()
-                 ? fmt::format("'{}' is none of the recordings: {}", printable_name(file), all)
-                 : fmt::format("'{}' is more than one of the recordings: name its path",
-                               printable_name(file)));
+  if (found.empty()) return nullptr;
+  if (found.size() > 1)
+    fail(line, fmt::format("'{}' is more than one of the recordings: name its path",
+                           printable_name(file)));
+  return found[0];
 }
 
 void ContactsFile::require_apart(OfLog& log) const {

@@ -20,13 +20,14 @@ struct LabelledContact {
 
 /// CSV with the columns `file`, `start` and `end` [s], and maybe `kind`: collision (also
 /// accidental), which is what no kind means, or intended (intentional). A file is known by its name
-/// or its path. A line without times says that nothing touches the arm in that file.
+/// or its path. A line without times says that nothing touches the arm in that file. Lines of other
+/// files are left out, and standard error tells it.
 class ContactsFile {
  public:
   /// @param logs all recordings that are read beside it
   /// @throws std::runtime_error or std::invalid_argument naming the path and the line: unreadable,
   /// no such columns, no number, an end before its start, contacts of a file that overlap, a file
-  /// that is none of these or more than one; or one of these without a line
+  /// that is more than one of these; or one of these without a line
   ContactsFile(const std::string& path, const std::vector<std::string>& logs);
 
   const std::string& path() const { return path_; }  ///< its own
@@ -42,7 +43,7 @@ class ContactsFile {
 
   [[noreturn]] void fail(long line, const std::string& what) const;
   void read(const std::string& text);
-  OfLog& log_of(const std::string& file, long line);
+  OfLog* find(const std::string& file, long line);
   void require_apart(OfLog& log) const;
 
   std::string path_;

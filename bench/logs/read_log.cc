@@ -93,8 +93,8 @@ class UnitDoubt {
       const std::string what =
           rests(sum) ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
           : sum.alike() < kForeign
-              ? fmt::format("q{} moves otherwise than qd{} says: is that another joint's", j + 1,
-                            j + 1)
+              ? fmt::format("q{} moves otherwise than qd{} says, as if that were another joint's",
+                            j + 1, j + 1)
               : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, sum.xy / sum.xx,
                             j + 1);
       say(fmt::format("{}: {}: {}", path, what, remedy));

@@ -4,197 +4,62 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <cstddef>
 #include <stdexcept>
-#include <utility>
 
+#include "bench/replay/column_reading.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
 
-constexpr double kWindow = 0.1, kStep = 0.01, kGap = 0.25;  // [s]
-constexpr std::size_t kMaxWindows = 4096, kMinWindows = 10;
-constexpr double kMinMisfit = 0.1;        // [1] of the model's mean square
-constexpr double kMinOrderMisfit = 1e-4;  // [1] likewise, where joints are exchanged
-constexpr double kMaxRatio = 0.1;         // [1] of mean squares: what a cause may leave unexplained
+constexpr std::size_t kMinWindows = 10;
+constexpr double kMinMisfit = 0.1;  // [1] of the model's mean square
+constexpr double kMaxRatio = 0.1;   // [1] of mean squares: what a cause may leave unexplained
 constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
 constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
-constexpr double kFullSlip = 0.01;         // [rad/s] at which dry friction acts
 constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
 constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
 constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
 constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
+constexpr std::size_t kMost = 512;         // windows, from all of the recording
+constexpr double kLongRecording = 5;       // [s] which is judged by itself
 
-enum Rate { kRest, kGravityTorque, kSpeed, kDirection };  // of a sample, by column
-
-using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::string listed(const std::vector<int>& joints) {
   return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
 }
 
-// y - C x, where the last two of x are friction, which is not below 0
-VectorXd rest_of(const MatrixXd& C, const VectorXd& y, const MatrixXd& all_C, const VectorXd& all) {
-  const Index free = C.cols() - 2;
-  VectorXd best = all;
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& friction : {std::vector<Index>{free, free + 1}, {free}, {free + 1}, {}}) {
-    std::vector<Index> columns(static_cast<std::size_t>(free));
-    std::iota(columns.begin(), columns.end(), 0);
-    columns.insert(columns.end(), friction.begin(), friction.end());
-    if (columns.empty()) {
-      if (y.squaredNorm() < least) best = all;
-      continue;
-    }
-    const MatrixXd some = C(Eigen::indexing::all, columns);
-    const VectorXd x = some.colPivHouseholderQr().solve(y);
-    const double misses = (y - some * x).squaredNorm();
-    if ((x.tail(static_cast<Index>(friction.size())).array() < 0).any() || !(misses < least))
-      continue;
-    least = misses;
-    best = all - all_C(Eigen::indexing::all, columns) * x;
-  }
-  return best;
-}
-
-std::vector<Index> best_fifths(const VectorXd& rest) {
-  std::vector<Index> order(static_cast<std::size_t>(rest.size()));
-  std::iota(order.begin(), order.end(), 0);
-  const std::size_t kept = order.size() - order.size() / 5;
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
-                   order.end(),
-                   [&](Index i, Index k) { return std::abs(rest[i]) < std::abs(rest[k]); });
-  order.resize(kept);
-  return order;
-}
-
-// the mean square of of(window) [N m], without the worst fifth, and without what friction of joint
-// j explains, and a constant load
-template <class Windows, class Of>
-double misfit(const Windows& windows, int j, Of of, bool load = false) {
-  if (windows.empty()) return 0;
-  const auto m = static_cast<Index>(windows.size());
-  MatrixXd C = MatrixXd::Ones(m, load ? 3 : 2);
-  VectorXd y(m);
-  for (Index i = 0; i < m; ++i) {
-    const auto& w = *windows[static_cast<std::size_t>(i)];
-    y[i] = of(w);
-    C.row(i).tail(2) << w.direction[j], w.speed[j];
-  }
-  const auto kept = best_fifths(rest_of(C, y, C, y));
-  const VectorXd rest = rest_of(C(kept, Eigen::indexing::all), y(kept), C, y);
-  return rest(best_fifths(rest)).squaredNorm() / static_cast<double>(kept.size());
-}
-
-template <class Windows, class Of>
-double mean_square(const Windows& windows, Of of) {
-  double sum = 0;
-  for (const auto* w : windows) sum += std::pow(of(*w), 2);
-  return sum / static_cast<double>(windows.size());
-}
-
-// by which of(window) is the model's torque of joint j, with any friction
-template <class Windows, class Of>
-double factor(const Windows& windows, int j, Of of) {
-  MatrixXd C(static_cast<Index>(windows.size()), 3);
-  VectorXd y(C.rows());
-  for (Index i = 0; i < C.rows(); ++i) {
-    const auto& w = *windows[static_cast<std::size_t>(i)];
-    y[i] = of(w);
-    C.row(i) << w.model[j], w.direction[j], w.speed[j];
-  }
-  const VectorXd first = C.colPivHouseholderQr().solve(y);
-  const auto kept = best_fifths(y - C * first);
-  return MatrixXd(C(kept, Eigen::indexing::all)).colPivHouseholderQr().solve(y(kept))[0];
+double mean_square(const VectorXd& y) {
+  return y.squaredNorm() / static_cast<double>(y.size());
 }
 
 }  // namespace
 
 TorqueFit::TorqueFit(const ArmTree& arm, bool at_instants, bool gravity_added)
-    : arm_(arm),
-      model_(detail::filled<TiedTree>(arm)),
-      at_instants_(at_instants),
-      gravity_added_(gravity_added),
-      n_(arm.dof()) {}
-
-TorqueFit::ModelSample TorqueFit::sample_of(const Sample& y) const {
-  ModelSample at;
-  VectorN qd = VectorN::Zero();
-  at.t = y.t, at.q.setZero();
-  at.q.head(n_) = y.q, qd.head(n_) = y.qd;
-  const auto d = model_.momentum_dynamics(at.q, qd);
-  at.momentum = d.B * qd;
-  at.rates.col(kRest) = model_.friction(qd) - d.bias;
-  at.rates.col(kGravityTorque) = model_.gravity(at.q);
-  at.rates.col(kSpeed) = qd;
-  at.rates.col(kDirection) = (qd / kFullSlip).array().tanh();
-  return at;
+    : arm_(arm), gravity_added_(gravity_added), n_(arm.dof()), maker_(arm, at_instants) {
+  for (int a = 0; a < n_; ++a)
+    for (int b = a + 1; b < n_; ++b) alike_.emplace_back(a, b);
 }
 
-void TorqueFit::begin(const Sample& y) {
-  begun_ = true;
-  first_ = newest_ = sample_of(y);
-  tau_.setZero(), rates_.setZero();
-}
-
-void TorqueFit::take(const Sample& y, bool contact, const Eigen::VectorXd& tau_ext) {
-  const double h = y.t - t_;
-  Eigen::VectorXd tau = y.tau;
-  if (tau_ext.size() > 0) tau -= tau_ext;
-  const bool usable = y.q.allFinite() && y.qd.allFinite() && tau.allFinite() && !contact;
-  const bool goes_on = usable && begun_ && h > 0 && h <= kGap;
-  if (goes_on) tau_.head(n_) += h * (at_instants_ ? Eigen::VectorXd((torque_ + tau) / 2) : torque_);
-  t_ = y.t, torque_ = std::move(tau);
-  if (!goes_on) {
-    begun_ = false;
-    if (usable) begin(y);
-    return;
-  }
-  if (y.t - newest_.t < kStep * (1 - 1e-6)) return;
-  const ModelSample at = sample_of(y);
-  rates_ += (at.t - newest_.t) / 2 * (at.rates + newest_.rates);
-  newest_ = at;
-  if (at.t - first_.t >= kWindow * (1 - 1e-6)) close(at);
+void TorqueFit::take(const Sample& y, bool contact, const VectorXd& tau_ext) {
+  std::erase_if(alike_, [&](const auto& pair) {
+    return y.tau[pair.first] != y.tau[pair.second];  // bit for bit, as no two sensors are
+  });
+  maker_.take(y, tau_ext.size() > 0 ? VectorXd(y.tau - tau_ext) : y.tau, contact);
 }
 
 void TorqueFit::take(const Trace& log) {
   for (int k = 0; k < log.size(); ++k)
     take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
          !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
-         log.has_truth() ? Eigen::VectorXd(log.tau_ext.col(k)) : Eigen::VectorXd());
-  begun_ = false;
-}
-
-void TorqueFit::close(const ModelSample& at) {
-  const double T = at.t - first_.t;
-  if (count_++ % every_ == 0)
-    windows_.push_back({tau_ / T, (at.momentum - first_.momentum + rates_.col(kRest)) / T,
-                        rates_.col(kGravityTorque) / T, rates_.col(kSpeed) / T,
-                        rates_.col(kDirection) / T, (at.q + first_.q) / 2});
-  if (windows_.size() == kMaxWindows) {
-    for (std::size_t i = 0; 2 * i < windows_.size(); ++i) windows_[i] = windows_[2 * i];
-    windows_.resize(kMaxWindows / 2);
-    every_ *= 2;
-  }
-  first_ = at;
-  tau_.setZero(), rates_.setZero();
-}
-
-// at most 512, from all of the recording
-TorqueFit::Windows TorqueFit::thinned() const {
-  Windows some;
-  for (std::size_t i = 0; i < windows_.size(); i += 1 + windows_.size() / 512)
-    some.push_back(&windows_[i]);
-  return some;
+         log.has_truth() ? VectorXd(log.tau_ext.col(k)) : VectorXd());
+  maker_.interrupt();
 }
 
 // those in which a joint carries something, and hardly more than that
@@ -202,7 +67,7 @@ TorqueFit::Windows TorqueFit::slow(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
   const double stiction = kStiction * arm_.joints[leader].dry;
   Windows some;
-  for (const WindowMean& w : windows_) {
+  for (const ArmWindow& w : maker_.windows()) {
     const double g = std::abs(w.gravity[j]);
     // at rest dry friction may take as much
     if (std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction) continue;
@@ -218,20 +83,18 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
-    const auto measured = [j](const WindowMean& w) { return w.tau[j]; };
-    SlowJoint fit{.number = j + 1, .factor = factor(windows, j, measured)};
+    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; }),
+                   gravity = each(windows, [j](const ArmWindow&w) { return w.gravity[j]; });
+    SlowJoint fit{.number = j + 1, .factor = factor(windows, j, tau)};
     const double s = fit.factor;
-    fit.power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
-    fit.residual = misfit(windows, j, left);
-    fit.by_factor = s * s * misfit(windows, j, [j, s](const WindowMean& w) {
-                      return w.tau[j] / s - w.model[j];
-                    });
-    fit.without_gravity =
-        misfit(windows, j, [&](const WindowMean& w) { return left(w) + w.gravity[j]; });
-    fit.without_model = misfit(windows, j, measured);
+    fit.power = mean_square(model);
+    fit.residual = misfit(windows, j, tau - model);
+    fit.by_factor = s * s * misfit(windows, j, tau / s - model);
+    fit.without_gravity = misfit(windows, j, tau - model + gravity);
+    fit.without_model = misfit(windows, j, tau);
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
-    const double load = misfit(windows, j, left, true);
+    const double load = misfit(windows, j, tau - model, true);
     fit.by_load = load > kMinVariation * fit.residual ? kMaxRatio * load : 0;
     all.push_back(fit);
   }
@@ -243,6 +106,7 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
   const std::vector<SlowJoint> joints = slow_joints();
   std::vector<int> without, scaled;
   std::vector<double> factors;
+  std::string alone;  // of a joint that carries less than the others
   bool without_varied = false, scaled_varied = true;
   double all = 0, power_without = 0, power_scaled = 0;
   for (const SlowJoint& j : joints) {
@@ -253,11 +117,19 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
       without.push_back(j.number);
       power_without += j.power;
       without_varied = without_varied || j.without_gravity < j.by_load;
+      if (j.without_gravity < kMaxRatioOfUnit * j.residual)
+        alone = fmt::format("in slow poses tau of joint {} does not contain the torque of gravity",
+                            j.number);
     } else if (j.by_factor < kMaxRatio * j.residual && (j.factor < 0.7 || j.factor > 1.4)) {
       scaled.push_back(j.number);
       factors.push_back(j.factor);
       power_scaled += j.power;
       scaled_varied = scaled_varied && j.by_factor < j.by_load;
+      if (j.factor < 0.7 && j.by_factor < kMaxRatioOfUnit * j.residual)  // more may be a load
+        alone = fmt::format(
+            "in slow poses tau of joint {} is {:.3g} times the torque of the model: is `unit` or "
+            "`gain` of [tau] in a map (--columns) the same for each joint?",
+            j.number, j.factor);
     }
   }
   if (!without.empty() && power_without > all / 2)
@@ -265,7 +137,10 @@ TorqueFit::Cause TorqueFit::by_gravity() const {
                         "recording has it removed, use [tau_without_gravity] in a map (--columns)",
                         listed(without)),
             without_varied};
-  if (scaled.empty() || !(power_scaled > all / 2)) return {by_unit(joints), false};
+  if (scaled.empty() || !(power_scaled > all / 2)) {
+    const std::string why = by_unit(joints);
+    return {why.empty() ? alone : why, false};
+  }
   const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
   // other masses than the file's, and loads, make factors, too, but each joint its own
   const double spread =
@@ -297,52 +172,66 @@ std::string TorqueFit::by_unit(const std::vector<SlowJoint>& joints) {
   if (*most > kSame * *least || std::max(*most, 1 / *least) < kMinUnit) return "";
   return fmt::format(
       "in slow poses all torques are {:.3g} times those of the model: is this another unit (lbf "
-      "ft: 0.738)? `unit` or `gain` of [tau] in a map (--columns) says so",
-      *least);
+      "ft: 0.738)? `gain = {:.3g}` of [tau] in a map (--columns) makes it N m",
+      *least, 1 / *least);
 }
 
-// what a recording has without gravity is still a small part of it
+// what a recording has without gravity has it, maybe in another unit
 std::string TorqueFit::by_added_gravity() const {
-  constexpr double kMostPart = 0.2;  // [1] more is a load, or masses
+  constexpr double kMostPart = 0.2;  // [1] more is a load, or masses, but what is all of it
   std::vector<int> joints;
   std::vector<double> factors;
   double all = 0, power = 0;
   for (int j = 0; j < n_; ++j) {
     const Windows windows = slow(j);
     if (windows.size() < kMinWindows) continue;
-    const auto measured = [j](const WindowMean& w) { return w.tau[j] - w.gravity[j]; };
-    const double s = factor(windows, j, measured);
-    const double carried = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
+    const VectorXd measured =
+                       each(windows, [j](const ArmWindow&w) { return w.tau[j] - w.gravity[j]; }),
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
+    const double s = factor(windows, j, measured), carried = mean_square(model);
     all += carried;
-    const double by_factor =
-        misfit(windows, j, [&](const WindowMean& w) { return measured(w) - s * w.model[j]; });
-    if (std::abs(s) > kMostPart || by_factor > kMinMisfit * misfit(windows, j, measured)) continue;
+    if ((std::abs(s) > kMostPart && std::abs(s - 1) > kMostPart) ||
+        misfit(windows, j, measured - s * model) > kMinMisfit * misfit(windows, j, measured))
+      continue;
     joints.push_back(j + 1);
     factors.push_back(s);
     power += carried;
   }
   if (joints.empty() || !(power > all / 2)) return "";
+  const bool all_of_it = std::all_of(factors.begin(), factors.end(),
+                                     [](double s) { return std::abs(s - 1) <= kMostPart; });
   return fmt::format(
       "what is read as torque without gravity is, in slow poses, {:.3g} times the model's torque "
-      "with it in {}: is gravity in it, in another unit (currents, or the motor's side of a gear)? "
-      "In a map (--columns), [current], or `unit` and `gain` of [tau], say so",
-      fmt::join(factors, ", "), listed(joints));
+      "with it in {}: {}",
+      fmt::join(factors, ", "), listed(joints),
+      all_of_it ? "use [tau] in the place of [tau_without_gravity] in a map (--columns)"
+                : "is gravity in it, in another unit (currents, or the motor's side of a gear)? In "
+                  "a map (--columns), [current], or `unit` and `gain` of [tau], say so");
+}
+
+// two channels that are one
+std::string TorqueFit::by_copies() const {
+  for (const auto& [a, b] : alike_) {
+    const auto varies = [a = a](const ArmWindow& w) { return w.tau[a]; };
+    const VectorXd tau = each(thinned(maker_.windows(), kMost), varies);
+    if (tau.maxCoeff() > tau.minCoeff())
+      return fmt::format(
+          "tau of joints {} and {} is the same, bit for bit: name the columns in a map (--columns)",
+          a + 1, b + 1);
+  }
+  return "";
 }
 
 // a channel that says the same all the time, though the arm moves
 std::string TorqueFit::by_rest() const {
   std::vector<int> dead;
-  const Windows windows = thinned();
+  const Windows windows = thinned(maker_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
-    const auto range = [&](auto&& of) {
-      double least = of(*windows[0]), most = least;
-      for (const WindowMean* w : windows)
-        least = std::min(least, of(*w)), most = std::max(most, of(*w));
-      return most - least;
-    };
-    const double varies = range([j](const WindowMean& w) { return w.model[j]; });
+    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
+    const double varies = model.maxCoeff() - model.minCoeff();
     if (varies > kMinTorqueShare / 5 * arm_.usual_torque[j] &&
-        range([j](const WindowMean& w) { return w.tau[j]; }) < 1e-9 * varies)
+        tau.maxCoeff() - tau.minCoeff() < 1e-9 * varies)
       dead.push_back(j + 1);
   }
   if (dead.empty()) return "";
@@ -350,109 +239,30 @@ std::string TorqueFit::by_rest() const {
                      listed(dead));
 }
 
-// of joints that carry little, too
-TorqueFit::Cause TorqueFit::by_sign() const {
-  std::vector<int> reversed;
-  bool varied = false;
-  const Windows windows = thinned();
-  for (int j = 0; j < n_; ++j) {
-    const double power = mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
-    const auto left = [j](const WindowMean& w) { return w.tau[j] - w.model[j]; };
-    const double residual = misfit(windows, j, left);
-    const double other =
-        misfit(windows, j, [j](const WindowMean& w) { return -w.tau[j] - w.model[j]; });
-    if (!(residual > kMinMisfit * power) || !(other < kMaxRatio * residual)) continue;
-    reversed.push_back(j + 1);
-    varied = varied || other < kMaxRatio * misfit(windows, j, left, true);
-  }
-  if (reversed.empty()) return {};
-  return {fmt::format("the sign of tau of {} is reversed: set `sign` of [tau] in a map "
-                      "(--columns); where q and qd are reversed, too, also that of [q] and [qd]",
-                      listed(reversed)),
-          varied};
-}
-
-// two joints in each other's columns, tau alone or all of them
-std::string TorqueFit::by_order() const {
-  const Windows windows = thinned();
-  // of residual(window, number of the window, joint), over all joints, by their size; moves(joint)
-  // is the one whose motion is that joint's
-  const auto missed_by = [&](auto&& moves, auto&& residual, bool load = false) {
-    double sum = 0;
-    for (int j = 0; j < n_; ++j) {
-      std::size_t k = 0;
-      sum +=
-          misfit(
-              windows, moves(j), [&](const WindowMean& w) { return residual(w, k++, j); }, load) /
-          std::pow(arm_.usual_torque[j], 2);
-    }
-    return sum;
-  };
-  const auto itself = [](int j) { return j; };
-  const auto left = [](const WindowMean& w, std::size_t, int j) { return w.tau[j] - w.model[j]; };
-  const double missed = missed_by(itself, left);
-  const double with_loads = missed_by(itself, left, true);  // like the offset of a sensor
-  double least = kMaxRatio * std::min(missed, with_loads);
-  std::string best;
-  std::vector<VectorN> gravity(windows.size());
-  for (int a = 0; a < n_; ++a) {
-    for (int b = a + 1; b < n_; ++b) {
-      const auto other = [a, b](int j) { return j == a ? b : j == b ? a : j; };
-      const auto consider = [&](double misses, const char* what) {
-        if (!(misses < least)) return;
-        least = misses;
-        best = fmt::format(
-            "{} of joints {} and {} fit the model if they are exchanged: name the columns in a map "
-            "(--columns), or set its `order`",
-            what, a + 1, b + 1);
-      };
-      consider(missed_by(itself, [&](const WindowMean& w, std::size_t,
-                                     int j) { return w.tau[other(j)] - w.model[j]; }),
-               "tau");
-      // the model's motion is that of the wrong joints, so only gravity is compared
-      for (std::size_t k = 0; k < windows.size(); ++k) {
-        VectorN q = windows[k]->q;
-        std::swap(q[a], q[b]);
-        gravity[k] = model_.gravity(q);
-      }
-      consider(missed_by(other, [&](const WindowMean& w, std::size_t k,
-                                    int j) { return w.tau[other(j)] - gravity[k][j]; }),
-               "q, qd and tau");
-    }
-  }
-  double power = 0;
-  for (int j = 0; j < n_; ++j)
-    power += mean_square(windows, [j](const WindowMean& w) { return w.model[j]; }) /
-             std::pow(arm_.usual_torque[j], 2);
-  return missed > kMinOrderMisfit * power ? best : "";
-}
-
 bool TorqueFit::is_long_enough() const {
-  return windows_.size() >= kMinWindows;
+  return maker_.windows().size() >= kMinWindows;
 }
 
 std::string TorqueFit::contradiction() const {
   if (!is_long_enough()) return "";
   if (std::string why = by_rest(); !why.empty()) return why;
-  if (std::string why = by_order(); !why.empty()) return why;
+  if (std::string why = by_copies(); !why.empty()) return why;
   if (Cause cause = by_gravity(); cause.varied) return cause.words;
-  if (Cause cause = by_sign(); cause.varied) return cause.words;
+  if (FoundReading found = better_reading(arm_, maker_); found.varied) return found.words;
   return "";
 }
 
 std::string TorqueFit::doubt() const {
+  if (!is_long_enough()) return "";
+  const std::string or_else =
+      ". Or else its masses are not those of the file, or it carries a load";
   if (gravity_added_)
     if (std::string why = by_added_gravity(); !why.empty()) return why + ". Or it carries a load";
-  for (const Cause& cause : {by_gravity(), by_sign()})
-    if (!cause.varied && !cause.words.empty())
-      return cause.words + ". Or else its masses are not those of the file, or it carries a load";
+  if (Cause cause = by_gravity(); !cause.words.empty()) return cause.words + or_else;
+  if (FoundReading found = better_reading(arm_, maker_); !found.words.empty())
+    return found.words + or_else;
   double power = 0, residual = 0;
-  for (int j = 0; j < n_; ++j) {
-    const Windows windows = slow(j);
-    if (windows.size() < kMinWindows) continue;
-    power += mean_square(windows, [j](const WindowMean& w) { return w.model[j]; });
-    residual += misfit(windows, j, [j](const WindowMean& w) { return w.tau[j] - w.model[j]; });
-  }
+  for (const SlowJoint& j : slow_joints()) power += j.power, residual += j.residual;
   if (!(residual > power)) return "";
   return fmt::format(
       "in slow poses tau is {:.3g} N m away from the {:.3g} N m that hold the robot's masses: is "
@@ -466,19 +276,27 @@ bool fits(const TorqueFit& fit, const std::string& path) {
     throw std::invalid_argument(fmt::format("{}: {}", path, why));
   if (!fit.is_long_enough())
     say(
-        fmt::format("{}: too short to compare its torques with the robot's: {} windows of {:g} s "
+        fmt::format("{}: too short to compare its torques with the robot's: {} windows of 0.1 s "
                     "without a gap or a contact are needed",
-                    path, kMinWindows, kWindow));
+                    path, kMinWindows));
   const std::string why = fit.doubt();
   if (!why.empty()) say(fmt::format("{}: {}", path, why));
   return why.empty();
 }
 
-bool torques_fit(const ArmTree& arm, const Trace& log, bool gravity_added,
-                 const std::string& path) {
-  TorqueFit fit(arm, log.torque_at_instants, gravity_added);
-  fit.take(log);
-  return fits(fit, path);
+bool torques_fit(const ArmTree& arm, const std::vector<Trace>& logs, bool gravity_added,
+                 const std::vector<std::string>& paths) {
+  const bool at_instants = logs.front().torque_at_instants;
+  TorqueFit all(arm, at_instants, gravity_added);
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    all.take(logs[i]);
+    if (logs.size() == 1 || logs[i].t.back() - logs[i].t.front() < kLongRecording) continue;
+    TorqueFit one(arm, at_instants, gravity_added);
+    one.take(logs[i]);
+    if (const std::string why = one.contradiction(); !why.empty())
+      throw std::invalid_argument(fmt::format("{}: {}", paths[i], why));
+  }
+  return fits(all, fmt::format("{}", fmt::join(paths, ", ")));
 }
 
 }  // namespace tauext

@@ -3,27 +3,25 @@
 /// Whether what a recording calls torque is what moves the arm: torques of the link's side, in N m,
 /// with gravity in them, of the joints whose columns they stand in.
 ///
-/// Over windows of 0.1 s the mean torque is compared with that of the arm's model, by (ii) of
-/// bench/calibrate/arm_motion.h, and with what it would be if the recording had it otherwise:
-/// without gravity, with another sign, in another unit, of another joint; each time with the
-/// Coulomb's and viscous friction of each joint that explains most of the rest, as hardly a file
-/// knows it. The fifth of the windows that fits worst is left out: outliers, and touches that
-/// nobody labelled.
+/// The mean torque of windows (arm_windows.h) is compared with that of the arm's model, and with
+/// what it would be if the recording had it otherwise: without gravity, in another unit, with
+/// another sign, of another joint (column_reading.h); each time with the Coulomb and viscous
+/// friction of each joint that explains most of the rest, as hardly a file knows it.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/replay/arm_windows.h"
 #include "estimators/types.h"
-#include "mjcf/plant/any_tree.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {
 
-/// A recording that goes by; of a long one every second window is kept, or every fourth, and so on.
+/// A recording that goes by.
 class TorqueFit {
  public:
   /// @param at_instants Trace::torque_at_instants
@@ -49,18 +47,7 @@ class TorqueFit {
   std::string doubt() const;
 
  private:
-  using VectorN = Vec<kMostCoordinates>;
-  // means over a window, of the measured torque, of the model's, and of gravity's share of it
-  struct WindowMean {
-    VectorN tau, model, gravity, speed, direction, q;
-  };
-  using Windows = std::vector<const WindowMean*>;
-  // a sample at which the model was asked
-  struct ModelSample {
-    double t = 0;
-    VectorN momentum, q;
-    Eigen::Matrix<double, kMostCoordinates, 4> rates;  // whose means are taken
-  };
+  using Windows = std::vector<const ArmWindow*>;
   // of a joint that carries something, mean squares in slow poses [(N m)^2]
   struct SlowJoint {
     int number;                  // from 1
@@ -77,30 +64,19 @@ class TorqueFit {
     bool varied = false;  // no constant load explains it
   };
 
-  ModelSample sample_of(const Sample& y) const;
-  void begin(const Sample& y);
-  void close(const ModelSample& at);
-  Windows thinned() const;
   Windows slow(int joint) const;
   std::vector<SlowJoint> slow_joints() const;
   Cause by_gravity() const;
   static std::string by_unit(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
-  Cause by_sign() const;
-  std::string by_order() const;
+  std::string by_copies() const;
   std::string by_rest() const;
 
   ArmTree arm_;
-  TiedTree model_;
-  bool at_instants_, gravity_added_;
-  int n_;                       // joints
-  double t_ = 0;                // [s] of the last sample
-  Eigen::VectorXd torque_;      // and its tau
-  ModelSample first_, newest_;  // of the window
-  VectorN tau_;                 // integrals over it
-  Eigen::Matrix<double, kMostCoordinates, 4> rates_;
-  std::vector<WindowMean> windows_;
-  std::size_t every_ = 1, count_ = 0;
+  bool gravity_added_;
+  int n_;  // joints
+  WindowMaker maker_;
+  std::vector<std::pair<int, int>> alike_;  // joints whose tau has never differed
   bool begun_ = false;
 };
 
@@ -108,7 +84,8 @@ class TorqueFit {
 /// @throws std::invalid_argument naming the path where it contradicts the arm
 bool fits(const TorqueFit& fit, const std::string& path);
 
-/// The same of one recording.
-bool torques_fit(const ArmTree& arm, const Trace& log, bool gravity_added, const std::string& path);
+/// The same of recordings of one arm together, each of which may contradict it by itself, too.
+bool torques_fit(const ArmTree& arm, const std::vector<Trace>& logs, bool gravity_added,
+                 const std::vector<std::string>& paths);
 
 }  // namespace tauext

@@ -42,7 +42,7 @@ class Contacts : public testing::Test {
                                             : ",0");
     return put(name, csv);
   }
-  // of this log with these labels, and what is said
+  // of this log with these labels, and the messages about them
   std::vector<std::uint8_t> labels(const std::string& log, const std::string& text) {
     LogOptions o;
     o.contacts = contacts_of(put("labels.csv", text), {log});
@@ -51,11 +51,11 @@ class Contacts : public testing::Test {
       try {
         return read_any_log(log, o);
       } catch (...) {
-        said_ = testing::internal::GetCapturedStderr();
+        messages_ = testing::internal::GetCapturedStderr();
         throw;
       }
     }();
-    said_ = testing::internal::GetCapturedStderr();
+    messages_ = testing::internal::GetCapturedStderr();
     return read.trace.contact;
   }
   std::string error_of_labels(const std::string& log, const std::string& text) {
@@ -65,7 +65,7 @@ class Contacts : public testing::Test {
   }
 
   fs::path folder_;
-  std::string said_;
+  std::string messages_;
 };
 
 TEST_F(Contacts, AreFromTheirStartToTheirEndAndOfTheirKind) {
@@ -91,12 +91,12 @@ TEST_F(Contacts, ALineWithoutTimesSaysThatNothingTouches) {
 TEST_F(Contacts, TakeThePlaceOfTheLogsOwnAndSaySoWhereTheyDiffer) {
   const std::string log = put_log("a.csv", 0, [](int k) { return k >= 100 && k <= 200; });
   labels(log, "file,start,end\na.csv,1,2\n");
-  EXPECT_EQ(said_.find("labels"), std::string::npos) << said_;
+  EXPECT_EQ(messages_.find("labels"), std::string::npos) << messages_;
   labels(log, "file,start,end\na.csv,1.5,2.5\n");
-  EXPECT_NE(said_.find("its own labels are not used, and are others than those of " +
-                       path("labels.csv") + " in 100 samples"),
+  EXPECT_NE(messages_.find("its own labels are not used, and are others than those of " +
+                           path("labels.csv") + " in 100 samples"),
             std::string::npos)
-      << said_;
+      << messages_;
 }
 
 TEST_F(Contacts, AreFoundByNameOrByPath) {
@@ -115,10 +115,19 @@ TEST_F(Contacts, AreFoundByNameOrByPath) {
       std::string::npos);
 }
 
+TEST_F(Contacts, OfFilesThatAreNotReadAreLeftOutWithAWord) {
+  const std::string log = put_log("a.csv", 20);
+  const auto contact = labels(log, "file,start,end\nb.csv,1,2\na.csv,21,22\nb.csv,3,4\nc.csv,,\n");
+  EXPECT_EQ(std::count(contact.begin(), contact.end(), 1), 101);
+  EXPECT_NE(messages_.find(
+                "labels.csv: left out what it has of 2 files that are not read: 'b.csv', 'c.csv'"),
+            std::string::npos)
+      << messages_;
+}
+
 TEST_F(Contacts, ThatAreWrongAreErrorsOfTheirLine) {
   const std::string log = put_log("a.csv", 20), head = "file,start,end,kind\n";
   const auto error = [&](const std::string& lines) { return error_of_labels(log, head + lines); };
-  EXPECT_EQ(error("b.csv,21,22,\n"), "line 2: 'b.csv' is none of the recordings: " + log);
   EXPECT_EQ(error(""), "has no line for " + log +
                            "; where nothing touches the arm in it, say so by "
                            "a line without times: a.csv,,");

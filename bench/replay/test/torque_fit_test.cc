@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "mjcf/plant/simulated.h"
 #include "mjcf/record.h"
 #include "mjcf/scenarios/generic.h"
+#include "mjcf/test/error_of.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext::test {
@@ -112,6 +114,9 @@ TEST_F(TorqueFits, ASmallTorqueWithGravityIsNoneWithoutIt) {
   add_gravity(right, robot.arm);
   const TorqueFit fit = Robot::fit_of(robot.arm, right, true);
   EXPECT_EQ(fit.contradiction() + fit.doubt(), "");
+  right.tau_without_gravity = true;
+  add_gravity(right, robot.arm);  // it is there twice
+  expect(Robot::fit_of(robot.arm, right, true).doubt(), "use [tau] in the place of");
 }
 
 TEST_F(TorqueFits, CurrentsAndOtherUnitsAreNamedWithTheirFactors) {
@@ -152,6 +157,70 @@ TEST_F(TorqueFits, JointsInEachOthersColumnsAreNamed) {
       EXPECT_NE(robot.words(other), "") << a + 1 << " " << b + 1;
     }
   }
+}
+
+// the order of another driver, in which more than two joints have moved
+TEST_F(TorqueFits, AnyOrderIsNamed) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  Trace other = log;
+  const int order[] = {2, 1, 0, 3, 5, 4};  // joint j of the recording is this one of the robot
+  for (int j = 0; j < 6; ++j)
+    other.q.row(j) = log.q.row(order[j]), other.qd.row(j) = log.qd.row(order[j]),
+    other.tau.row(j) = log.tau.row(order[j]);
+  expect(robot.words(other), "in the order [3, 2, 1, 4, 6, 5]");
+  other = log;
+  for (int j = 0; j < 3; ++j) other.tau.row(j + 1) = log.tau.row(1 + (j + 1) % 3);
+  expect(robot.contradiction(other), "tau fit the model in the order [1, 4, 2, 3, 5, 6]");
+}
+
+TEST_F(TorqueFits, AMotionThatIsReversedIsNamed) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  for (const int j : {1, 2, 3, 4}) {  // the first axis is vertical, the last link a point on it
+    Trace other = log;
+    other.q.row(j) *= -1, other.qd.row(j) *= -1;
+    expect(robot.contradiction(other),
+           fmt::format("the sign of q and qd of joint {} is reversed", j + 1));
+    other.tau.row(j) *= -1;
+    expect(robot.contradiction(other),
+           fmt::format("the signs of q, qd and tau of joint {} are reversed", j + 1));
+  }
+  Trace two = log;
+  two.tau.row(1) *= -1, two.tau.row(3) *= -1;
+  expect(robot.contradiction(two), "the sign of tau of joints 2, 4 is reversed");
+}
+
+TEST_F(TorqueFits, AnotherZeroIsNamed) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  for (const int j : {1, 2, 3}) {
+    for (const double zero : {std::numbers::pi / 2, -std::numbers::pi / 2, std::numbers::pi}) {
+      Trace other = log;
+      other.q.row(j).array() -= zero;
+      expect(robot.contradiction(other), fmt::format("q of joint {} has its zero", j + 1));
+      expect(robot.contradiction(other), fmt::format("{:.3g} rad added", zero));
+    }
+  }
+}
+
+TEST_F(TorqueFits, TwoChannelsThatAreOneAreNamed) {
+  const Robot robot = arm6();
+  Trace log = robot.run("in_motion");
+  log.tau.row(4) = log.tau.row(3);
+  expect(robot.contradiction(log), "tau of joints 4 and 5 is the same");
+}
+
+// one of several recordings cannot hide among the others
+TEST_F(TorqueFits, EachOfSeveralRecordingsIsJudged) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  Trace other = log;
+  other.tau.row(1) *= -1;
+  EXPECT_EQ(error_of([&] {
+              torques_fit(robot.arm, {log, log, log, other}, false, {"a", "b", "c", "d"});
+            }).substr(0, 3),
+            "d: ");
 }
 
 // friction of nearly what the masses take, which the file does not know

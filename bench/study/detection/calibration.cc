@@ -21,13 +21,6 @@
 namespace tauext::study {
 namespace {
 
-// [s] without gaps
-double watched(const Trace& t) {
-  metrics::DetectionCounter counter;
-  for (const double at : t.t) counter.take(at, false, false);
-  return counter.score().watched;
-}
-
 void require_free(const FreeRecording& r, const Robot& robot) {
   const Trace& t = r.trace;
   const auto fail = [&](const std::string& why) {
@@ -85,6 +78,12 @@ Thresholds calibrated(const StudyRuns& runs, const std::vector<std::string>& nam
 }
 
 }  // namespace
+
+double watched(const Trace& t) {
+  metrics::DetectionCounter counter;
+  for (const double at : t.t) counter.take(at, false, false);
+  return counter.score().watched;
+}
 
 Thresholds calibrate(const CalibrationOptions& o) {
   const StudyRuns& runs = touched_runs(o.robot);

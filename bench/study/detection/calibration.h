@@ -51,7 +51,10 @@ struct FreeRecording {
   Trace trace;       ///< what was recorded
 };
 
-/// The same from recordings, which are all of one set of thresholds; their first kScoreFrom
+/// [s] of a recording, without its gaps.
+double watched(const Trace& t);
+
+/// Thresholds from recordings, which are all of one set of thresholds; their first kScoreFrom
 /// (study_runs.h) do not count.
 /// @param options whose robot, conditions and runs have no meaning here
 /// @param held_out gets a row for each pair, if there is more than one recording

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/read/files/several_files.h"
 
 namespace tauext {
 namespace {
@@ -133,6 +134,42 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
   return found;
 }
 
+std::vector<int> ColumnMap::find_in_file(std::string_view quantity, const Wanted& w,
+                                         const std::vector<std::string>& columns,
+                                         const std::string& path) const {
+  const std::string prefix = w.file.empty() ? "" : w.file + kOfFile;
+  const std::vector<std::string> others = files();
+  std::vector<std::string> names;
+  std::vector<int> places;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& name = columns[i];
+    const bool of_another =
+        w.file.empty() && std::any_of(others.begin(), others.end(), [&](const std::string& f) {
+          return name.starts_with(f + kOfFile);
+        });
+    if (!name.starts_with(prefix) || of_another) continue;
+    names.push_back(name.substr(prefix.size()));
+    places.push_back(static_cast<int>(i));
+  }
+  std::vector<int> found = find(quantity, w, names, w.file.empty() ? path : path + ", " + w.file);
+  for (int& c : found) c = places[static_cast<std::size_t>(c)];
+  return found;
+}
+
+std::vector<std::string> ColumnMap::files() const {
+  std::vector<std::string> all;
+  for (const auto& [name, w] : wanted_)
+    if (!w.file.empty() && std::find(all.begin(), all.end(), w.file) == all.end())
+      all.push_back(w.file);
+  return all;
+}
+
+bool ColumnMap::needs_first_file() const {
+  return std::any_of(wanted_.begin(), wanted_.end(), [](const auto& one) {
+    return one.second.file.empty() && !one.second.of_preset;
+  });
+}
+
 void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
                              const std::string& path) const {
   if (order_.empty()) return;
@@ -147,6 +184,7 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
                                            path, quantity, m.columns.size(), j));
     ordered.columns.push_back(m.columns[static_cast<std::size_t>(j - 1)]);
     ordered.gain.push_back(m.gain[static_cast<std::size_t>(j - 1)]);
+    ordered.zero.push_back(m.zero[static_cast<std::size_t>(j - 1)]);
   }
   m = std::move(ordered);
 }
@@ -184,7 +222,7 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     const auto wanted = wanted_.find(q.name);
     if (wanted == wanted_.end() || (rate_ > 0 && q.name == "t")) continue;
     const Wanted& w = wanted->second;
-    MappedQuantity m{find(q.name, w, columns, path), {}};
+    MappedQuantity m{find_in_file(q.name, w, columns, path), {}};
     if (m.columns.empty() && (q.name == "t" || q.name == "q"))
       throw std::runtime_error(
           fmt::format("{}: no column has the {}, [{}]: none is called '{}'; --columns says which "
@@ -199,10 +237,12 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     require_one_or_each(w.units, count, "unit", q.name, path);
     require_one_or_each(w.gain, count, "gain", q.name, path);
     require_one_or_each(w.sign, count, "sign", q.name, path);
+    require_one_or_each(w.zero, count, "zero", q.name, path);
     for (std::size_t i = 0; i < count; ++i) {
       const std::string ours(q.units.substr(0, q.units.find(' ')));
       m.gain.push_back(factor_of(each(w.units, i, ours)) * each(w.gain, i, 1.) *
                        each(w.sign, i, 1.));
+      m.zero.push_back(each(w.zero, i, 0.));
     }
     if (q.of_joints) put_in_order(q.name, m, path);
     for (const auto& [name, other] : all) {

@@ -45,10 +45,12 @@ inline constexpr Quantity kQuantities[] = {
 inline constexpr std::string_view kTorques[] = {"tau", "tau_instant", "current",
                                                 "tau_without_gravity"};
 
-/// Columns of a source that make a quantity: number i of it is `gain[i]` times column `columns[i]`.
+/// Columns of a source that make a quantity: number i of it is `gain[i]` times column
+/// `columns[i]`, and `zero[i]`.
 struct MappedQuantity {
   std::vector<int> columns;  ///< from 0
   std::vector<double> gain;  ///< to SI units and the sign of equation (3)
+  std::vector<double> zero;  ///< in SI units
   bool has_gain = false;     ///< whether the map says one
   std::optional<bool>
       held;  ///< whether it is a torque that holds until the next sample, if it says
@@ -61,11 +63,13 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 ///
 /// A table of TOML for each quantity that there is: `columns`, a regular expression for their whole
 /// names (joints in the order of the number in it), a list of names, or a list of numbers from 1;
-/// `unit`, `gain` and `sign`, one for all or one for each of these columns; `held` of a torque
-/// (kTorques), by default true for `tau` alone. A torque takes the place of the preset's, and its
-/// columns where it has none. Above the tables: `preset`, a map to begin with, `separator`,
-/// `header` (false: no line of names), `order` (which joint of the recording each joint of the
-/// robot is, from 1), `rate` [Hz] instead of [t], `velocity_filter` [rad/s], `join` [s].
+/// `unit`, `gain`, `sign` and, in SI units, `zero`, one for all or one for each of these columns;
+/// `file`, which has them (files/several_files.h); `held` of a torque (kTorques), by default true
+/// for `tau` alone. A torque takes the place of the preset's, and its columns where it has none.
+/// Above the tables: `preset`, a map to begin with, `separator`, `header` (false: no line of
+/// names), `order` (which joint of the recording each joint of the robot is, from 1), `rate` [Hz]
+/// instead of [t], `velocity_filter` [rad/s], `join` [s], `parts`, an expression for the names of
+/// files in a folder.
 class ColumnMap {
  public:
   /// Which columns of a source make which quantity; those that it does not have are missing.
@@ -88,6 +92,11 @@ class ColumnMap {
   /// [s] how far apart rows that have a part of a sample each may be (joined_rows.h); 0: a row is a
   /// sample.
   double join() const { return join_; }
+  /// An expression for the names of files that follow each other (several_files.h); "": one file.
+  const std::string& parts() const { return parts_; }
+  /// The files that quantities name, each once.
+  std::vector<std::string> files() const;
+  bool needs_first_file() const;  ///< whether a quantity names none
   /// [rad/s] of the filter that makes qd of q where there is none: two poles there.
   double velocity_filter() const { return velocity_filter_; }
 
@@ -96,21 +105,26 @@ class ColumnMap {
 
   // what one table says
   struct Wanted {
-    std::string expression;          // or
-    std::vector<std::string> names;  // or
-    std::vector<int> numbers;        // from 1
-    std::vector<std::string> units;  // one, or one of each
-    std::vector<double> gain, sign;  // likewise
+    std::string expression;                // or
+    std::vector<std::string> names;        // or
+    std::vector<int> numbers;              // from 1
+    std::vector<std::string> units;        // one, or one of each
+    std::vector<double> gain, sign, zero;  // likewise
+    std::string file;                      // that has them; "": the recording's own
     std::optional<bool> held;
     bool of_preset = false;  // whose sources need not have it
   };
 
   std::vector<int> find(std::string_view quantity, const Wanted& w,
                         const std::vector<std::string>& columns, const std::string& path) const;
+  std::vector<int> find_in_file(std::string_view quantity, const Wanted& w,
+                                const std::vector<std::string>& columns,
+                                const std::string& path) const;
   void put_in_order(std::string_view quantity, MappedQuantity& m, const std::string& path) const;
 
   std::map<std::string, Wanted, std::less<>> wanted_;
   std::vector<int> order_;
+  std::string parts_;
   CsvFormat csv_;
   double rate_ = 0, velocity_filter_ = 100, join_ = 0;
 };

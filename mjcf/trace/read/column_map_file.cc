@@ -61,6 +61,8 @@ class MapReader {
     }
     if (map_.rate_ > 0 && all.contains("t"))
       fail(all, "it has a `rate` and a [t], and only one of them can say the time");
+    if (!map_.parts_.empty() && !map_.files().empty())
+      fail(all, "it has `parts`, and a `file` of a quantity: a recording has one or the other");
     if (map_.rate_ > 0 && map_.join_ > 0)
       fail(all, "it has a `rate`, and `join` is for rows with a time");
   }
@@ -151,6 +153,9 @@ class MapReader {
     } else if (key == "velocity_filter") {
       map_.velocity_filter_ = number(value, key);
       if (!(map_.velocity_filter_ > 0)) fail(value, "velocity_filter must be positive [rad/s]");
+    } else if (key == "parts") {
+      map_.parts_ = string(value, key);
+      check_expression(value, key, map_.parts_);
     } else if (key == "rate") {
       map_.rate_ = number(value, key);
       if (!(map_.rate_ > 0)) fail(value, "rate must be positive [Hz]");
@@ -161,7 +166,7 @@ class MapReader {
     } else {
       fail(value, unknown("key", key,
                           {"preset", "separator", "header", "order", "rate", "velocity_filter",
-                           "join", "and tables of quantities"})
+                           "join", "parts", "and tables of quantities"})
                       .what());
     }
   }
@@ -210,18 +215,25 @@ class MapReader {
       w.units = list(value, [&](const toml::node& n) { return unit(q, n); });
     } else if (key == "gain") {
       w.gain = list(value, [&](const toml::node& n) { return number(n, key); });
+    } else if (key == "file") {
+      w.file = string(value, key);
+      if (w.file.empty()) fail(value, "file must be the name of one");
     } else if (key == "sign") {
       w.sign = list(value, [&](const toml::node& n) {
         const double s = number(n, key);
         if (s != 1 && s != -1) fail(n, "sign must be 1 or -1");
         return s;
       });
+    } else if (key == "zero" && q.of_joints) {
+      w.zero = list(value, [&](const toml::node& n) { return number(n, key); });
     } else if (key == "held" && is_torque(q.name)) {
       w.held = value.value_exact<bool>();
       if (!w.held) fail(value, "held must be true or false");
     } else {
-      fail(value,
-           unknown("key", key, {"columns", "unit", "gain", "sign", "held (of a torque)"}).what());
+      fail(value, unknown("key", key,
+                          {"columns", "file", "unit", "gain", "sign", "zero (of joints)",
+                           "held (of a torque)"})
+                      .what());
     }
   }
 
@@ -231,15 +243,20 @@ class MapReader {
     fail(value, fmt::format("[{}] cannot be in '{}'; it may be in: {}", q.name, u, q.units));
   }
 
+  void check_expression(const toml::node& at, std::string_view key,
+                        const std::string& expression) const {
+    try {
+      const std::regex tried(expression);
+    } catch (const std::regex_error& e) {
+      fail(at, fmt::format("{} '{}': {}", key, expression, e.what()));
+    }
+  }
+
   void read_columns(const toml::node& value, ColumnMap::Wanted& w) {
     w.expression.clear(), w.names.clear(), w.numbers.clear();
     w.of_preset = false;
     if (const auto text = value.value_exact<std::string>()) {
-      try {
-        const std::regex tried(*text);
-      } catch (const std::regex_error& e) {
-        fail(value, fmt::format("columns '{}': {}", *text, e.what()));
-      }
+      check_expression(value, "columns", *text);
       w.expression = *text;
       return;
     }

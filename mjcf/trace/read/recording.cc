@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -20,6 +21,7 @@
 #include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/bag/parts.h"
 #include "mjcf/trace/read/column_map_file.h"
+#include "mjcf/trace/read/files/several_files.h"
 #include "mjcf/trace/read/joined_rows.h"
 #include "mjcf/trace/read/mat/mat_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
@@ -203,7 +205,7 @@ class Holes {
     for (const std::size_t i : numbers) {
       const std::string name = layout_.names[i].substr(0, layout_.names[i].find(']') + 1);
       if (all.find(name) != std::string::npos) continue;
-      const auto column = static_cast<std::size_t>(layout_.rest[i - 1].first);
+      const auto column = static_cast<std::size_t>(layout_.rest[i - 1].column);
       all += fmt::format("{}{} (column '{}')", all.empty() ? "" : ", ", layout_.names[i],
                          printable_name(columns_[column]));
     }
@@ -225,7 +227,7 @@ struct RecordingReader::Impl {
         map(column_map(!o.columns.empty() ? o.columns : usual_map(path, o.topic))),
         options{o.columns, o.topic,
                 map.leaves_order_open() ? o.joints : std::vector<std::string>()},
-        rows(open_rows(path, options, csv())),
+        rows(open()),
         layout(layout_of(known(), rows->columns(), path, map.rate() == 0)),
         holes(layout, rows->columns()),
         timed(0, skipped),
@@ -241,6 +243,18 @@ struct RecordingReader::Impl {
     }
   }
 
+  std::unique_ptr<RowSource> open() const {
+    const auto open_one = [this](const std::string& one) { return open_rows(one, options, csv()); };
+    if (!map.parts().empty()) return parts_in(path, map.parts(), open_one);
+    if (map.files().empty()) return open_one(path);
+    const bool is_folder = std::filesystem::is_directory(path);
+    if (is_folder && map.needs_first_file())
+      throw std::runtime_error(
+          path + ": is a folder, and not every quantity of the map names its `file` in it");
+    return side_by_side(is_folder ? path : std::filesystem::path(path).parent_path().string(),
+                        is_folder ? "" : path, map.files(), open_one);
+  }
+
   CsvFormat csv() const {
     CsvFormat format = map.csv();
     format.finite = false, format.holes = true;  // which are counted here
@@ -250,7 +264,7 @@ struct RecordingReader::Impl {
   // the number whose rows are the samples where rows are joined: the torque's, unless something
   // else comes much more rarely, which would have to be taken for several samples
   std::size_t pace() const {
-    const std::unique_ptr<RowSource> again = open_rows(path, options, csv());
+    const std::unique_ptr<RowSource> again = open();
     again->read_only(layout.columns());
     std::vector<std::int64_t> count(layout.names.size());
     SkippedRows of_no_matter;

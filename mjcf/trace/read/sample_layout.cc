@@ -55,7 +55,7 @@ class LayoutMaker {
   int append(std::string_view name, const MappedQuantity& m) {
     const int at = l_.size;
     for (std::size_t i = 0; i < m.columns.size(); ++i) {
-      l_.rest.emplace_back(m.columns[i], m.gain[i]);
+      l_.rest.push_back({m.columns[i], m.gain[i], m.zero[i]});
       l_.names.push_back(i == 0 || name == "force" ? fmt::format("[{}]", name)
                                                    : fmt::format("[{}] of joint {}", name, i + 1));
     }
@@ -101,7 +101,7 @@ class LayoutMaker {
 std::vector<int> SampleLayout::columns() const {
   std::vector<int> all;
   for (const auto& [c, gain] : t) all.push_back(c);
-  for (const auto& [c, gain] : rest) all.push_back(c);
+  for (const Number& n : rest) all.push_back(n.column);
   return all;
 }
 
@@ -110,7 +110,7 @@ void SampleLayout::convert(const std::vector<double>& row, std::vector<double>& 
   sample[0] = 0;
   for (const auto& [c, gain] : t) sample[0] += gain * row[static_cast<std::size_t>(c)];
   for (std::size_t i = 0; i < rest.size(); ++i)
-    sample[i + 1] = rest[i].second * row[static_cast<std::size_t>(rest[i].first)];
+    sample[i + 1] = rest[i].gain * row[static_cast<std::size_t>(rest[i].column)] + rest[i].zero;
 }
 
 SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,

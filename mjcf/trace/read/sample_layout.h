@@ -16,12 +16,18 @@ struct SampleLayout {
   int dof = 0;  ///< joints
   /// where each begins; -1: the recording does not have it
   int q = -1, qd = -1, tau = -1, tau_ext = -1, driver = -1, force = -1, contact = -1;
-  int size = 1;                              ///< numbers
-  bool instants = false;                     ///< tau was read at t
-  bool currents = false;                     ///< tau is in A: of drives whose gains are not known
-  bool without_gravity = false;              ///< Trace::tau_without_gravity
-  std::vector<std::pair<int, double>> t;     ///< columns and gains, which are added up; may be none
-  std::vector<std::pair<int, double>> rest;  ///< column and gain of each of the others
+  int size = 1;                           ///< numbers
+  bool instants = false;                  ///< tau was read at t
+  bool currents = false;                  ///< tau is in A: of drives whose gains are not known
+  bool without_gravity = false;           ///< Trace::tau_without_gravity
+  std::vector<std::pair<int, double>> t;  ///< columns and gains, which are added up; may be none
+  /// What makes another number of a row.
+  struct Number {
+    int column;
+    double gain;  ///< to SI units
+    double zero;  ///< that is added then
+  };
+  std::vector<Number> rest;        ///< all others
   std::vector<std::string> names;  ///< of all, like "[q] of joint 2"; the first is that of t
 
   std::vector<int> columns() const;  ///< that matter

@@ -77,6 +77,7 @@ void BagRows::read_type() {
     fail(e.what());
   }
   for (std::size_t i = 0; i < type_->fields().size(); ++i) {
+    if (type_->fields()[i].many) continue;
     const std::string& name = type_->fields()[i].begin;
     if (name == "header.stamp.sec") seconds_ = static_cast<int>(i);
     if (name == "header.stamp.nanosec") nanoseconds_ = static_cast<int>(i);

@@ -213,14 +213,20 @@ void put(std::string& to, const std::string& text) {
   put(to, text.size());
   to += text;
 }
+// a child that a file has damaged may answer anything
+void require(bool whole) {
+  if (!whole) throw std::runtime_error("libmatio's answer is not whole");
+}
 std::size_t taken_count(std::string_view& from) {
   std::size_t n = 0;
+  require(from.size() >= sizeof n);
   std::memcpy(&n, from.data(), sizeof n);
   from.remove_prefix(sizeof n);
   return n;
 }
 std::string taken_text(std::string_view& from) {
   const std::size_t size = taken_count(from);
+  require(size <= from.size());
   std::string text(from.substr(0, size));
   from.remove_prefix(size);
   return text;
@@ -324,21 +330,25 @@ MatRows::MatRows(const std::string& path) {
   constexpr std::size_t kGigabyte = std::size_t{1} << 30;
   const ByteFile file(path);
   detail::refuse_damage(file);
-  std::string all;
   try {
-    all = confined({.time = 300, .memory = 8 * kGigabyte, .result = 2 * kGigabyte},
-                   [&] { return detail::table_of(path); });
+    const std::string all =
+        confined({.time = 300, .memory = 8 * kGigabyte, .result = 2 * kGigabyte},
+                 [&] { return detail::table_of(path); });
+    std::string_view rest = all;
+    note_ = detail::taken_text(rest);
+    const std::size_t columns = detail::taken_count(rest);
+    detail::require(columns <= rest.size() / sizeof columns);
+    columns_.resize(columns);
+    for (std::string& name : columns_) name = detail::taken_text(rest);
+    numbers_.resize(rest.size() / sizeof(double));
+    detail::require(numbers_.size() * sizeof(double) == rest.size() &&
+                    (numbers_.empty() || (columns > 0 && numbers_.size() % columns == 0)));
+    std::memcpy(numbers_.data(), rest.data(), rest.size());
   } catch (const Unfinished& e) {
     file.fail(fmt::format("libmatio {} when it reads this file", e.what()));
   } catch (const std::runtime_error& e) {
     file.fail(e.what());
   }
-  std::string_view rest = all;
-  note_ = detail::taken_text(rest);
-  columns_.resize(detail::taken_count(rest));
-  for (std::string& name : columns_) name = detail::taken_text(rest);
-  numbers_.resize(rest.size() / sizeof(double));
-  std::memcpy(numbers_.data(), rest.data(), numbers_.size() * sizeof(double));
 }
 
 #else

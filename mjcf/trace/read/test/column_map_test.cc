@@ -195,14 +195,14 @@ TEST_F(Columns, ByNumbersInAnyUnitAndOrder) {
   const Trace t = read_by(
       "0;90;180;-2;1500\n10;90;180;-2;1500\n20;0;0;0;0\n",
       "separator = ';'\nheader = false\norder = [2, 1]\n[t]\ncolumns = [1]\nunit = 'ms'\n[q]\n"
-      "columns = [2, 3]\nunit = 'deg'\nsign = [1, -1]\n[tau]\ncolumns = [4, 5]\n"
+      "columns = [2, 3]\nunit = 'deg'\nsign = [1, -1]\nzero = [0.25, 1]\n[tau]\ncolumns = [4, 5]\n"
       "unit = ['Nm', 'Nmm']\n");
   ASSERT_EQ(t.size(), 3);
   EXPECT_NEAR(t.t[1], 0.01, 1e-15);
   EXPECT_FALSE(t.torque_at_instants);
-  // joint 1 of the robot is the second one of the recording; its sign and unit go with it
-  EXPECT_NEAR(t.q(0, 0), -std::numbers::pi, 1e-15);
-  EXPECT_NEAR(t.q(1, 0), std::numbers::pi / 2, 1e-15);
+  // joint 1 of the robot is the second one of the recording; its sign, unit and zero go with it
+  EXPECT_NEAR(t.q(0, 0), 1 - std::numbers::pi, 1e-15);
+  EXPECT_NEAR(t.q(1, 0), 0.25 + std::numbers::pi / 2, 1e-15);
   EXPECT_NEAR(t.tau(0, 0), 1.5, 1e-12);
   EXPECT_EQ(t.tau(1, 0), -2);
 }

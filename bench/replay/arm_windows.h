@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A recording in windows of 0.1 s, in which its mean torque stands beside the model's.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "estimators/types.h"
+#include "mjcf/plant/any_tree.h"
+#include "mjcf/plant/tree.h"
+#include "mjcf/trace/trace.h"
+
+namespace tauext {
+
+/// Means over a window, of an arm's coordinates.
+struct ArmWindow {
+  using VectorN = Vec<kMostCoordinates>;
+  VectorN tau = VectorN::Zero();        ///< [N m] what was measured
+  VectorN model = VectorN::Zero();      ///< [N m] by (ii) of bench/calibrate/arm_motion.h
+  VectorN gravity = VectorN::Zero();    ///< [N m] its share of that
+  VectorN speed = VectorN::Zero();      ///< [rad/s]
+  VectorN direction = VectorN::Zero();  ///< [1] of the motion, where dry friction acts
+  Eigen::MatrixXd motion;               ///< t [s], q [rad], qd [rad/s] at some samples, by column
+};
+using ArmWindows = std::vector<ArmWindow>;
+
+/// Makes them of a recording that goes by; of a long one every second eight of them are kept, or
+/// every fourth, and so on.
+class WindowMaker {
+ public:
+  /// @throws std::invalid_argument for an arm that is too large for estimators
+  WindowMaker(const ArmTree& arm, bool torque_at_instants);
+
+  /// The next sample; none in a contact.
+  /// @param tau [N m] without what is known of tau_ext
+  void take(const Sample& y, const Eigen::VectorXd& tau, bool contact);
+  /// The next one is of another recording.
+  void interrupt() { begun_ = false; }
+
+  const ArmWindows& windows() const { return windows_; }
+  /// One whose motion it is.
+  ArmWindow window(Eigen::MatrixXd motion, const ArmWindow::VectorN& tau) const;
+
+ private:
+  void begin(const Sample& y);
+  void close();
+
+  TiedTree model_;
+  bool at_instants_, begun_ = false;
+  int n_;                                                // joints
+  double t_ = 0;                                         // [s] of the last sample
+  Eigen::VectorXd torque_;                               // and its tau
+  ArmWindow::VectorN tau_ = ArmWindow::VectorN::Zero();  // its integral over the window
+  std::vector<Eigen::VectorXd> motion_;                  // in it
+  ArmWindows windows_;
+  std::size_t every_ = 1, count_ = 0;
+};
+
+/// At most that many of the windows, from all of the recording.
+std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t most);
+
+/// [(N m)^2] The mean square of y [N m], a number of each window, without the fifth of the windows
+/// that fits worst (outliers, and touches that nobody labelled), and without what friction of joint
+/// j explains, and a constant load.
+double misfit(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y,
+              bool load = false);
+
+/// [1] by which y is the model's torque of joint j, with any friction.
+double factor(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y);
+
+/// A number of each window.
+template <class Of>
+Eigen::VectorXd each(const std::vector<const ArmWindow*>& windows, Of&& of) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(windows.size()));
+  Eigen::Index i = 0;
+  for (const ArmWindow* w : windows) all[i++] = of(*w);
+  return all;
+}
+
+}  // namespace tauext

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/replay/column_reading.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace tauext {
+namespace {
+
+constexpr std::size_t kMost = 128;   // windows, from all of the recording
+constexpr double kFits = 0.01;       // [1] of mean squares, what may be left unexplained
+constexpr double kKnown = 1e-3;      // [1] likewise: less is noise
+constexpr double kLittle = 0.02;     // [1] of a joint's usual torque, which matters to nobody
+constexpr double kTenTimes = 2.3;    // log of it
+constexpr double kWorthAStep = 0.4;  // log of what another step must be better by
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class Search {
+ public:
+  Search(const ArmTree& arm, const WindowMaker& recording)
+      : arm_(arm),
+        recording_(recording),
+        n_(arm.dof()),
+        own_(thinned(recording.windows(), kMost)) {}
+
+  ColumnReading as_it_is() const {
+    std::vector<int> order(static_cast<std::size_t>(n_));
+    std::iota(order.begin(), order.end(), 0);
+    const VectorXd one = VectorXd::Ones(n_);
+    return {order, order, one, one, VectorXd::Zero(n_)};
+  }
+
+  // [1] of each joint's torque, in mean squares
+  VectorXd unexplained(const ColumnReading& reading, bool load = false) const {
+    ArmWindows other;
+    const bool moves = is_other_motion(reading);
+    other.reserve(own_.size());
+    for (const ArmWindow* w : own_) other.push_back(read(*w, reading, moves));
+    const auto windows = thinned(other, kMost + 1);
+    VectorXd share(n_);
+    for (int j = 0; j < n_; ++j) {
+      const VectorXd tau = each(windows, [j](const ArmWindow& w) { return w.tau[j]; });
+      const VectorXd left =
+          each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; });
+      const double power = tau.squaredNorm() / static_cast<double>(tau.size());
+      share[j] =
+          misfit(windows, j, left, load) / (power + std::pow(kLittle * arm_.usual_torque[j], 2));
+    }
+    return share;
+  }
+
+  static double size(const VectorXd& share) { return (share.array() + kKnown).log().sum(); }
+
+  // all that differ from it in one thing
+  std::vector<ColumnReading> next(const ColumnReading& from) const {
+    std::vector<ColumnReading> all;
+    const auto with = [&](auto&& change) {
+      all.push_back(from);
+      change(all.back());
+    };
+    for (int j = 0; j < n_; ++j) {
+      with([j](ColumnReading& r) { r.torque_sign[j] *= -1; });
+      with([j](ColumnReading& r) { r.motion_sign[j] *= -1; });
+      with([j](ColumnReading& r) { r.motion_sign[j] *= -1, r.torque_sign[j] *= -1; });
+      for (const double turns : {0.25, -0.25, 0.5})
+        if (!arm_.slides(j) && from.zero[j] == 0)
+          with([j, turns](ColumnReading& r) { r.zero[j] = 2 * std::numbers::pi * turns; });
+    }
+    for (int a = 0; a < n_; ++a) {
+      for (int b = a + 1; b < n_; ++b) {
+        const auto exchange = [a, b](std::vector<int>& order, VectorXd& sign) {
+          std::swap(order[static_cast<std::size_t>(a)], order[static_cast<std::size_t>(b)]);
+          std::swap(sign[a], sign[b]);
+        };
+        with([&](ColumnReading& r) { exchange(r.torque, r.torque_sign); });
+        with([&](ColumnReading& r) { exchange(r.motion, r.motion_sign); });
+        with([&](ColumnReading& r) {
+          exchange(r.torque, r.torque_sign), exchange(r.motion, r.motion_sign);
+        });
+      }
+    }
+    return all;
+  }
+
+ private:
+  bool is_other_motion(const ColumnReading& r) const {
+    const ColumnReading own = as_it_is();
+    return r.motion != own.motion || r.motion_sign != own.motion_sign || r.zero != own.zero;
+  }
+
+  ArmWindow read(const ArmWindow& w, const ColumnReading& r, bool moves) const {
+    ArmWindow::VectorN tau = w.tau;
+    for (int j = 0; j < n_; ++j)
+      tau[j] = r.torque_sign[j] * w.tau[r.torque[static_cast<std::size_t>(j)]];
+    if (!moves) {
+      ArmWindow same = w;
+      same.tau = tau;
+      return same;
+    }
+    MatrixXd motion = w.motion;
+    for (int j = 0; j < n_; ++j) {
+      const Index from = 1 + r.motion[static_cast<std::size_t>(j)];
+      motion.row(1 + j) = (r.motion_sign[j] * w.motion.row(from)).array() + r.zero[j];
+      motion.row(1 + n_ + j) = r.motion_sign[j] * w.motion.row(from + n_);
+    }
+    return recording_.window(std::move(motion), tau);
+  }
+
+  const ArmTree& arm_;
+  const WindowMaker& recording_;
+  int n_;
+  std::vector<const ArmWindow*> own_;
+};
+
+std::string listed(const std::vector<int>& joints) {
+  return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
+}
+
+// those that are not in their places, from 1
+std::vector<int> moved(const std::vector<int>& order) {
+  std::vector<int> all;
+  for (std::size_t j = 0; j < order.size(); ++j)
+    if (order[j] != static_cast<int>(j)) all.push_back(static_cast<int>(j) + 1);
+  return all;
+}
+
+std::string words_of_order(const std::vector<int>& order, const char* what, const char* key) {
+  const std::vector<int> joints = moved(order);
+  if (joints.size() == 2)
+    return fmt::format(
+        "{} of joints {} and {} fit the model if they are exchanged: name the columns in a map "
+        "(--columns), or set its {}",
+        what, joints[0], joints[1], key);
+  std::vector<int> wanted;
+  for (const int j : order) wanted.push_back(j + 1);
+  return fmt::format(
+      "{} fit the model in the order [{}]: name the columns in a map (--columns), or set its {}",
+      what, fmt::join(wanted, ", "), key);
+}
+
+std::string words(const ColumnReading& r) {
+  std::vector<std::string> all;
+  if (!moved(r.torque).empty() && r.torque == r.motion) {
+    all.push_back(words_of_order(r.torque, "q, qd and tau", "`order`"));
+  } else {
+    if (!moved(r.torque).empty())
+      all.push_back(words_of_order(r.torque, "tau", "[tau]'s `columns`"));
+    if (!moved(r.motion).empty())
+      all.push_back(words_of_order(r.motion, "q and qd", "[q]'s and [qd]'s `columns`"));
+  }
+  std::vector<int> torques, motions, both, zeros;
+  for (Index j = 0; j < r.zero.size(); ++j) {
+    const bool torque = r.torque_sign[j] < 0, motion = r.motion_sign[j] < 0;
+    const int number = static_cast<int>(j) + 1;
+    if (torque || motion) (torque && motion ? both : torque ? torques : motions).push_back(number);
+    if (r.zero[j] != 0) zeros.push_back(number);
+  }
+  if (!torques.empty())
+    all.push_back(
+        fmt::format("the sign of tau of {} is reversed: set `sign` of [tau] in a map "
+                    "(--columns)",
+                    listed(torques)));
+  if (!motions.empty())
+    all.push_back(
+        fmt::format("the sign of q and qd of {} is reversed: set `sign` of [q] and [qd] "
+                    "in a map (--columns)",
+                    listed(motions)));
+  if (!both.empty())
+    all.push_back(
+        fmt::format("the signs of q, qd and tau of {} are reversed: set `sign` of [q], "
+                    "[qd] and [tau] in a map (--columns)",
+                    listed(both)));
+  for (const int j : zeros)
+    all.push_back(
+        fmt::format("q of joint {} has its zero elsewhere than the robot's file: it fits "
+                    "with {:.3g} rad added, by `zero` of [q] in a map (--columns)",
+                    j, r.zero[j - 1]));
+  return fmt::format("{}", fmt::join(all, "; and "));
+}
+
+}  // namespace
+
+FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
+  const Search search(arm, recording);
+  ColumnReading best = search.as_it_is();
+  const VectorXd own = search.unexplained(best);
+  if ((own.array() < kFits).all()) return {};
+  VectorXd share = own;
+  for (int step = 0; step < arm.dof(); ++step) {
+    const double before = Search::size(share);
+    double least = before - kWorthAStep;
+    ColumnReading found;
+    VectorXd its_share;
+    for (const ColumnReading& r : search.next(best)) {
+      const VectorXd s = search.unexplained(r);
+      if (!(Search::size(s) < least)) continue;
+      least = Search::size(s), found = r, its_share = s;
+    }
+    if (its_share.size() == 0) break;
+    best = std::move(found), share = std::move(its_share);
+  }
+  const double better = Search::size(own) - Search::size(share);
+  const bool one_alone =
+      ((share.array() + kKnown) < 0.1 * (own.array() + kKnown)).any() &&
+      ((share.array() < 0.1) || (own.array() < 0.1) || (share.array() < own.array())).all();
+  if (!(better > kTenTimes) || !one_alone) return {};
+  const VectorXd loaded = search.unexplained(search.as_it_is(), true);
+  return {words(best), Search::size(loaded) - Search::size(share) > kTenTimes};
+}
+
+}  // namespace tauext

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mjcf/trace/read/files/several_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <stdexcept>
+#include <utility>
+
+#include "mjcf/trace/printable.h"
+
+namespace tauext {
+namespace {
+
+namespace fs = std::filesystem;
+
+// what one of the files tells of the rows that it has skipped
+void add_words(SkippedRows& to, const SkippedRows& from, const std::string& file) {
+  constexpr std::size_t kShown = 3;
+  for (const std::string& line : from.first)
+    if (to.first.size() < kShown) to.first.push_back(printable_name(file) + kOfFile + line);
+  for (const std::string& note : from.notes)
+    to.notes.push_back(printable_name(file) + kOfFile + note);
+}
+
+struct Part {
+  long number;
+  std::string name;
+};
+
+std::vector<Part> parts_of(const std::string& folder, const std::string& expression) {
+  std::vector<Part> all;
+  const std::regex wanted(expression);
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    std::smatch match;
+    constexpr std::size_t kLongest = 255;
+    if (name.size() > kLongest || !std::regex_match(name, match, wanted)) continue;
+    const bool numbered = match.size() > 1 && match[1].matched;
+    all.push_back({numbered ? std::atol(match[1].str().c_str()) : 0, name});
+  }
+  if (error)
+    throw std::runtime_error(fmt::format(
+        "{}: `parts` of the map of columns are files in a folder: {}", folder, error.message()));
+  if (all.empty())
+    throw std::runtime_error(fmt::format(
+        "{}: no file's whole name matches `parts = '{}'` of the map", folder, expression));
+  std::sort(all.begin(), all.end(), [](const Part& a, const Part& b) {
+    return std::pair(a.number, a.name) < std::pair(b.number, b.name);
+  });
+  const auto twice = std::adjacent_find(all.begin(), all.end(), [](const Part& a, const Part& b) {
+    return a.number == b.number && a.number != 0;
+  });
+  if (twice != all.end())
+    throw std::runtime_error(fmt::format("{}: '{}' and '{}' are both part {}", folder,
+                                         printable_name(twice->name),
+                                         printable_name(std::next(twice)->name), twice->number));
+  return all;
+}
+
+class Parts final : public RowSource {
+ public:
+  Parts(const std::string& folder, const std::string& expression, OpenRows open)
+      : folder_(folder), open_(std::move(open)), parts_(parts_of(folder, expression)) {
+    rows_ = open_(path());
+    columns_ = rows_->columns();
+  }
+
+  const std::vector<std::string>& columns() const override { return columns_; }
+  void read_only(const std::vector<int>& wanted) override {
+    wanted_ = wanted;
+    rows_->read_only(wanted);
+  }
+  bool next(std::vector<double>& row, SkippedRows& skipped) override {
+    while (rows_ != nullptr) {
+      SkippedRows here;
+      const bool any = rows_->next(row, here);
+      skipped.not_finite += here.not_finite, skipped.wrong_field_count += here.wrong_field_count;
+      skipped.not_a_number += here.not_a_number, skipped.time_order += here.time_order;
+      skipped.alone += here.alone;
+      add_words(skipped, here, parts_[part_].name);
+      if (any) return true;
+      open_next();
+    }
+    return false;
+  }
+  long number() const override { return rows_ == nullptr ? 0 : rows_->number(); }
+
+ private:
+  std::string path() const { return (fs::path(folder_) / parts_[part_].name).string(); }
+
+  void open_next() {
+    rows_.reset();
+    if (++part_ == parts_.size()) return;
+    rows_ = open_(path());
+    if (rows_->columns() != columns_)
+      throw std::runtime_error(fmt::format("{}: its columns are not those of '{}'", path(),
+                                           printable_name(parts_.front().name)));
+    if (!wanted_.empty()) rows_->read_only(wanted_);
+  }
+
+  std::string folder_;
+  OpenRows open_;
+  std::vector<Part> parts_;
+  std::size_t part_ = 0;
+  std::unique_ptr<RowSource> rows_;  // of that part
+  std::vector<std::string> columns_;
+  std::vector<int> wanted_;
+};
+
+class SideBySide final : public RowSource {
+ public:
+  SideBySide(const std::string& folder, const std::string& first,
+             const std::vector<std::string>& files, const OpenRows& open) {
+    if (!first.empty()) open_one(first, "", open);
+    for (const std::string& file : files) {
+      const std::string path = (fs::path(folder) / file).string();
+      open_one(path, file + kOfFile, open);
+    }
+  }
+
+  const std::vector<std::string>& columns() const override { return columns_; }
+  void read_only(const std::vector<int>& wanted) override {
+    for (File& f : files_) {
+      std::vector<int> own;
+      for (const int c : wanted)
+        if (c >= f.begin && c < f.begin + f.columns()) own.push_back(c - f.begin);
+      f.rows->read_only(own);
+    }
+  }
+  bool next(std::vector<double>& row, SkippedRows& skipped) override {
+    if (ended_) return false;
+    const std::int64_t wanted = ++row_;
+    bad_fields_ = false;
+    for (bool level = false; !level;) {
+      level = true;
+      for (File& f : files_) {
+        while (f.at < row_)
+          if (!read(f, skipped)) return finish(f, wanted, skipped);
+        level = level && f.at == row_;
+        row_ = std::max(row_, f.at);
+      }
+    }
+    count(row_ - wanted, skipped);
+    row.clear();
+    for (const File& f : files_) row.insert(row.end(), f.row.begin(), f.row.end());
+    return true;
+  }
+  long number() const override { return files_.front().rows->number(); }
+
+ private:
+  struct File {
+    std::string path;
+    std::unique_ptr<RowSource> rows;
+    int begin;            // its first column
+    std::int64_t at = 0;  // which row it is, from 1, with those that could not be read
+    std::vector<double> row;
+    int columns() const { return static_cast<int>(rows->columns().size()); }
+  };
+
+  void open_one(const std::string& path, const std::string& prefix, const OpenRows& open) {
+    files_.push_back({path, open(path), static_cast<int>(columns_.size()), 0, {}});
+    for (const std::string& name : files_.back().rows->columns()) columns_.push_back(prefix + name);
+  }
+
+  bool read(File& f, SkippedRows& skipped) {
+    SkippedRows here;
+    const bool any = f.rows->next(f.row, here);
+    f.at += here.total() + (any ? 1 : 0);
+    bad_fields_ = bad_fields_ || here.wrong_field_count > 0;
+    add_words(skipped, here, fs::path(f.path).filename().string());
+    return any;
+  }
+
+  // rows that some of the files could not read
+  void count(std::int64_t rows, SkippedRows& skipped) const {
+    (bad_fields_ ? skipped.wrong_field_count : skipped.not_a_number) += static_cast<int>(rows);
+  }
+
+  // one of them is at its end, as all must be
+  bool finish(const File& ended, std::int64_t wanted, SkippedRows& skipped) {
+    ended_ = true;
+    count(ended.at - wanted + 1, skipped);
+    for (File& f : files_)
+      if (&f != &ended && (f.at > ended.at || read(f, skipped)))
+        throw std::runtime_error(
+            fmt::format("{}: has {} rows, and {} has more: are they of one "
+                        "recording, with a header each or none?",
+                        ended.path, ended.at, f.path));
+    return false;
+  }
+
+  std::vector<File> files_;
+  std::vector<std::string> columns_;
+  std::int64_t row_ = 0;
+  bool ended_ = false, bad_fields_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> parts_in(const std::string& folder, const std::string& expression,
+                                    const OpenRows& open) {
+  return std::make_unique<Parts>(folder, expression, open);
+}
+
+std::unique_ptr<RowSource> side_by_side(const std::string& folder, const std::string& first,
+                                        const std::vector<std::string>& files,
+                                        const OpenRows& open) {
+  return std::make_unique<SideBySide>(folder, first, files, open);
+}
+
+}  // namespace tauext

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings that people have in several files.
+#include "mjcf/trace/read/files/several_files.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mjcf/test/error_of.h"
+#include "mjcf/trace/read/recording.h"
+#include "mjcf/trace/read/test/recording.h"
+
+namespace tauext::test {
+namespace {
+
+class SeveralFiles : public Recording {
+ protected:
+  Trace read(const std::string& log, const std::string& map) {
+    skipped_ = {};
+    return read_recording(log, {.columns = put(map, "map.toml")}, &skipped_);
+  }
+  std::string error(const std::string& log, const std::string& map) {
+    return error_of([&] { read(log, map); });
+  }
+
+  const std::string head_ = "t,q1,qd1,tau1\n",
+                    parts_ = "preset = 'tauext'\nparts = 'run_(.+).csv'\n";
+  SkippedRows skipped_;
+};
+
+TEST_F(SeveralFiles, FollowEachOtherByTheirNumbers) {
+  for (int part = 1; part <= 11; ++part) {
+    std::string csv = head_;
+    for (int k = 0; k < 10; ++k) {
+      const int at = 10 * (part - 1) + k;
+      csv += fmt::format("{:.2f},{},0,{}\n", 0.01 * at, at, -at);
+    }
+    put(csv, fmt::format("run_{}.csv", part));  // 10 and 11 are before 2 by name
+  }
+  put("no part", "notes.txt");
+  const Trace all = read(folder_.string(), parts_);
+  ASSERT_EQ(all.size(), 110);
+  for (int k = 0; k < 110; ++k) EXPECT_EQ(all.q(0, k), k);
+  EXPECT_EQ(skipped_.total(), 0);
+  // without a time the rows are counted through all of them
+  const Trace counted = read(folder_.string(),
+                             "parts = 'run_(.+).csv'\nrate = 50\n[q]\ncolumns = ['q1']\n[tau]\n"
+                             "columns = ['tau1']\n");
+  EXPECT_NEAR(counted.t.back(), 109 / 50., 1e-12);
+}
+
+TEST_F(SeveralFiles, ThatAreNoPartsOfOneRecordingAreErrors) {
+  EXPECT_EQ(
+      error(folder_.string(), parts_),
+      folder_.string() + ": no file's whole name matches `parts = 'run_(.+).csv'` of the map");
+  put(head_ + "0,0,0,0\n1,0,0,0\n", "run_1.csv");
+  const std::string second = put("t,q1,tau1,qd1\n2,0,0,0\n", "run_2.csv");
+  EXPECT_EQ(error(folder_.string(), parts_), second + ": its columns are not those of 'run_1.csv'");
+  put(head_ + "2,0,0,0\n", "run_01.csv");
+  EXPECT_EQ(error(folder_.string(), parts_),
+            folder_.string() + ": 'run_01.csv' and 'run_1.csv' are both part 1");
+  EXPECT_NE(error(path("run_1.csv"), parts_).find("are files in a folder: Not a directory"),
+            std::string::npos);
+  EXPECT_NE(error(folder_.string(), "parts = 'run_('\n[q]\ncolumns = [1]\n").find("parts 'run_('"),
+            std::string::npos);
+}
+
+TEST_F(SeveralFiles, StandSideBySide) {
+  const std::string log = put("t,a\n0,1\n0.01,2\n0.02,x\n0.03,4\n0.04,5\n", "motion.csv");
+  put("a,b\n0,10\n0,20\n0,30\n0,40,50\n0,50\n", "torque.csv");
+  const std::string map =
+      "[t]\ncolumns = ['t']\n[q]\ncolumns = ['a']\n[tau]\nfile = 'torque.csv'\ncolumns = [2]\n";
+  const Trace both = read(log, map);
+  ASSERT_EQ(both.size(), 3);  // the rows 3 and 4 cannot be read in one of them each
+  EXPECT_EQ(both.q, (Eigen::RowVector3d{1, 2, 5}));
+  EXPECT_EQ(both.tau, (Eigen::RowVector3d{10, 20, 50}));
+  EXPECT_EQ(skipped_.total(), 2);
+  // each in its own
+  const Trace same = read(folder_.string(),
+                          "[t]\nfile = 'motion.csv'\ncolumns = ['t']\n[q]\nfile = 'motion.csv'\n"
+                          "columns = ['a']\n[tau]\nfile = 'torque.csv'\ncolumns = ['b']\n");
+  EXPECT_EQ(same.tau, both.tau);
+  EXPECT_EQ(error(folder_.string(), map),
+            folder_.string() +
+                ": is a folder, and not every quantity of the map names its `file` "
+                "in it");
+  put("a,b\n0,10\n0,20\n", "torque.csv");
+  EXPECT_NE(error(log, map).find("torque.csv: has 2 rows, and " + log + " has more"),
+            std::string::npos)
+      << error(log, map);
+  EXPECT_NE(error(log, map + "[qd]\nfile = 'none.csv'\ncolumns = [1]\n").find("none.csv: cannot"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tauext::test
