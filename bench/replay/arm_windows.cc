@@ -95,17 +95,23 @@ ArmWindow WindowMaker::window(MatrixXd motion, const VectorN& tau) const {
 
 void WindowMaker::begin(const Sample& y) {
   begun_ = true;
-  tau_.setZero(), motion_.clear();
+  integral_ = VectorXd::Zero(n_);
+  motion_.clear(), integrals_.clear();
+  keep(y);
+}
+
+void WindowMaker::keep(const Sample& y) {
   VectorXd at(1 + 2 * n_);
   at << y.t, y.q, y.qd;
   motion_.push_back(std::move(at));
+  integrals_.push_back(integral_);
 }
 
 void WindowMaker::take(const Sample& y, const VectorXd& tau, bool contact) {
   const double h = y.t - t_;
   const bool usable = y.q.allFinite() && y.qd.allFinite() && tau.allFinite() && !contact;
   const bool goes_on = usable && begun_ && h > 0 && h <= kGap;
-  if (goes_on) tau_.head(n_) += h * (at_instants_ ? VectorXd((torque_ + tau) / 2) : torque_);
+  if (goes_on) integral_ += h * (at_instants_ ? VectorXd((torque_ + tau) / 2) : torque_);
   t_ = y.t, torque_ = tau;
   if (!goes_on) {
     begun_ = false;
@@ -113,9 +119,7 @@ void WindowMaker::take(const Sample& y, const VectorXd& tau, bool contact) {
     return;
   }
   if (y.t - motion_.back()[0] < kStep * (1 - 1e-6)) return;
-  VectorXd at(1 + 2 * n_);
-  at << y.t, y.q, y.qd;
-  motion_.push_back(std::move(at));
+  keep(y);
   if (y.t - motion_.front()[0] < kWindow * (1 - 1e-6)) return;
   close();
   begin(y);
@@ -126,7 +130,13 @@ void WindowMaker::close() {
   MatrixXd motion(1 + 2 * n_, static_cast<Index>(motion_.size()));
   for (Index k = 0; k < motion.cols(); ++k) motion.col(k) = motion_[static_cast<std::size_t>(k)];
   const double T = motion_.back()[0] - motion_.front()[0];
-  windows_.push_back(window(std::move(motion), tau_ / T));
+  VectorN tau = VectorN::Zero();
+  tau.head(n_) = integral_ / T;
+  windows_.push_back(window(std::move(motion), tau));
+  MatrixXd& steps = windows_.back().steps;
+  steps.resize(n_, static_cast<Index>(motion_.size()) - 1);
+  for (std::size_t k = 1; k < motion_.size(); ++k)
+    steps.col(static_cast<Index>(k) - 1) = integrals_[k] - integrals_[k - 1];
   if (windows_.size() < kMaxWindows) return;
   for (std::size_t i = 0; i < kMaxWindows / 2; ++i)
     windows_[i] = std::move(windows_[i / kTogether * 2 * kTogether + i % kTogether]);

@@ -23,6 +23,7 @@ struct ArmWindow {
   VectorN speed = VectorN::Zero();      ///< [rad/s]
   VectorN direction = VectorN::Zero();  ///< [1] of the motion, where dry friction acts
   Eigen::MatrixXd motion;               ///< t [s], q [rad], qd [rad/s] at some samples, by column
+  Eigen::MatrixXd steps;  ///< [N m s] tau's integral from each of these samples to the next
 };
 using ArmWindows = std::vector<ArmWindow>;
 
@@ -45,15 +46,16 @@ class WindowMaker {
 
  private:
   void begin(const Sample& y);
+  void keep(const Sample& y);
   void close();
 
   TiedTree model_;
   bool at_instants_, begun_ = false;
-  int n_;                                                // joints
-  double t_ = 0;                                         // [s] of the last sample
-  Eigen::VectorXd torque_;                               // and its tau
-  ArmWindow::VectorN tau_ = ArmWindow::VectorN::Zero();  // its integral over the window
-  std::vector<Eigen::VectorXd> motion_;                  // in it
+  int n_;                                            // joints
+  double t_ = 0;                                     // [s] of the last sample
+  Eigen::VectorXd torque_;                           // and its tau
+  Eigen::VectorXd integral_;                         // of tau, since the window's begin
+  std::vector<Eigen::VectorXd> motion_, integrals_;  // in it
   ArmWindows windows_;
   std::size_t every_ = 1, count_ = 0;
 };

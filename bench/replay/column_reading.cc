@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -190,7 +191,65 @@ std::string words(const ColumnReading& r) {
   return fmt::format("{}", fmt::join(all, "; and "));
 }
 
+// those that both neighbours touch, with the neighbours
+std::vector<std::array<const ArmWindow*, 3>> in_threes(const ArmWindows& windows) {
+  std::vector<std::array<const ArmWindow*, 3>> all;
+  const auto touch = [](const ArmWindow& a, const ArmWindow& b) {
+    return a.motion(0, a.motion.cols() - 1) == b.motion(0, 0) && a.steps.cols() == b.steps.cols();
+  };
+  for (std::size_t i = 1; i + 1 < windows.size(); ++i)
+    if (touch(windows[i - 1], windows[i]) && touch(windows[i], windows[i + 1]))
+      all.push_back({&windows[i - 1], &windows[i], &windows[i + 1]});
+  return all;
+}
+
+// [N m] of the torque so many steps later
+double later(const std::array<const ArmWindow*, 3>& w, int j, Index steps) {
+  const Index count = w[1]->steps.cols();
+  double sum = 0;
+  for (Index k = steps; k < count + steps; ++k) {
+    const ArmWindow& of = k < 0 ? *w[0] : k < count ? *w[1] : *w[2];
+    sum += of.steps(j, (k + count) % count);
+  }
+  return sum / (w[1]->motion(0, count) - w[1]->motion(0, 0));
+}
+
 }  // namespace
+
+std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
+  constexpr std::size_t kEnough = 20;
+  constexpr double kLate = 0.015;  // [s] less may be a filter's
+  const auto threes = in_threes(recording.windows());
+  if (threes.size() < kEnough) return "";
+  const Index steps = threes.front()[1]->steps.cols();
+  std::vector<const ArmWindow*> windows;
+  for (const auto& w : threes) windows.push_back(w[1]);
+  double none = 0, least = std::numeric_limits<double>::infinity();
+  Index best = 0;
+  for (Index by = -steps; by <= steps; ++by) {
+    double size = 0;
+    for (int j = 0; j < arm.dof(); ++j) {
+      VectorXd tau(static_cast<Index>(threes.size())), model(tau.size());
+      for (Index i = 0; i < tau.size(); ++i) {
+        const auto& w = threes[static_cast<std::size_t>(i)];
+        tau[i] = later(w, j, by), model[i] = w[1]->model[j];
+      }
+      const double power = tau.squaredNorm() / static_cast<double>(tau.size());
+      size += std::log(misfit(windows, j, tau - model) /
+                           (power + std::pow(kLittle * arm.usual_torque[j], 2)) +
+                       kKnown);
+    }
+    if (by == 0) none = size;
+    if (size < least) least = size, best = by;
+  }
+  const ArmWindow& one = *windows.front();
+  const double late = static_cast<double>(best) * (one.motion(0, steps) - one.motion(0, 0)) /
+                      static_cast<double>(steps);
+  if (std::abs(late) < kLate || none - least < kTenTimes) return "";
+  return fmt::format(
+      "tau fits the motion {:.0f} ms {}: are both stamped by one clock, and are they of one time?",
+      1000 * std::abs(late), late > 0 ? "later" : "earlier");
+}
 
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
   const Search search(arm, recording);

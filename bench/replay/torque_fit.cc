@@ -261,6 +261,7 @@ std::string TorqueFit::doubt() const {
   if (Cause cause = by_gravity(); !cause.words.empty()) return cause.words + or_else;
   if (FoundReading found = better_reading(arm_, maker_); !found.words.empty())
     return found.words + or_else;
+  if (std::string why = found_delay(arm_, maker_); !why.empty()) return why;
   double power = 0, residual = 0;
   for (const SlowJoint& j : slow_joints()) power += j.power, residual += j.residual;
   if (!(residual > power)) return "";

@@ -2,6 +2,7 @@
 // tauext-calibrate, where recordings and robot contradict each other.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "bench/test/programs.h"
@@ -29,6 +30,45 @@ TEST_F(Programs, CalibrateWritesNoFileWhereItIsNotSure) {
   refuses("free.csv --robot heavy.xml", "its torque fits its masses by a factor of");
   const Outcome good = run("tauext-calibrate free.csv --out new.json" + arm);
   EXPECT_EQ(good.code, 0) << good.text;
+}
+
+// a sensor that says a tenth less than it should: what --apply writes makes it right
+TEST_F(Programs, CalibrateAppliesTheScaleThatItFinds) {
+  const std::string robot = " --robot " + kExamples + "/arm6.json";
+  run("tauext-record --scenarios " + kExamples +
+      "/recordings/motions.json --scenario free1 "
+      "--every 8 --velocity_noise 1e-3 --out free.csv" +
+      robot);
+  write("low.toml", "preset = 'tauext'\n[tau_instant]\ncolumns = 'tau_instant(\\d)'\ngain = 0.9\n");
+  const Outcome o =
+      run("tauext-calibrate free.csv --apply --columns low.toml --out new.json" + robot);
+  ASSERT_EQ(o.code, 0) << o.text;
+  const auto joints = nlohmann::json::parse(content("new.json")).at("joints");
+  for (const char* joint : {"shoulder_lift", "elbow"})
+    EXPECT_NEAR(joints.at(joint).at("torque_gain").get<double>(), 1 / 0.9, 0.03) << joint;
+  EXPECT_EQ(run("tauext-replay free.csv --columns low.toml --estimator mo2 --out e.csv --robot "
+                "new.json")
+                .code,
+            0);
+}
+
+TEST_F(Programs, CalibrateLeavesLabelledContactsOut) {
+  const std::string robot = " --robot " + kExamples + "/arm6.json";
+  run("tauext-record --scenarios " + kExamples +
+      "/recordings/motions.json --scenario free1 "
+      "--every 8 --velocity_noise 1e-3 --out free.csv" +
+      robot);
+  // 100 N m on each joint from 5 to 10 s, which nobody can calibrate from
+  run_system(
+      "awk -F, -v OFS=, 'NR > 1 && $1 >= 5 && $1 <= 10 {for (i = 14; i <= 19; ++i) $i += 100} "
+      "{print}' free.csv | cut -d, -f1-19 > pushed.csv");
+  write("labels.csv", "file,start,end\npushed.csv,4.9,10.1\nother.csv,1,2\n");
+  const std::string calibrate = "tauext-calibrate pushed.csv --out new.json" + robot;
+  EXPECT_EQ(run(calibrate).code, 1);
+  EXPECT_FALSE(exists("new.json"));
+  const Outcome o = run(calibrate + " --contacts labels.csv");
+  EXPECT_EQ(o.code, 0) << o.text;
+  EXPECT_TRUE(o.says("'other.csv'")) << o.text;
 }
 
 }  // namespace

@@ -112,6 +112,35 @@ TEST_F(FilePrograms, RecordsAndReplaysIt) {
   EXPECT_EQ(run(commands.text.substr(begin, commands.text.find('\n', begin) - begin)).code, 0);
 }
 
+// whoever reads a recording multiplies its torques by torque_gain
+TEST_F(FilePrograms, ATorqueGainChangesNothingOfOnesOwnRecordings) {
+  std::string plain = content(kExamples + "/arm6.json");
+  plain.replace(plain.find("arm6.xml"), 8, kExamples + "/arm6.xml");
+  write("plain.json", plain);
+  std::string scaled = plain;
+  for (std::size_t at = 0; (at = scaled.find("\"gain\"", at)) != scaled.npos; at += 30)
+    scaled.insert(at, "\"torque_gain\": 1.25, ");
+  write("scaled.json", scaled);
+  for (const std::string robot : {"plain", "scaled"}) {
+    const std::string arm = " --robot " + robot + ".json";
+    ASSERT_EQ(run("tauext-record --scenario push --out " + robot + ".csv" + arm).code, 0);
+    const Outcome o =
+        run("tauext-replay " + robot + ".csv --estimator mo2 --out " + robot + "_mo2.csv" + arm);
+    EXPECT_EQ(o.code, 0) << o.text;
+  }
+  EXPECT_NE(content("plain.csv"), content("scaled.csv"));
+  std::istringstream a(content("plain_mo2.csv")), b(content("scaled_mo2.csv"));
+  std::string one, other;
+  std::getline(a, one), std::getline(b, other);
+  int rows = 0;
+  for (; std::getline(a, one) && std::getline(b, other); ++rows) {
+    std::istringstream left(one), right(other);
+    for (std::string x, y; std::getline(left, x, ',') && std::getline(right, y, ',');)
+      ASSERT_NEAR(std::stod(x), std::stod(y), 1e-9) << "row " << rows;
+  }
+  EXPECT_GT(rows, 1000);
+}
+
 TEST_F(FilePrograms, SayOnceWhatTheImportChanged) {
   const auto times = [](const std::string& text, const std::string& what) {
     int n = 0;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -201,6 +202,22 @@ TEST_F(TorqueFits, AnotherZeroIsNamed) {
       expect(robot.contradiction(other), fmt::format("q of joint {} has its zero", j + 1));
       expect(robot.contradiction(other), fmt::format("{:.3g} rad added", zero));
     }
+  }
+}
+
+TEST_F(TorqueFits, ATorqueOfAnotherTimeIsADoubt) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  for (const int late : {50, -50, 10}) {  // [ms]
+    Trace other = log;
+    for (int k = 0; k < log.size(); ++k)
+      other.tau.col(k) = log.tau.col(std::clamp(k - late, 0, log.size() - 1));
+    EXPECT_EQ(robot.contradiction(other), "");
+    const std::string why = robot.words(other);
+    if (std::abs(late) == 10)
+      EXPECT_EQ(why, "");
+    else
+      expect(why, late > 0 ? "50 ms later" : "50 ms earlier");
   }
 }
 
