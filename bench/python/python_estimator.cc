@@ -79,8 +79,9 @@ bool Object::update(double t, int n, const double* q, const double* qd, const do
   const py::gil_scoped_acquire lock;
   if (it_->object.is_none()) return false;
   try {
-    const py::object said = it_->object.attr("update")(t, Array(n, q), Array(n, qd), Array(n, tau));
-    Eigen::Map<Eigen::VectorXd>(tau_ext, n) = vector(said, "what update() returns", n);
+    const py::object answer =
+        it_->object.attr("update")(t, Array(n, q), Array(n, qd), Array(n, tau));
+    Eigen::Map<Eigen::VectorXd>(tau_ext, n) = vector(answer, "what update() returns", n);
     return true;
   } catch (...) {
     keep_error();

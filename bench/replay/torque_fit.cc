@@ -26,8 +26,9 @@ constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
 constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
 constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
-constexpr std::size_t kMost = 512;         // windows, from all of the recording
-constexpr double kLongRecording = 5;       // [s] which is judged by itself
+constexpr double kLight = 0.6;        // [1] of the model's torque, less than a file's masses err
+constexpr std::size_t kMost = 512;    // windows, from all of the recording
+constexpr double kLongRecording = 5;  // [s] which is judged by itself
 
 using Eigen::VectorXd;
 
@@ -209,6 +210,22 @@ std::string TorqueFit::by_added_gravity() const {
                   "a map (--columns), [current], or `unit` and `gain` of [tau], say so");
 }
 
+// half of the joints that carry something measure much less than the model, as no load makes them
+std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
+  std::vector<int> light;
+  std::vector<double> factors;
+  for (const SlowJoint& j : joints) {
+    if (!(j.residual > kMinMisfit * j.power) || j.factor > kLight) continue;
+    light.push_back(j.number);
+    factors.push_back(j.factor);
+  }
+  if (light.size() < 2 || 2 * light.size() < joints.size()) return "";
+  return fmt::format(
+      "in slow poses tau of {} is {:.3g} times the torque of the model: is this recording of this "
+      "robot?",
+      listed(light), fmt::join(factors, ", "));
+}
+
 // two channels that are one
 std::string TorqueFit::by_copies() const {
   for (const auto& [a, b] : alike_) {
@@ -262,8 +279,10 @@ std::string TorqueFit::doubt() const {
   if (FoundReading found = better_reading(arm_, maker_); !found.words.empty())
     return found.words + or_else;
   if (std::string why = found_delay(arm_, maker_); !why.empty()) return why;
+  const std::vector<SlowJoint> joints = slow_joints();
+  if (std::string why = by_another_arm(joints); !why.empty()) return why;
   double power = 0, residual = 0;
-  for (const SlowJoint& j : slow_joints()) power += j.power, residual += j.residual;
+  for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
   if (!(residual > power)) return "";
   return fmt::format(
       "in slow poses tau is {:.3g} N m away from the {:.3g} N m that hold the robot's masses: is "

@@ -68,6 +68,7 @@ class TorqueFit {
   std::vector<SlowJoint> slow_joints() const;
   Cause by_gravity() const;
   static std::string by_unit(const std::vector<SlowJoint>& joints);
+  static std::string by_another_arm(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
   std::string by_copies() const;
   std::string by_rest() const;
@@ -77,7 +78,6 @@ class TorqueFit {
   int n_;  // joints
   WindowMaker maker_;
   std::vector<std::pair<int, int>> alike_;  // joints whose tau has never differed
-  bool begun_ = false;
 };
 
 /// At the end: whether it is that arm's; says on standard error why it may not be.

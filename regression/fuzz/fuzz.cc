@@ -95,16 +95,18 @@ void recording(Bytes input) {
 
 // the same, with rows that have a part of a sample each
 void joined(Bytes input) {
-  static const std::string by = [] {
-    const auto file = std::filesystem::temp_directory_path() /
-                      fmt::format("tauext_fuzz_{}.toml", static_cast<long>(::getpid()));
-    std::ofstream(file) << "preset = 'tauext'\njoin = 0.05\n";
-    return file.string();
-  }();
+  struct Map {
+    const std::string path = (std::filesystem::temp_directory_path() /
+                              fmt::format("tauext_fuzz_{}.toml", static_cast<long>(::getpid())))
+                                 .string();
+    Map() { std::ofstream(path) << "preset = 'tauext'\njoin = 0.05\n"; }
+    ~Map() { std::filesystem::remove(path); }
+  };
+  static const Map map;
   const std::string path = file_of(input);
   refused_or(path, [&] {
     SkippedRows skipped;
-    demand_trace(read_recording(path, {by, "", {}}, &skipped), true);
+    demand_trace(read_recording(path, {map.path, "", {}}, &skipped), true);
   });
 }
 

@@ -176,10 +176,11 @@ def _find(joints: Sequence[str], labels: list[str], what: str) -> list[int]:
     if not ways:
         if len(labels) == 1 or _are_numbered(labels) and not any(j in label for j in joints for label in labels):
             return list(range(len(labels)))
-        way_on = f"{what}.to_numpy() is taken in its order"
+        is_argument = what.isidentifier()  # and not what an estimator in Python returns
+        way_on = f"{what if is_argument else 'its'}{'.' if is_argument else ' '}to_numpy() is taken in its order"
         if not joints:
-            raise ValueError(f"{what} has names, {_listed(labels)}, and of the joints none are known: "
-                             f"joint_names=robot.joint_names says them, if the robot is from a file; {way_on}")
+            names = "joint_names=robot.joint_names says them, if the robot is from a file; " if is_argument else ""
+            raise ValueError(f"{what} has names, {_listed(labels)}, and of the joints none are known: {names}{way_on}")
         missing = [j for j in joints if not any(j in label for label in labels)]
         raise ValueError(f"{what} never names {_listed(missing or joints)}; the joints are {_listed(joints)}, "
                          f"and {what} has {_listed(labels)}; {way_on}")
