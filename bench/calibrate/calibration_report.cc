@@ -29,6 +29,22 @@ std::string missing(const std::vector<Suspect>& all, const std::string& where) {
   return out;
 }
 
+// those whose torques and masses disagree
+std::string scales_off_one(const std::vector<CalibratedJoint>& joints) {
+  constexpr double kClear = 0.05;  // [1]
+  std::string off;
+  for (const CalibratedJoint& j : joints)
+    if (j.scale != 0 && std::abs(j.scale - 1) > std::max(kClear, kSurely * j.scale_error))
+      off += fmt::format("{}{} {:.3f}", off.empty() ? "" : ", ", printable_name(j.name), j.scale);
+  if (off.empty()) return "";
+  return fmt::format(
+      "Measured torques and masses disagree by a factor, the torque scale: {}.\nEither the sensors "
+      "say 1/scale of what they should, which --apply puts right, or the masses are wrong "
+      "(--masses "
+      "finds them).\n",
+      off);
+}
+
 }  // namespace
 
 std::string parameter_table(const std::vector<CalibratedJoint>& joints, TableFormat format) {
@@ -84,6 +100,7 @@ std::string fit_report(const std::vector<CalibratedJoint>& joints) {
     currents = currents || (j.gain != 0 && j.of_currents);
     sentences += missing(j.missing, printable_name(j.name) + ": ");
   }
+  sentences += scales_off_one(joints);
   sentences +=
       "What no motion without contact can tell: f times all torques from f times all masses, "
       "friction and rotors.\nIf the masses are wrong by a factor, so are the ";

@@ -180,12 +180,12 @@ Answer within_bounds(const Rows& r, const Names& names, bool currents, Calibrate
 void take_scale(const Answer& a, CalibratedJoint& joint) {
   joint.scale = a.gain;
   joint.scale_error = a.gain_error;
-  if ((a.gain > kMostScale || a.gain < 1 / kMostScale) &&
+  if ((a.gain > kMostScale || a.gain < kLeastScale) &&
       std::abs(a.gain - 1) > kSurely * a.gain_error)
     joint.doubts.push_back(
         fmt::format("its torque fits its masses by a factor of {:.3g} +- {:.2g}, which must be "
-                    "within 1/{:g} and {:g}",
-                    a.gain, a.gain_error, kMostScale, kMostScale));
+                    "within {:g} and {:g}",
+                    a.gain, a.gain_error, kLeastScale, kMostScale));
 }
 
 }  // namespace

@@ -36,10 +36,9 @@ inline constexpr JointTerm kJointTerms[] = {
 /// has wrong of a small mass is all that one sees.
 inline constexpr double kSeen = 0.2;
 
-/// [1] Torques that fit the masses by a larger factor than this, or a smaller one than its inverse,
-/// are not those of this arm in N m: masses from drawings and torque constants are each within a
-/// fifth or so.
-inline constexpr double kMostScale = 1.6;
+/// [1] Torques that fit the masses by another factor are not those of this arm in N m: masses from
+/// drawings and torque constants are each within a fifth or so.
+inline constexpr double kLeastScale = 0.7, kMostScale = 1.4;
 
 /// A parameter of a joint.
 struct CalibratedTerm {

@@ -286,7 +286,7 @@ struct RecordingReader::Impl {
   // from which a number of a sample comes
   const std::string& column_of(std::size_t i) const {
     return rows->columns()[static_cast<std::size_t>(i == 0 ? layout.t.at(0).first
-                                                           : layout.rest[i - 1].first)];
+                                                           : layout.rest[i - 1].column)];
   }
 
   // what the map finds
