@@ -65,7 +65,7 @@ WindowMaker::WindowMaker(const ArmTree& arm, bool torque_at_instants)
 ArmWindow WindowMaker::window(MatrixXd motion, const VectorN& tau) const {
   ArmWindow w;
   w.tau = tau;
-  enum Rate { kRest, kGravity, kSpeed, kDirection };
+  enum Rate { kRest, kGravityTorque, kSpeed, kDirection };
   using Rates = Eigen::Matrix<double, kMostCoordinates, 4>;
   Rates before = Rates::Zero(), sum = Rates::Zero();
   VectorN first = VectorN::Zero(), last = first;
@@ -78,7 +78,7 @@ ArmWindow WindowMaker::window(MatrixXd motion, const VectorN& tau) const {
     if (k == 0) first = last;
     Rates now;
     now.col(kRest) = model_.friction(qd) - d.bias;
-    now.col(kGravity) = model_.gravity(q);
+    now.col(kGravityTorque) = model_.gravity(q);
     now.col(kSpeed) = qd;
     now.col(kDirection) = (qd / kFullSlip).array().tanh();
     if (k > 0) sum += (motion(0, k) - motion(0, k - 1)) / 2 * (before + now);
@@ -86,7 +86,7 @@ ArmWindow WindowMaker::window(MatrixXd motion, const VectorN& tau) const {
   }
   const double T = motion(0, samples - 1) - motion(0, 0);
   w.model = (last - first + sum.col(kRest)) / T;
-  w.gravity = sum.col(kGravity) / T;
+  w.gravity = sum.col(kGravityTorque) / T;
   w.speed = sum.col(kSpeed) / T;
   w.direction = sum.col(kDirection) / T;
   w.motion = std::move(motion);

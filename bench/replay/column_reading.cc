@@ -17,9 +17,9 @@
 namespace tauext {
 namespace {
 
-constexpr std::size_t kMost = 128;   // windows, from all of the recording
-constexpr double kFits = 0.01;       // [1] of mean squares, what may be left unexplained
-constexpr double kKnown = 1e-3;      // [1] likewise: less is noise
+constexpr std::size_t kMostCompared = 128;  // windows, from all of the recording
+constexpr double kFits = 0.01;              // [1] of mean squares, what may be left unexplained
+constexpr double kKnown = 1e-3;             // [1] likewise: less is noise
 constexpr double kLittle = 0.02;     // [1] of a joint's usual torque, which matters to nobody
 constexpr double kTenTimes = 2.3;    // log of it
 constexpr double kWorthAStep = 0.4;  // log of what another step must be better by
@@ -34,7 +34,7 @@ class Search {
       : arm_(arm),
         recording_(recording),
         n_(arm.dof()),
-        own_(thinned(recording.windows(), kMost)) {}
+        own_(thinned(recording.windows(), kMostCompared)) {}
 
   ColumnReading as_it_is() const {
     std::vector<int> order(static_cast<std::size_t>(n_));
@@ -49,7 +49,7 @@ class Search {
     const bool moves = is_other_motion(reading);
     other.reserve(own_.size());
     for (const ArmWindow* w : own_) other.push_back(read(*w, reading, moves));
-    const auto windows = thinned(other, kMost + 1);
+    const auto windows = thinned(other, kMostCompared + 1);
     VectorXd share(n_);
     for (int j = 0; j < n_; ++j) {
       const VectorXd tau = each(windows, [j](const ArmWindow& w) { return w.tau[j]; });
@@ -124,10 +124,6 @@ class Search {
   int n_;
   std::vector<const ArmWindow*> own_;
 };
-
-std::string listed(const std::vector<int>& joints) {
-  return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
-}
 
 // those that are not in their places, from 1
 std::vector<int> moved(const std::vector<int>& order) {
@@ -215,6 +211,10 @@ double later(const std::array<const ArmWindow*, 3>& w, int j, Index steps) {
 }
 
 }  // namespace
+
+std::string listed(const std::vector<int>& joints) {
+  return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
+}
 
 std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   constexpr std::size_t kEnough = 20;

@@ -33,6 +33,9 @@ struct FoundReading {
 /// several steps: joints that are exchanged one pair after the other, signs that are turned.
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording);
 
+/// Joints in words, by their numbers from 1.
+std::string listed(const std::vector<int>& joints);
+
 /// Whether the torques fit ten times better if they are taken 20 to 100 ms earlier or later, all
 /// alike; "" or why.
 std::string found_delay(const ArmTree& arm, const WindowMaker& recording);

@@ -32,10 +32,6 @@ constexpr double kLongRecording = 5;  // [s] which is judged by itself
 
 using Eigen::VectorXd;
 
-std::string listed(const std::vector<int>& joints) {
-  return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
-}
-
 double mean_square(const VectorXd& y) {
   return y.squaredNorm() / static_cast<double>(y.size());
 }
