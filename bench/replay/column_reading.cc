@@ -17,12 +17,13 @@
 namespace tauext {
 namespace {
 
-constexpr std::size_t kMostCompared = 128;  // windows, from all of the recording
-constexpr double kFits = 0.01;              // [1] of mean squares, what may be left unexplained
-constexpr double kKnown = 1e-3;             // [1] likewise: less is noise
-constexpr double kLittle = 0.02;     // [1] of a joint's usual torque, which matters to nobody
-constexpr double kTenTimes = 2.3;    // log of it
-constexpr double kWorthAStep = 0.4;  // log of what another step must be better by
+constexpr std::size_t kMostCompared = 64;  // windows, from all of the recording
+constexpr double kFits = 0.01;             // [1] of mean squares, what may be left unexplained
+constexpr double kKnown = 1e-3;            // [1] likewise: less is noise
+constexpr double kLittle = 0.02;           // [1] of a joint's usual torque, which matters to nobody
+constexpr double kNone = 1e-30;            // [(N m)^2] beside 0
+constexpr double kTenTimes = 2.3;          // log of it
+constexpr double kWorthAStep = 0.4;        // log of what another step must be better by
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -55,11 +56,24 @@ class Search {
       const VectorXd tau = each(windows, [j](const ArmWindow& w) { return w.tau[j]; });
       const VectorXd left =
           each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; });
-      const double power = tau.squaredNorm() / static_cast<double>(tau.size());
-      share[j] =
-          misfit(windows, j, left, load) / (power + std::pow(kLittle * arm_.usual_torque[j], 2));
+      share[j] = misfit(windows, j, left, load) / (power(tau) + little_power(j));
     }
     return share;
+  }
+
+  // the same where each joint's torque is a factor above 0 of what it should be, or lacks gravity in
+  // all of them, whichever leaves less
+  double size_by_factors_or_gravity() const {
+    VectorXd scaled(n_), without(n_);
+    for (int j = 0; j < n_; ++j) {
+      const VectorXd tau = each(own_, [j](const ArmWindow&w) { return w.tau[j]; }),
+                     model = each(own_, [j](const ArmWindow&w) { return w.model[j]; }),
+                     gravity = each(own_, [j](const ArmWindow&w) { return w.gravity[j]; });
+      const double s = std::max(factor(own_, j, tau), 0.), little = little_power(j);
+      scaled[j] = misfit(own_, j, tau - s * model) / (power(tau) + s * s * little + kNone);
+      without[j] = misfit(own_, j, tau + gravity - model) / (power(tau + gravity) + little);
+    }
+    return std::min(size(scaled), size(without));
   }
 
   static double size(const VectorXd& share) { return (share.array() + kKnown).log().sum(); }
@@ -96,6 +110,9 @@ class Search {
   }
 
  private:
+  static double power(const VectorXd& y) { return y.squaredNorm() / static_cast<double>(y.size()); }
+  double little_power(int j) const { return std::pow(kLittle * arm_.usual_torque[j], 2); }
+
   bool is_other_motion(const ColumnReading& r) const {
     const ColumnReading own = as_it_is();
     return r.motion != own.motion || r.motion_sign != own.motion_sign || r.zero != own.zero;
@@ -105,11 +122,7 @@ class Search {
     ArmWindow::VectorN tau = w.tau;
     for (int j = 0; j < n_; ++j)
       tau[j] = r.torque_sign[j] * w.tau[r.torque[static_cast<std::size_t>(j)]];
-    if (!moves) {
-      ArmWindow same = w;
-      same.tau = tau;
-      return same;
-    }
+    if (!moves) return {tau, w.model, w.gravity, w.speed, w.direction, {}, {}};
     MatrixXd motion = w.motion;
     for (int j = 0; j < n_; ++j) {
       const Index from = 1 + r.motion[static_cast<std::size_t>(j)];
@@ -145,6 +158,11 @@ std::string words_of_order(const std::vector<int>& order, const char* what, cons
   return fmt::format(
       "{} fit the model in the order [{}]: name the columns in a map (--columns), or set its {}",
       what, fmt::join(wanted, ", "), key);
+}
+
+bool has_other_signs_alone(const ColumnReading& r) {
+  return moved(r.torque).empty() && moved(r.motion).empty() && (r.motion_sign.array() > 0).all() &&
+         (r.zero.array() == 0).all();
 }
 
 std::string words(const ColumnReading& r) {
@@ -275,8 +293,11 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
       ((share.array() + kKnown) < 0.1 * (own.array() + kKnown)).any() &&
       ((share.array() < 0.1) || (own.array() < 0.1) || (share.array() < own.array())).all();
   if (!(better > kTenTimes) || !one_alone) return {};
-  const VectorXd loaded = search.unexplained(search.as_it_is(), true);
-  return {words(best), Search::size(loaded) - Search::size(share) > kTenTimes};
+  if (search.size_by_factors_or_gravity() < Search::size(share) + kWorthAStep) return {};
+  const double than_loads =
+      Search::size(search.unexplained(search.as_it_is(), true)) - Search::size(share);
+  if (than_loads < kWorthAStep && !has_other_signs_alone(best)) return {};
+  return {words(best), than_loads > kTenTimes};
 }
 
 }  // namespace tauext

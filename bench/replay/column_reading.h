@@ -31,6 +31,7 @@ struct FoundReading {
 /// The reading that leaves ten times less of the torques unexplained than the recording's own, all
 /// joints together and one of them alone; of some that do, the simplest of the best. It may be of
 /// several steps: joints that are exchanged one pair after the other, signs that are turned.
+/// Nothing where torques in another unit, or without gravity, explain as much.
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording);
 
 /// Joints in words, by their numbers from 1.

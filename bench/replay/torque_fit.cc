@@ -260,8 +260,8 @@ std::string TorqueFit::contradiction() const {
   if (!is_long_enough()) return "";
   if (std::string why = by_rest(); !why.empty()) return why;
   if (std::string why = by_copies(); !why.empty()) return why;
-  if (Cause cause = by_gravity(); cause.varied) return cause.words;
   if (FoundReading found = better_reading(arm_, maker_); found.varied) return found.words;
+  if (Cause cause = by_gravity(); cause.varied) return cause.words;
   return "";
 }
 
