@@ -17,13 +17,14 @@
 namespace tauext {
 namespace {
 
-constexpr std::size_t kMostCompared = 64;  // windows, from all of the recording
+constexpr std::size_t kMostCompared = 48;  // windows, from all of the recording
 constexpr double kFits = 0.01;             // [1] of mean squares, what may be left unexplained
 constexpr double kKnown = 1e-3;            // [1] likewise: less is noise
 constexpr double kLittle = 0.02;           // [1] of a joint's usual torque, which matters to nobody
 constexpr double kNone = 1e-30;            // [(N m)^2] beside 0
 constexpr double kTenTimes = 2.3;          // log of it
-constexpr double kWorthAStep = 0.4;        // log of what another step must be better by
+constexpr double kAlmostEqual = 0.1;       // log of what a later reading must be better by
+constexpr double kWorthAStep = 1;          // log of what another step must be better by
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -61,19 +62,23 @@ class Search {
     return share;
   }
 
-  // the same where each joint's torque is a factor above 0 of what it should be, or lacks gravity in
-  // all of them, whichever leaves less
-  double size_by_factors_or_gravity() const {
-    VectorXd scaled(n_), without(n_);
+  // whether that is explained by a unit of all torques, by drives' gains, or by gravity that lacks in
+  // all of them: as well as by a reading of this size
+  bool has_simpler_cause(double reading) const {
+    VectorXd scaled(n_), without(n_), factors(n_);
     for (int j = 0; j < n_; ++j) {
       const VectorXd tau = each(own_, [j](const ArmWindow&w) { return w.tau[j]; }),
                      model = each(own_, [j](const ArmWindow&w) { return w.model[j]; }),
                      gravity = each(own_, [j](const ArmWindow&w) { return w.gravity[j]; });
       const double s = std::max(factor(own_, j, tau), 0.), little = little_power(j);
+      factors[j] = s;
       scaled[j] = misfit(own_, j, tau - s * model) / (power(tau) + s * s * little + kNone);
       without[j] = misfit(own_, j, tau + gravity - model) / (power(tau + gravity) + little);
     }
-    return std::min(size(scaled), size(without));
+    constexpr double kAlike = 1.5;  // [1] factors that are further apart are many, and explain more
+    const bool alike = factors.maxCoeff() < kAlike * factors.minCoeff();
+    return size(without) < reading + kWorthAStep ||
+           size(scaled) < reading + (alike ? kWorthAStep : -kTenTimes);
   }
 
   static double size(const VectorXd& share) { return (share.array() + kKnown).log().sum(); }
@@ -123,11 +128,13 @@ class Search {
     for (int j = 0; j < n_; ++j)
       tau[j] = r.torque_sign[j] * w.tau[r.torque[static_cast<std::size_t>(j)]];
     if (!moves) return {tau, w.model, w.gravity, w.speed, w.direction, {}, {}};
-    MatrixXd motion = w.motion;
+    const Index samples = w.motion.cols(), step = samples > 4 && samples % 2 == 1 ? 2 : 1;
+    const MatrixXd own = w.motion(Eigen::indexing::all, Eigen::seq(0, Eigen::indexing::last, step));
+    MatrixXd motion = own;
     for (int j = 0; j < n_; ++j) {
       const Index from = 1 + r.motion[static_cast<std::size_t>(j)];
-      motion.row(1 + j) = (r.motion_sign[j] * w.motion.row(from)).array() + r.zero[j];
-      motion.row(1 + n_ + j) = r.motion_sign[j] * w.motion.row(from + n_);
+      motion.row(1 + j) = (r.motion_sign[j] * own.row(from)).array() + r.zero[j];
+      motion.row(1 + n_ + j) = r.motion_sign[j] * own.row(from + n_);
     }
     return recording_.window(std::move(motion), tau);
   }
@@ -283,7 +290,7 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
     for (const ColumnReading& r : search.next(best)) {
       const VectorXd s = search.unexplained(r);
       if (!(Search::size(s) < least)) continue;
-      least = Search::size(s), found = r, its_share = s;
+      least = Search::size(s) - kAlmostEqual, found = r, its_share = s;
     }
     if (its_share.size() == 0) break;
     best = std::move(found), share = std::move(its_share);
@@ -293,7 +300,7 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
       ((share.array() + kKnown) < 0.1 * (own.array() + kKnown)).any() &&
       ((share.array() < 0.1) || (own.array() < 0.1) || (share.array() < own.array())).all();
   if (!(better > kTenTimes) || !one_alone) return {};
-  if (search.size_by_factors_or_gravity() < Search::size(share) + kWorthAStep) return {};
+  if (search.has_simpler_cause(Search::size(share))) return {};
   const double than_loads =
       Search::size(search.unexplained(search.as_it_is(), true)) - Search::size(share);
   if (than_loads < kWorthAStep && !has_other_signs_alone(best)) return {};

@@ -99,8 +99,7 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
 }
 
 // without gravity, or in another unit, in joints that carry most of what is carried
-TorqueFit::Cause TorqueFit::by_gravity() const {
-  const std::vector<SlowJoint> joints = slow_joints();
+TorqueFit::Cause TorqueFit::by_gravity(const std::vector<SlowJoint>& joints) {
   std::vector<int> without, scaled;
   std::vector<double> factors;
   std::string alone;  // of a joint that carries less than the others
@@ -256,48 +255,54 @@ bool TorqueFit::is_long_enough() const {
   return maker_.windows().size() >= kMinWindows;
 }
 
+TorqueFit::Judgement TorqueFit::judge() const {
+  if (!is_long_enough()) return {};
+  if (std::string why = by_rest(); !why.empty()) return {why, true};
+  if (std::string why = by_copies(); !why.empty()) return {why, true};
+  if (gravity_added_)
+    if (std::string why = by_added_gravity(); !why.empty())
+      return {why + ". Or it carries a load", false};
+  const std::string or_else =
+      ". Or else its masses are not those of the file, or it carries a load";
+  const FoundReading reading = better_reading(arm_, maker_);
+  if (reading.varied) return {reading.words, true};
+  const std::vector<SlowJoint> joints = slow_joints();
+  const Cause gravity = by_gravity(joints);
+  if (gravity.varied) return {gravity.words, true};
+  for (const std::string& why : {gravity.words, reading.words})
+    if (!why.empty()) return {why + or_else, false};
+  if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
+  if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
+  double power = 0, residual = 0;
+  for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
+  if (!(residual > power)) return {};
+  return {fmt::format("in slow poses tau is {:.3g} N m away from the {:.3g} N m that hold the "
+                      "robot's masses: is this recording of this robot, are the joints in this "
+                      "order, and did it carry an unknown load?",
+                      std::sqrt(residual), std::sqrt(power)),
+          false};
+}
+
 std::string TorqueFit::contradiction() const {
-  if (!is_long_enough()) return "";
-  if (std::string why = by_rest(); !why.empty()) return why;
-  if (std::string why = by_copies(); !why.empty()) return why;
-  if (FoundReading found = better_reading(arm_, maker_); found.varied) return found.words;
-  if (Cause cause = by_gravity(); cause.varied) return cause.words;
-  return "";
+  const Judgement j = judge();
+  return j.sure ? j.why : "";
 }
 
 std::string TorqueFit::doubt() const {
-  if (!is_long_enough()) return "";
-  const std::string or_else =
-      ". Or else its masses are not those of the file, or it carries a load";
-  if (gravity_added_)
-    if (std::string why = by_added_gravity(); !why.empty()) return why + ". Or it carries a load";
-  if (Cause cause = by_gravity(); !cause.words.empty()) return cause.words + or_else;
-  if (FoundReading found = better_reading(arm_, maker_); !found.words.empty())
-    return found.words + or_else;
-  if (std::string why = found_delay(arm_, maker_); !why.empty()) return why;
-  const std::vector<SlowJoint> joints = slow_joints();
-  if (std::string why = by_another_arm(joints); !why.empty()) return why;
-  double power = 0, residual = 0;
-  for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
-  if (!(residual > power)) return "";
-  return fmt::format(
-      "in slow poses tau is {:.3g} N m away from the {:.3g} N m that hold the robot's masses: is "
-      "this recording of this robot, are the joints in this order, and did it carry an unknown "
-      "load?",
-      std::sqrt(residual), std::sqrt(power));
+  const Judgement j = judge();
+  return j.sure ? "" : j.why;
 }
 
 bool fits(const TorqueFit& fit, const std::string& path) {
-  if (const std::string why = fit.contradiction(); !why.empty())
-    throw std::invalid_argument(fmt::format("{}: {}", path, why));
+  const TorqueFit::Judgement j = fit.judge();
+  if (j.sure) throw std::invalid_argument(fmt::format("{}: {}", path, j.why));
   if (!fit.is_long_enough())
     say(
         fmt::format("{}: too short to compare its torques with the robot's: {} windows of 0.1 s "
                     "without a gap or a contact are needed",
                     path, kMinWindows));
-  const std::string why = fit.doubt();
-  if (!why.empty()) say(fmt::format("{}: {}", path, why));
-  return why.empty();
+  if (!j.why.empty()) say(fmt::format("{}: {}", path, j.why));
+  return j.why.empty();
 }
 
 bool torques_fit(const ArmTree& arm, const std::vector<Trace>& logs, bool gravity_added,

@@ -37,14 +37,17 @@ class TorqueFit {
 
   /// Whether there are windows enough to judge by.
   bool is_long_enough() const;
-  /// How the recording contradicts the arm, with the factors that were seen and the remedy; "" if
-  /// it does not. A cause is named if it explains the measured torque ten times better (mean
-  /// square) than the model does, and than the model with a constant load does.
-  std::string contradiction() const;
-  /// Why it may be of another arm: in slow poses the model misses more than the torque that holds
-  /// the masses, or a cause explains it that other masses or a load explain, too. "" if neither is
-  /// so.
-  std::string doubt() const;
+  /// What is wrong with it, if anything is.
+  struct Judgement {
+    std::string why;    ///< with the factors that were seen, and the remedy; "": nothing
+    bool sure = false;  ///< whether it contradicts the arm; else it may be of another one
+  };
+  /// A cause is named if it explains the measured torque ten times better (mean square) than the
+  /// model does. It is sure if it explains it so much better than a constant load of each joint,
+  /// too, and if other masses cannot.
+  Judgement judge() const;
+  std::string contradiction() const;  ///< what is surely wrong, or ""
+  std::string doubt() const;          ///< what may be, or ""
 
  private:
   using Windows = std::vector<const ArmWindow*>;
@@ -66,7 +69,7 @@ class TorqueFit {
 
   Windows slow(int joint) const;
   std::vector<SlowJoint> slow_joints() const;
-  Cause by_gravity() const;
+  static Cause by_gravity(const std::vector<SlowJoint>& joints);
   static std::string by_unit(const std::vector<SlowJoint>& joints);
   static std::string by_another_arm(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
