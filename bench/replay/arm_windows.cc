@@ -4,7 +4,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -21,26 +20,26 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using VectorN = ArmWindow::VectorN;
 
-// y - C x, where the last two of x are friction, which is not below 0
-VectorXd rest_of(const MatrixXd& C, const VectorXd& y, const MatrixXd& all_C, const VectorXd& all) {
-  const Index free = C.cols() - 2;
-  VectorXd best = all;
-  double least = std::numeric_limits<double>::infinity();
+// x of the least squares of y - C x, where the last two of x are friction, which is not below 0
+VectorXd explained(const MatrixXd& C, const VectorXd& y) {
+  const MatrixXd G = C.transpose() * C;
+  const VectorXd b = C.transpose() * y;
+  const Index n = C.cols(), free = n - 2;
+  VectorXd best = VectorXd::Zero(n);
+  double most = 0;  // of the squares that it takes away
   for (const auto& friction : {std::vector<Index>{free, free + 1}, {free}, {free + 1}, {}}) {
     std::vector<Index> columns(static_cast<std::size_t>(free));
     std::iota(columns.begin(), columns.end(), 0);
     columns.insert(columns.end(), friction.begin(), friction.end());
-    if (columns.empty()) {
-      if (y.squaredNorm() < least) best = all;
+    if (columns.empty()) continue;
+    const MatrixXd part = G(columns, columns);
+    const VectorXd x = part.completeOrthogonalDecomposition().solve(b(columns));
+    const double squares = x.dot(b(columns));
+    if ((x.tail(static_cast<Index>(friction.size())).array() < 0).any() || !(squares > most))
       continue;
-    }
-    const MatrixXd some = C(Eigen::indexing::all, columns);
-    const VectorXd x = some.colPivHouseholderQr().solve(y);
-    const double misses = (y - some * x).squaredNorm();
-    if ((x.tail(static_cast<Index>(friction.size())).array() < 0).any() || !(misses < least))
-      continue;
-    least = misses;
-    best = all - all_C(Eigen::indexing::all, columns) * x;
+    most = squares;
+    best.setZero();
+    best(columns) = x;
     if (friction.size() == 2) break;  // no other is better
   }
   return best;
@@ -158,8 +157,8 @@ double misfit(const std::vector<const ArmWindow*>& windows, int j, const VectorX
     const ArmWindow& w = *windows[static_cast<std::size_t>(i)];
     C.row(i).tail(2) << w.direction[j], w.speed[j];
   }
-  const auto kept = best_fifths(rest_of(C, y, C, y));
-  const VectorXd rest = rest_of(C(kept, Eigen::indexing::all), y(kept), C, y);
+  const auto kept = best_fifths(y - C * explained(C, y));
+  const VectorXd rest = y - C * explained(C(kept, Eigen::indexing::all), y(kept));
   return rest(best_fifths(rest)).squaredNorm() / static_cast<double>(kept.size());
 }
 

@@ -18,8 +18,8 @@ namespace tauext {
 namespace {
 
 constexpr std::size_t kMostCompared = 48;  // windows, from all of the recording
-constexpr double kFits = 0.01;             // [1] of mean squares, what may be left unexplained
-constexpr double kKnown = 1e-3;            // [1] likewise: less is noise
+constexpr double kFits = 1e-3;             // [1] of mean squares, what may be left unexplained
+constexpr double kKnown = 1e-4;            // [1] likewise: less is noise
 constexpr double kLittle = 0.02;           // [1] of a joint's usual torque, which matters to nobody
 constexpr double kNone = 1e-30;            // [(N m)^2] beside 0
 constexpr double kTenTimes = 2.3;          // log of it
@@ -29,6 +29,11 @@ constexpr double kWorthAStep = 1;          // log of what another step must be b
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+struct Found {
+  ColumnReading reading;
+  VectorXd unexplained;  // Search::unexplained of it
+};
 
 class Search {
  public:
@@ -42,7 +47,7 @@ class Search {
     std::vector<int> order(static_cast<std::size_t>(n_));
     std::iota(order.begin(), order.end(), 0);
     const VectorXd one = VectorXd::Ones(n_);
-    return {order, order, one, one, VectorXd::Zero(n_)};
+    return {order, order, one, one, VectorXd::Zero(n_), false};
   }
 
   // [1] of each joint's torque, in mean squares
@@ -83,8 +88,8 @@ class Search {
 
   static double size(const VectorXd& share) { return (share.array() + kKnown).log().sum(); }
 
-  // all that differ from it in one thing
-  std::vector<ColumnReading> next(const ColumnReading& from) const {
+  // all that differ from it in one thing, with zeros in so many parts of a turn
+  std::vector<ColumnReading> next(const ColumnReading& from, int parts) const {
     std::vector<ColumnReading> all;
     const auto with = [&](auto&& change) {
       all.push_back(from);
@@ -94,10 +99,12 @@ class Search {
       with([j](ColumnReading& r) { r.torque_sign[j] *= -1; });
       with([j](ColumnReading& r) { r.motion_sign[j] *= -1; });
       with([j](ColumnReading& r) { r.motion_sign[j] *= -1, r.torque_sign[j] *= -1; });
-      for (const double turns : {0.25, -0.25, 0.5})
-        if (!arm_.slides(j) && from.zero[j] == 0)
-          with([j, turns](ColumnReading& r) { r.zero[j] = 2 * std::numbers::pi * turns; });
+      for (int part = 1; part < parts && !arm_.slides(j) && from.zero[j] == 0; ++part)
+        with([=](ColumnReading& r) {
+          r.zero[j] = 2 * std::numbers::pi * std::remainder(static_cast<double>(part) / parts, 1);
+        });
     }
+    if (!from.degrees) with([](ColumnReading& r) { r.degrees = true; });
     for (int a = 0; a < n_; ++a) {
       for (int b = a + 1; b < n_; ++b) {
         const auto exchange = [a, b](std::vector<int>& order, VectorXd& sign) {
@@ -114,13 +121,32 @@ class Search {
     return all;
   }
 
+  // step by step, each the best of its kind
+  Found best(const ColumnReading& own, const VectorXd& unexplained_by_own, int parts) const {
+    Found best{own, unexplained_by_own};
+    for (int step = 0; step < n_ && (best.unexplained.array() > kFits).any(); ++step) {
+      double least = size(best.unexplained) - kWorthAStep;
+      Found next_one;
+      for (ColumnReading& r : next(best.reading, parts)) {
+        VectorXd u = unexplained(r);
+        if (!(size(u) < least)) continue;
+        least = size(u) - kAlmostEqual;
+        next_one = {std::move(r), std::move(u)};
+      }
+      if (next_one.unexplained.size() == 0) break;
+      best = std::move(next_one);
+    }
+    return best;
+  }
+
  private:
   static double power(const VectorXd& y) { return y.squaredNorm() / static_cast<double>(y.size()); }
   double little_power(int j) const { return std::pow(kLittle * arm_.usual_torque[j], 2); }
 
   bool is_other_motion(const ColumnReading& r) const {
     const ColumnReading own = as_it_is();
-    return r.motion != own.motion || r.motion_sign != own.motion_sign || r.zero != own.zero;
+    return r.motion != own.motion || r.motion_sign != own.motion_sign || r.zero != own.zero ||
+           r.degrees;
   }
 
   ArmWindow read(const ArmWindow& w, const ColumnReading& r, bool moves) const {
@@ -133,8 +159,9 @@ class Search {
     MatrixXd motion = own;
     for (int j = 0; j < n_; ++j) {
       const Index from = 1 + r.motion[static_cast<std::size_t>(j)];
-      motion.row(1 + j) = (r.motion_sign[j] * own.row(from)).array() + r.zero[j];
-      motion.row(1 + n_ + j) = r.motion_sign[j] * own.row(from + n_);
+      const double unit = r.degrees && !arm_.slides(j) ? std::numbers::pi / 180 : 1;
+      motion.row(1 + j) = (unit * r.motion_sign[j] * own.row(from)).array() + r.zero[j];
+      motion.row(1 + n_ + j) = unit * r.motion_sign[j] * own.row(from + n_);
     }
     return recording_.window(std::move(motion), tau);
   }
@@ -167,9 +194,8 @@ std::string words_of_order(const std::vector<int>& order, const char* what, cons
       what, fmt::join(wanted, ", "), key);
 }
 
-bool has_other_signs_alone(const ColumnReading& r) {
-  return moved(r.torque).empty() && moved(r.motion).empty() && (r.motion_sign.array() > 0).all() &&
-         (r.zero.array() == 0).all();
+bool has_other_torques(const ColumnReading& r) {
+  return !moved(r.torque).empty() || (r.torque_sign.array() < 0).any();
 }
 
 std::string words(const ColumnReading& r) {
@@ -182,6 +208,8 @@ std::string words(const ColumnReading& r) {
     if (!moved(r.motion).empty())
       all.push_back(words_of_order(r.motion, "q and qd", "[q]'s and [qd]'s `columns`"));
   }
+  if (r.degrees)
+    all.push_back("q and qd fit as degrees: set `unit` of [q] and [qd] in a map (--columns)");
   std::vector<int> torques, motions, both, zeros;
   for (Index j = 0; j < r.zero.size(); ++j) {
     const bool torque = r.torque_sign[j] < 0, motion = r.motion_sign[j] < 0;
@@ -243,7 +271,8 @@ std::string listed(const std::vector<int>& joints) {
 
 std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   constexpr std::size_t kEnough = 20;
-  constexpr double kLate = 0.015;  // [s] less may be a filter's
+  constexpr double kLate = 0.015;        // [s] less may be a filter's
+  constexpr double kKnownInTime = 1e-3;  // [1] as kKnown; less may be a touch that nobody labelled
   const auto threes = in_threes(recording.windows());
   if (threes.size() < kEnough) return "";
   const Index steps = threes.front()[1]->steps.cols();
@@ -262,7 +291,7 @@ std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
       const double power = tau.squaredNorm() / static_cast<double>(tau.size());
       size += std::log(misfit(windows, j, tau - model) /
                            (power + std::pow(kLittle * arm.usual_torque[j], 2)) +
-                       kKnown);
+                       kKnownInTime);
     }
     if (by == 0) none = size;
     if (size < least) least = size, best = by;
@@ -278,33 +307,27 @@ std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
 
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
   const Search search(arm, recording);
-  ColumnReading best = search.as_it_is();
-  const VectorXd own = search.unexplained(best);
-  if ((own.array() < kFits).all()) return {};
-  VectorXd share = own;
-  for (int step = 0; step < arm.dof(); ++step) {
-    const double before = Search::size(share);
-    double least = before - kWorthAStep;
-    ColumnReading found;
-    VectorXd its_share;
-    for (const ColumnReading& r : search.next(best)) {
-      const VectorXd s = search.unexplained(r);
-      if (!(Search::size(s) < least)) continue;
-      least = Search::size(s) - kAlmostEqual, found = r, its_share = s;
-    }
-    if (its_share.size() == 0) break;
-    best = std::move(found), share = std::move(its_share);
+  const ColumnReading own = search.as_it_is();
+  const VectorXd before = search.unexplained(own);
+  if ((before.array() < kFits).all()) return {};
+  Found found = search.best(own, before, 4);
+  const bool exchanged = !moved(found.reading.motion).empty();
+  if ((found.unexplained.array() > kFits).any() || exchanged) {
+    Found finer = search.best(own, before, 12);
+    const bool simpler = exchanged && moved(finer.reading.motion).empty();
+    if (Search::size(finer.unexplained) <
+        Search::size(found.unexplained) + (simpler ? kAlmostEqual : -kTenTimes))
+      found = std::move(finer);
   }
-  const double better = Search::size(own) - Search::size(share);
-  const bool one_alone =
-      ((share.array() + kKnown) < 0.1 * (own.array() + kKnown)).any() &&
-      ((share.array() < 0.1) || (own.array() < 0.1) || (share.array() < own.array())).all();
-  if (!(better > kTenTimes) || !one_alone) return {};
-  if (search.has_simpler_cause(Search::size(share))) return {};
-  const double than_loads =
-      Search::size(search.unexplained(search.as_it_is(), true)) - Search::size(share);
-  if (than_loads < kWorthAStep && !has_other_signs_alone(best)) return {};
-  return {words(best), than_loads > kTenTimes};
+  const VectorXd& after = found.unexplained;
+  const bool one_alone = ((after.array() + kKnown) < 0.1 * (before.array() + kKnown)).any(),
+             none_worse = ((after.array() < 0.1) || (after.array() < before.array())).all();
+  if (!(Search::size(before) - Search::size(after) > kTenTimes) || !one_alone || !none_worse ||
+      search.has_simpler_cause(Search::size(after)))
+    return {};
+  const double than_loads = Search::size(search.unexplained(own, true)) - Search::size(after);
+  if (than_loads < kWorthAStep && !has_other_torques(found.reading)) return {};
+  return {words(found.reading), than_loads > kTenTimes};
 }
 
 }  // namespace tauext

@@ -20,6 +20,7 @@ struct ColumnReading {
   Eigen::VectorXd motion_sign;  ///< [1] by which these are then multiplied
   Eigen::VectorXd torque_sign;  ///< [1] likewise
   Eigen::VectorXd zero;         ///< [rad] what is then added to q
+  bool degrees = false;         ///< whether q and qd are in degrees
 };
 
 /// What is found.

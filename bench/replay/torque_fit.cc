@@ -121,7 +121,11 @@ TorqueFit::Cause TorqueFit::by_gravity(const std::vector<SlowJoint>& joints) {
       factors.push_back(j.factor);
       power_scaled += j.power;
       scaled_varied = scaled_varied && j.by_factor < j.by_load;
-      if (j.factor < 0.7 && j.by_factor < kMaxRatioOfUnit * j.residual)  // more may be a load
+      // more may be a load, unless all others fit, which it would act on, too
+      const bool others_fit = std::all_of(joints.begin(), joints.end(), [&j](const SlowJoint& o) {
+        return o.number == j.number || o.residual < kMinMisfit * o.power;
+      });
+      if (others_fit || (j.factor < 0.7 && j.by_factor < kMaxRatioOfUnit * j.residual))
         alone = fmt::format(
             "in slow poses tau of joint {} is {:.3g} times the torque of the model: is `unit` or "
             "`gain` of [tau] in a map (--columns) the same for each joint?",
@@ -142,7 +146,7 @@ TorqueFit::Cause TorqueFit::by_gravity(const std::vector<SlowJoint>& joints) {
   const double spread =
       *least * *most > 0 ? std::max(*least / *most, *most / *least) : kMaxSpreadOfGains;
   const bool far = *most < 0.5 || *least > 5;
-  if (*least > 1 && !far && !(spread < 1.2 && factors.size() > 2)) return {};  // a load
+  if (*least > 1 && !far && !(spread < 1.2 && factors.size() > 2)) return {alone, false};  // a load
   return {fmt::format("in slow poses tau of {} is {:.3g} times the torque of the model: {}",
                       listed(scaled), fmt::join(factors, ", "),
                       *most < 0 ? "its sign is reversed; set `sign = -1` in a map (--columns)"
@@ -221,6 +225,25 @@ std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
       listed(light), fmt::join(factors, ", "));
 }
 
+// of joints that carry nothing: rotors and friction that a file lacks make more torque, and not less
+std::string TorqueFit::by_weak_drive() const {
+  const Windows windows = thinned(maker_.windows(), kMost);
+  for (int j = 0; j < n_; ++j) {
+    if (slow(j).size() >= kMinWindows) continue;
+    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
+    const double s = factor(windows, j, tau), residual = misfit(windows, j, tau - model);
+    if (s < 0.7 && s > 0 && residual > kMinMisfit * mean_square(model) &&
+        misfit(windows, j, tau / s - model) * s * s < kMaxRatio * residual)
+      return fmt::format(
+          "tau of joint {} is {:.3g} times what its motion takes: is it in another unit? `unit` "
+          "and "
+          "`gain` of [tau] in a map (--columns) say so",
+          j + 1, s);
+  }
+  return "";
+}
+
 // two channels that are one
 std::string TorqueFit::by_copies() const {
   for (const auto& [a, b] : alike_) {
@@ -272,7 +295,8 @@ TorqueFit::Judgement TorqueFit::judge() const {
   for (const std::string& why : {gravity.words, reading.words})
     if (!why.empty()) return {why + or_else, false};
   if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
-  if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
+  for (std::string why : {by_another_arm(joints), by_weak_drive()})
+    if (!why.empty()) return {why, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
   if (!(residual > power)) return {};

@@ -221,6 +221,30 @@ TEST_F(TorqueFits, ATorqueOfAnotherTimeIsADoubt) {
   }
 }
 
+TEST_F(TorqueFits, DegreesAndZerosBetweenAreNamed) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  Trace other = log;
+  other.q *= 180 / std::numbers::pi, other.qd *= 180 / std::numbers::pi;
+  expect(robot.contradiction(other), "q and qd fit as degrees");
+  other = robot.run("free");
+  other.q.row(1).array() -= std::numbers::pi / 3;
+  expect(robot.contradiction(other), "it fits with 1.05 rad added");
+}
+
+// a load at the end acts on all joints before
+TEST_F(TorqueFits, AFactorOfOneJointAloneIsNoLoads) {
+  const Robot robot = arm6();
+  for (const int j : {1, 2}) {
+    Trace log = robot.run("in_motion");
+    log.tau.row(j) *= 2;
+    expect(robot.words(log), fmt::format("tau of joint {} is 2 times", j + 1));
+    log = robot.run("in_motion");
+    log.tau.row(3 * j - 3) *= 0.5;  // which carry little, or nothing
+    expect(robot.words(log), fmt::format("tau of joint {} is 0.5", 3 * j - 2));
+  }
+}
+
 TEST_F(TorqueFits, TwoChannelsThatAreOneAreNamed) {
   const Robot robot = arm6();
   Trace log = robot.run("in_motion");
