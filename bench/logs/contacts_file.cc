@@ -59,6 +59,16 @@ bool is_number(std::string_view s, double& value) {
   return error == std::errc() && at == s.data() + s.size() && std::isfinite(value);
 }
 
+std::string not_read(const std::vector<std::string>& files) {
+  constexpr std::size_t kShown = 3;
+  std::string some;
+  for (std::size_t i = 0; i < std::min(files.size(), kShown); ++i)
+    some += (i == 0 ? "'" : ", '") + printable_name(files[i]) + "'";
+  return fmt::format("{} file{} not read: {}{}", files.size(),
+                     files.size() == 1 ? " that is" : "s that are", some,
+                     files.size() > kShown ? ", .." : "");
+}
+
 // without a "/" at the end of a folder
 std::string name_in(const std::string& path) {
   const fs::path p(path);
@@ -147,14 +157,7 @@ void ContactsFile::read(const std::string& text) {
     if (log != nullptr) log->contacts.push_back(c);
   }
   if (names.empty()) throw std::invalid_argument(path_ + ": is empty: no line names the columns");
-  if (others.empty()) return;
-  constexpr std::size_t kShown = 3;
-  std::string some;
-  for (std::size_t i = 0; i < std::min(others.size(), kShown); ++i)
-    some += (i == 0 ? "'" : ", '") + printable_name(others[i]) + "'";
-  say(fmt::format("{}: left out what it has of {} file{} that {} not read: {}{}", path_,
-                  others.size(), others.size() == 1 ? "" : "s", others.size() == 1 ? "is" : "are",
-                  some, others.size() > kShown ? ", .." : ""));
+  if (!others.empty()) say(path_ + ": left out what it has of " + not_read(others));
 }
 
 ContactsFile::OfLog* ContactsFile::find(const std::string& file, long line) {

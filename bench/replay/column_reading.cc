@@ -67,8 +67,8 @@ class Search {
     return share;
   }
 
-  // whether that is explained by a unit of all torques, by drives' gains, or by gravity that lacks in
-  // all of them: as well as by a reading of this size
+  // whether that is explained as well as by a reading of this size: by a unit of all torques, by
+  // drives' gains, or by gravity that lacks in all of them
   bool has_simpler_cause(double reading) const {
     VectorXd scaled(n_), without(n_), factors(n_);
     for (int j = 0; j < n_; ++j) {

@@ -225,7 +225,7 @@ std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
       listed(light), fmt::join(factors, ", "));
 }
 
-// of joints that carry nothing: rotors and friction that a file lacks make more torque, and not less
+// of joints that carry nothing: rotors and friction that a file lacks make more torque, not less
 std::string TorqueFit::by_weak_drive() const {
   const Windows windows = thinned(maker_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
