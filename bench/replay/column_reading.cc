@@ -271,17 +271,15 @@ std::string listed(const std::vector<int>& joints) {
 
 std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   constexpr std::size_t kEnough = 20;
-  constexpr double kLate = 0.015;        // [s] less may be a filter's
-  constexpr double kKnownInTime = 1e-3;  // [1] as kKnown; less may be a touch that nobody labelled
+  constexpr double kLate = 0.015;   // [s] less may be a filter's
+  constexpr double kUnsure = 1e-3;  // [1] as kKnown: a rotor that a file lacks looks like a delay
   const auto threes = in_threes(recording.windows());
   if (threes.size() < kEnough) return "";
   const Index steps = threes.front()[1]->steps.cols();
   std::vector<const ArmWindow*> windows;
   for (const auto& w : threes) windows.push_back(w[1]);
-  double none = 0, least = std::numeric_limits<double>::infinity();
-  Index best = 0;
-  for (Index by = -steps; by <= steps; ++by) {
-    double size = 0;
+  const auto unexplained = [&](Index by) {
+    VectorXd share(arm.dof());
     for (int j = 0; j < arm.dof(); ++j) {
       VectorXd tau(static_cast<Index>(threes.size())), model(tau.size());
       for (Index i = 0; i < tau.size(); ++i) {
@@ -289,20 +287,26 @@ std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
         tau[i] = later(w, j, by), model[i] = w[1]->model[j];
       }
       const double power = tau.squaredNorm() / static_cast<double>(tau.size());
-      size += std::log(misfit(windows, j, tau - model) /
-                           (power + std::pow(kLittle * arm.usual_torque[j], 2)) +
-                       kKnownInTime);
+      share[j] =
+          misfit(windows, j, tau - model) / (power + std::pow(kLittle * arm.usual_torque[j], 2));
     }
-    if (by == 0) none = size;
-    if (size < least) least = size, best = by;
-  }
+    return share;
+  };
+  const VectorXd now = unexplained(0);
+  VectorXd then = now;
+  Index best = 0;
+  for (Index by = -steps; by <= steps; ++by)
+    if (VectorXd share = unexplained(by); share.sum() < then.sum())
+      then = std::move(share), best = by;
+  const double better = ((now.array() + kUnsure) / (then.array() + kUnsure)).log().sum();
   const ArmWindow& one = *windows.front();
   const double late = static_cast<double>(best) * (one.motion(0, steps) - one.motion(0, 0)) /
                       static_cast<double>(steps);
-  if (std::abs(late) < kLate || none - least < kTenTimes) return "";
+  if (std::abs(late) < kLate || better < kTenTimes) return "";
   return fmt::format(
-      "tau fits the motion {:.0f} ms {}: are both stamped by one clock, and are they of one time?",
-      1000 * std::abs(late), late > 0 ? "later" : "earlier");
+      "tau comes {:.0f} ms {} the motion that takes it: are both stamped by one clock, and for the "
+      "time when they were measured?",
+      1000 * std::abs(late), late > 0 ? "after" : "before");
 }
 
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {

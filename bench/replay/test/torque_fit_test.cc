@@ -217,7 +217,7 @@ TEST_F(TorqueFits, ATorqueOfAnotherTimeIsADoubt) {
     if (std::abs(late) == 10)
       EXPECT_EQ(why, "");
     else
-      expect(why, late > 0 ? "50 ms later" : "50 ms earlier");
+      expect(why, late > 0 ? "50 ms after" : "50 ms before");
   }
 }
 
