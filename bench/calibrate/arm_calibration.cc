@@ -2,6 +2,7 @@
 #include "bench/calibrate/arm_calibration.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -163,6 +164,7 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
     motions.emplace_back(without, log);
   }
   std::vector<CalibratedJoint> all;
+  std::vector<std::string> errors;  // of the joints
   for (int i = 0; i < arm.dof(); ++i) {
     const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
     const std::string name = joint_name_in_file(arm, i);
@@ -193,9 +195,10 @@ std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector
                                                     log.tau.row(i).cwiseAbs().maxCoeff());
       all.push_back(std::move(joint));
     } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(fmt::format("joint {} '{}': {}", i + 1, name, e.what()));
+      errors.push_back(fmt::format("joint {} '{}': {}", i + 1, name, e.what()));
     }
   }
+  if (!errors.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(errors, "; ")));
   doubt_units(arm, all);
   return all;
 }
