@@ -150,9 +150,11 @@ std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t mos
   return some;
 }
 
-double misfit(const std::vector<const ArmWindow*>& windows, int j, const VectorXd& y, bool load) {
+double misfit(const std::vector<const ArmWindow*>& windows, int j, const VectorXd& y,
+              const MatrixXd& others) {
   if (windows.empty()) return 0;
-  MatrixXd C = MatrixXd::Ones(y.size(), load ? 3 : 2);
+  MatrixXd C(y.size(), others.cols() + 2);
+  C.leftCols(others.cols()) = others;
   for (Index i = 0; i < y.size(); ++i) {
     const ArmWindow& w = *windows[static_cast<std::size_t>(i)];
     C.row(i).tail(2) << w.direction[j], w.speed[j];

@@ -65,9 +65,9 @@ std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t mos
 
 /// [(N m)^2] The mean square of y [N m], a number of each window, without the fifth of the windows
 /// that fits worst (outliers, and touches that nobody labelled), and without what friction of joint
-/// j explains, and a constant load.
+/// j explains, and any multiples of the columns of `others`.
 double misfit(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y,
-              bool load = false);
+              const Eigen::MatrixXd& others = {});
 
 /// [1] by which y is the model's torque of joint j, with any friction.
 double factor(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y);

@@ -62,7 +62,8 @@ class Search {
       const VectorXd tau = each(windows, [j](const ArmWindow& w) { return w.tau[j]; });
       const VectorXd left =
           each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; });
-      share[j] = misfit(windows, j, left, load) / (power(tau) + little_power(j));
+      const MatrixXd others = MatrixXd::Ones(left.size(), load ? 1 : 0);
+      share[j] = misfit(windows, j, left, others) / (power(tau) + little_power(j));
     }
     return share;
   }
@@ -271,8 +272,9 @@ std::string listed(const std::vector<int>& joints) {
 
 std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   constexpr std::size_t kEnough = 20;
-  constexpr double kLate = 0.015;   // [s] less may be a filter's
-  constexpr double kUnsure = 1e-3;  // [1] as kKnown: a rotor that a file lacks looks like a delay
+  constexpr double kLate = 0.015;    // [s] less may be a filter's
+  constexpr double kTouched = 1e-3;  // [1] as kKnown, where somebody may touch the arm
+  constexpr double kAll = 5e-3;      // [1] less is left where nobody does
   const auto threes = in_threes(recording.windows());
   if (threes.size() < kEnough) return "";
   const Index steps = threes.front()[1]->steps.cols();
@@ -281,14 +283,16 @@ std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   const auto unexplained = [&](Index by) {
     VectorXd share(arm.dof());
     for (int j = 0; j < arm.dof(); ++j) {
-      VectorXd tau(static_cast<Index>(threes.size())), model(tau.size());
+      // a rotor whose inertia the file lacks looks like a delay
+      VectorXd tau(static_cast<Index>(threes.size())), model(tau.size()), qdd(tau.size());
       for (Index i = 0; i < tau.size(); ++i) {
         const auto& w = threes[static_cast<std::size_t>(i)];
-        tau[i] = later(w, j, by), model[i] = w[1]->model[j];
+        const auto qd = w[1]->motion.row(1 + arm.dof() + j);
+        tau[i] = later(w, j, by), model[i] = w[1]->model[j], qdd[i] = qd(steps) - qd(0);
       }
       const double power = tau.squaredNorm() / static_cast<double>(tau.size());
-      share[j] =
-          misfit(windows, j, tau - model) / (power + std::pow(kLittle * arm.usual_torque[j], 2));
+      share[j] = misfit(windows, j, tau - model, qdd) /
+                 (power + std::pow(kLittle * arm.usual_torque[j], 2));
     }
     return share;
   };
@@ -296,9 +300,10 @@ std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
   VectorXd then = now;
   Index best = 0;
   for (Index by = -steps; by <= steps; ++by)
-    if (VectorXd share = unexplained(by); share.sum() < then.sum())
+    if (VectorXd share = unexplained(by); Search::size(share) < Search::size(then))
       then = std::move(share), best = by;
-  const double better = ((now.array() + kUnsure) / (then.array() + kUnsure)).log().sum();
+  const double known = (then.array() < kAll).all() ? kKnown : kTouched;
+  const double better = ((now.array() + known) / (then.array() + known)).log().sum();
   const ArmWindow& one = *windows.front();
   const double late = static_cast<double>(best) * (one.motion(0, steps) - one.motion(0, 0)) /
                       static_cast<double>(steps);

@@ -91,7 +91,7 @@ std::vector<TorqueFit::SlowJoint> TorqueFit::slow_joints() const {
     fit.without_gravity = misfit(windows, j, tau - model + gravity);
     fit.without_model = misfit(windows, j, tau);
     // of a load's residual, how much a better cause may leave: nothing where the pose is one
-    const double load = misfit(windows, j, tau - model, true);
+    const double load = misfit(windows, j, tau - model, VectorXd::Ones(tau.size()));
     fit.by_load = load > kMinVariation * fit.residual ? kMaxRatio * load : 0;
     all.push_back(fit);
   }
