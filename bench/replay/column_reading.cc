@@ -8,10 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <numeric>
-#include <set>
 #include <utility>
 
 namespace tauext {
