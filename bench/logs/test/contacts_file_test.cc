@@ -44,11 +44,11 @@ class Contacts : public testing::Test {
   }
   // of this log with these labels, and the messages about them
   std::vector<std::uint8_t> labels(const std::string& log, const std::string& text) {
-    LogOptions o;
-    o.contacts = contacts_of(put("labels.csv", text), {log});
     testing::internal::CaptureStderr();
     const RecordedLog read = [&] {
       try {
+        LogOptions o;
+        o.contacts = contacts_of(put("labels.csv", text), {log});
         return read_any_log(log, o);
       } catch (...) {
         messages_ = testing::internal::GetCapturedStderr();
