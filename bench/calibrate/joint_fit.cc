@@ -216,9 +216,10 @@ CalibratedJoint calibrated_joint(const Rows& r, const Names& names, bool current
   }
   joint.before = rms(a.gain * r.measured - r.rigid);
   joint.after = rms(left_over(r, a));
-  if (joint.after > joint.torque)
+  if (2 * joint.after * joint.after > joint.torque * joint.torque)
     joint.doubts.push_back(fmt::format(
-        "what is left over, {:.3g} N m, is more than the torque that was measured, {:.3g} N m",
+        "{:.3g} of {:.3g} N m are left over, more than is explained (in mean squares): was it "
+        "touched? --contacts names when",
         joint.after, joint.torque));
   if (joint.after <= 1e-6 * joint.torque) return joint;  // no noise, but the integration's error
   joint.colour = colour(a.fit.residuals);

@@ -265,7 +265,7 @@ TEST(ArmCalibration, DoubtsRecordingsThatCannotBeOfTheArm) {
   currents.tau /= 10;
   milli.tau *= 1000;
   for (const auto& [log, why] :
-       {std::pair(&degrees, "is more than the torque that was measured"),
+       {std::pair(&degrees, "more than is explained"),
         std::pair(&reversed, "is the sign of its torque or current right?"),
         std::pair(&swapped, "its torque fits its masses by a factor of"),
         std::pair(&currents, "its torque fits its masses by a factor of 10"),
