@@ -38,7 +38,8 @@ inline constexpr double kSeen = 0.2;
 
 /// [1] Torques that fit the masses by another factor are not those of this arm in N m: masses from
 /// drawings and torque constants are each within a fifth or so.
-inline constexpr double kLeastScale = 0.7, kMostScale = 1.4;
+inline constexpr double kLeastScale = 0.7;
+inline constexpr double kMostScale = 1.4;  ///< [1] likewise
 
 /// A parameter of a joint.
 struct CalibratedTerm {

@@ -16,16 +16,16 @@ namespace tauext {
 
 /// Means over a window, of an arm's coordinates.
 struct ArmWindow {
-  using VectorN = Vec<kMostCoordinates>;
-  VectorN tau = VectorN::Zero();        ///< [N m] what was measured
-  VectorN model = VectorN::Zero();      ///< [N m] by (ii) of bench/calibrate/arm_motion.h
-  VectorN gravity = VectorN::Zero();    ///< [N m] its share of that
-  VectorN speed = VectorN::Zero();      ///< [rad/s]
-  VectorN direction = VectorN::Zero();  ///< [1] of the motion, where dry friction acts
-  Eigen::MatrixXd motion;               ///< t [s], q [rad], qd [rad/s] at some samples, by column
+  using VectorN = Vec<kMostCoordinates>;  ///< a number of each coordinate; 0 of those that are none
+  VectorN tau = VectorN::Zero();          ///< [N m] what was measured
+  VectorN model = VectorN::Zero();        ///< [N m] by (ii) of bench/calibrate/arm_motion.h
+  VectorN gravity = VectorN::Zero();      ///< [N m] its share of that
+  VectorN speed = VectorN::Zero();        ///< [rad/s]
+  VectorN direction = VectorN::Zero();    ///< [1] of the motion, where dry friction acts
+  Eigen::MatrixXd motion;                 ///< t [s], q [rad], qd [rad/s] at some samples, by column
   Eigen::MatrixXd steps;  ///< [N m s] tau's integral from each of these samples to the next
 };
-using ArmWindows = std::vector<ArmWindow>;
+using ArmWindows = std::vector<ArmWindow>;  ///< in the order of their times
 
 /// Makes them of a recording that goes by; of a long one every second eight of them are kept, or
 /// every fourth, and so on.
@@ -40,7 +40,7 @@ class WindowMaker {
   /// The next one is of another recording.
   void interrupt() { begun_ = false; }
 
-  const ArmWindows& windows() const { return windows_; }
+  const ArmWindows& windows() const { return windows_; }  ///< those so far
   /// One whose motion it is.
   ArmWindow window(Eigen::MatrixXd motion, const ArmWindow::VectorN& tau) const;
 
