@@ -97,6 +97,20 @@ inline constexpr NamedQuantity kFrankaState[] = {
     {"tau_instant", R"(tau_[jJ]\[(\d)\]|measured_joint_state\.effort\..*)"},
     {"driver", R"(tau_ext_hat_filtered(?:\[(\d)\]|\.effort\..*))"}};
 
+/// In our own MCAP files: by the messages' t, as the stamps of the file are whole nanoseconds.
+inline constexpr NamedQuantity kTauextMcap[] = {
+    {"t", R"(message\.t)"},
+    {"q", R"(q\[(\d+)\])"},
+    {"qd", R"(qd\[(\d+)\])"},
+    {"tau", R"(tau\[(\d+)\])"},
+    {"tau_instant", R"(tau_instant\[(\d+)\])"},
+    {"current", R"(current\[(\d+)\])"},
+    {"tau_without_gravity", R"(tau_without_gravity\[(\d+)\])"},
+    {"tau_ext", R"(tau_ext\[(\d+)\])"},
+    {"driver", R"(driver\[(\d+)\])"},
+    {"force", R"(force\[(\d+)\])"},
+    {"contact", "contact"}};
+
 /// In a bag of ROS 2 (bag_rows.h).
 inline constexpr NamedQuantity kJointState[] = {{"t", "t"},
                                                 {"q", R"(position\..*)"},
@@ -116,6 +130,8 @@ inline constexpr ColumnPreset kColumnPresets[] = {
      "lbr_fri_idl/LBRState lbr_fri_msgs/LBRState"},
     {"franka_state", "FrankaRobotState or FrankaState of franka_msgs, in ROS 2 bags", kFrankaState,
      "", "franka_msgs/FrankaRobotState franka_msgs/FrankaState"},
+    {"tauext_mcap", "MCAP of tauext: JSON with t, q, qd, tau or tau_instant, ..", kTauextMcap, "",
+     "tauext.Measured"},
     {"joint_state", "sensor_msgs/JointState of ROS 2 bags", kJointState, "",
      "sensor_msgs/JointState"},
 };

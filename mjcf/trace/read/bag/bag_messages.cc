@@ -17,6 +17,8 @@ namespace tauext {
 
 namespace {
 
+constexpr const char* kJson = "json";
+
 std::string listed(const std::vector<BagTopic>& topics, bool with_types) {
   std::vector<std::string> names;
   for (const BagTopic& t : topics) {
@@ -55,10 +57,10 @@ BagTopic choose_topic(const std::vector<BagTopic>& topics, const std::string& wa
   if (chosen.size() > 1)
     fail("choose one of its topics, or several apart by commas (--channel): " +
          listed(chosen, true));
-  if (chosen[0].format != "cdr") {
+  if (chosen[0].format != "cdr" && chosen[0].format != kJson) {
     fail(
-        fmt::format("topic {} is serialized as '{}', and not as 'cdr': write it anew by ros2 bag "
-                    "convert",
+        fmt::format("topic {} is serialized as '{}', and not as 'cdr' or 'json': write it anew by "
+                    "ros2 bag convert",
                     printable_name(chosen[0].name), printable_name(chosen[0].format)));
   }
   return chosen[0];
@@ -75,7 +77,9 @@ BagTopic choose_topics(const std::vector<BagTopic>& topics, const std::string& w
       all = std::move(topic);
       continue;
     }
-    if (short_type_name(topic.type) != short_type_name(all.type))
+    const bool any_type = topic.format == kJson && all.format == kJson;
+    if (!any_type &&
+        (short_type_name(topic.type) != short_type_name(all.type) || topic.format != all.format))
       throw std::runtime_error(
           one_line(fmt::format("{}: topics of two types: {} ({}), {} ({})", path, all.name,
                                all.type, topic.name, topic.type)));
@@ -84,10 +88,23 @@ BagTopic choose_topics(const std::vector<BagTopic>& topics, const std::string& w
   return all;
 }
 
+// of "/measured" the topic "/truth"; "" if there is none
+std::string truth_beside(const BagTopic& measured, const std::vector<BagTopic>& topics) {
+  constexpr std::string_view kEnd = "measured";
+  if (measured.type != kMeasuredType || !measured.name.ends_with(kEnd)) return "";
+  const std::string name = measured.name.substr(0, measured.name.size() - kEnd.size()) + "truth";
+  const auto fits = [&](const BagTopic& t) {
+    return t.name == name && t.type == kTruthType && t.format == measured.format;
+  };
+  return std::any_of(topics.begin(), topics.end(), fits) ? name : "";
+}
+
 }  // namespace
 
 bool BagMessages::is_chosen(const BagTopic& topic) const {
-  return short_type_name(topic.type) == short_type_name(topic_.type) &&
+  const bool fits = short_type_name(topic.type) == short_type_name(topic_.type) ||
+                    (topic.format == kJson && topic_.format == kJson);
+  return fits && topic.format == topic_.format &&
          fmt::format(",{},", topic_.name).find(fmt::format(",{},", topic.name)) !=
              std::string::npos;
 }
@@ -106,7 +123,10 @@ void BagMessages::add_topics(const std::vector<BagTopic>& topics) {
 
 void BagMessages::choose(const std::string& path, const std::string& wanted) {
   path_ = path;
-  take(choose_topics(topics_, wanted, path));
+  BagTopic chosen = choose_topics(topics_, wanted, path);
+  if (const std::string truth = wanted.empty() ? truth_beside(chosen, topics_) : ""; !truth.empty())
+    chosen.name += "," + truth;
+  take(chosen);
 }
 
 void BagMessages::take(const BagTopic& topic) {

@@ -10,11 +10,15 @@
 
 namespace tauext {
 
+/// The types of our own messages, in JSON: bench/logs/mcap_samples.h writes them.
+inline constexpr std::string_view kMeasuredType = "tauext.Measured", kTruthType = "tauext.Truth";
+
 /// A message as it lies in the bag, until the next one is read.
 struct BagMessage {
-  double received = 0;     ///< [s] when it was recorded
-  std::string_view bytes;  ///< "" if there are too many
-  std::int64_t size = 0;   ///< [bytes] even so
+  double received = 0;       ///< [s] when it was recorded
+  std::string_view bytes;    ///< "" if there are too many
+  std::int64_t size = 0;     ///< [bytes] even so
+  std::int64_t channel = 0;  ///< by which those of several topics differ
 };
 
 /// A topic of a bag.
@@ -24,7 +28,7 @@ struct BagTopic {
               definition = "";  ///< of the type, where the bag has it: "ros2msg", or IDL
 };
 
-/// Those of some topics of one type, which choose() or take() says first.
+/// Those of some topics, which choose() or take() says first: of one type or, in JSON, of any.
 class BagMessages {
  public:
   /// How long a message may be, and a definition.
@@ -35,12 +39,14 @@ class BagMessages {
   /// All that there are, without the definitions of their types.
   const std::vector<BagTopic>& topics() const { return topics_; }
   /// Chooses some of them. "": the only one of sensor_msgs/msg/JointState or, where there is none,
-  /// of the types that presets.h knows; else names apart by commas, of topics of one type.
+  /// of the types that presets.h knows, and with our own /measured its /truth; else names apart by
+  /// commas, of topics of one type.
   /// @throws std::runtime_error naming the path, and the topics that there are
   void choose(const std::string& path, const std::string& wanted);
   void take(const BagTopic& topic);
   const std::string& path() const { return path_; }  ///< of choose()
-  const BagTopic& topic() const { return topic_; }   ///< of several the names apart by commas
+  /// Of several the names apart by commas, and the type of the first.
+  const BagTopic& topic() const { return topic_; }
 
   /// @returns false at the end
   /// @throws std::runtime_error naming the path, where the file is damaged

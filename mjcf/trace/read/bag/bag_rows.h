@@ -5,20 +5,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/row_source.h"
 
 namespace tauext {
 
 class BagMessages;
-class RosType;
 struct BagTopic;
-struct MessageField;
-struct MessageNumbers;
 
 /// The topic that BagRows would read.
 /// @throws std::runtime_error as BagRows does
@@ -39,7 +38,8 @@ BagTopic topic_of_bag(const std::string& path, const std::string& topic);
 /// none of these, is no row; where messages name other joints, a note names them once, at the end.
 ///
 /// Types other than JointState are read where the bag has their definition, as bags of ROS 2 Iron
-/// and later do, and all of mcap.
+/// and later do, and all of mcap. Messages that are written as JSON (JsonType) need none. Those of
+/// several topics at one time are one row, unless they contradict each other.
 ///
 /// The file is not believed: it is opened to be read alone, nothing is written beside it, a message
 /// may have 1 MB and 64 joints. Messages that are longer, cut off, or no CDR are skipped, and are
@@ -64,6 +64,8 @@ class BagRows : public RowSource {
 
  private:
   void read_type();
+  void note_fields();
+  void count_numbers(const MessageNumbers& message);
   void look_ahead();
   void look_for_numbers();
   void name_columns();
@@ -74,10 +76,12 @@ class BagRows : public RowSource {
   bool is_stamp(std::size_t field) const;
   double stamp_of(const MessageNumbers& message) const;
   void fill(std::vector<double>& row, const MessageNumbers& message) const;
+  bool next_message(std::vector<double>& row, SkippedRows& skipped);
+  bool take_into(std::vector<double>& row) const;
   void note_strangers(SkippedRows& skipped);
 
   std::unique_ptr<BagMessages> messages_;
-  std::unique_ptr<RosType> type_;
+  std::unique_ptr<BagMessageType> type_;
   int seconds_ = -1, nanoseconds_ = -1;  // the fields of the header's stamp
   std::vector<std::string> joints_, columns_;
   std::vector<std::string> called_;  // these joints, in the messages
@@ -86,7 +90,12 @@ class BagRows : public RowSource {
   std::vector<std::size_t> counts_, begins_;
   std::vector<std::vector<int>> at_;  // of each list of names the joints, or -1
   bool use_stamps_ = false;
-  long number_ = 0, with_strangers_ = 0;
+  long number_ = 0, read_ = 0, with_strangers_ = 0;
+  MessageNumbers numbers_;    // of the message that was read last
+  std::int64_t channel_ = 0;  // likewise
+  // of several topics of JSON: its row, which the next ones may add to
+  std::vector<double> ahead_;
+  bool joins_ = false, ended_ = false;
   std::set<std::string> strangers_;  // joints that are not ours, the first few
 };
 

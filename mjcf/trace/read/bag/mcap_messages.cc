@@ -187,7 +187,9 @@ bool McapMessages::next(BagMessage& message) {
   for (Record record; next_record(record);) {
     if (record.kind != op::kMessage) continue;
     Fields f(file_, record.bytes);
-    if (wanted_.count(static_cast<std::uint16_t>(f.number(2))) == 0) continue;
+    const auto channel = static_cast<std::uint16_t>(f.number(2));
+    if (wanted_.count(channel) == 0) continue;
+    message.channel = channel;
     f.number(4);
     const std::uint64_t t = f.number(8);
     f.number(8);

@@ -47,7 +47,6 @@ namespace {
 using detail::DefinedField;
 using detail::Definitions;
 
-constexpr std::size_t kMostOfField = 256;  // numbers
 constexpr std::size_t kMostNodes = 10000;  // of a type
 constexpr std::size_t kDeepest = 20;       // structures in structures
 constexpr std::size_t kEncapsulation = 4;  // [bytes] behind which offsets are counted
@@ -375,6 +374,22 @@ class MessageWalk {
 
 }  // namespace
 
+void BagMessageType::clear(MessageNumbers& to) const {
+  to.names.resize(lists_), to.numbers.resize(fields_.size());
+  for (auto& names : to.names) names.clear();
+  for (auto& numbers : to.numbers) numbers.clear();
+}
+
+const char* BagMessageType::objection_to(const MessageNumbers& numbers) const {
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    const std::size_t count = numbers.numbers[i].size();
+    if (fields_[i].names >= 0 && count != 0 &&
+        count != numbers.names[static_cast<std::size_t>(fields_[i].names)].size())
+      return "it has not as many numbers as names";
+  }
+  return nullptr;
+}
+
 RosType::RosType(const std::string& name, std::string_view definition) {
   const std::string type = short_type_name(name);
   if (is_joint_state(name)) definition = kBuiltIn;
@@ -389,11 +404,9 @@ bool RosType::is_joint_state(std::string_view name) {
   return short_type_name(name) == kRootOfBuiltIn;
 }
 
-const char* RosType::read(std::string_view bytes, MessageNumbers& to) const {
+const char* RosType::read(std::string_view bytes, MessageNumbers& to) {
   if (const char* why = objection_to_encapsulation(bytes)) return why;
-  to.names.resize(lists_), to.numbers.resize(fields_.size());
-  for (auto& names : to.names) names.clear();
-  for (auto& numbers : to.numbers) numbers.clear();
+  clear(to);
   Cdr cdr(bytes.substr(kEncapsulation), bytes[1] == 0);
   MessageWalk walk(cdr, to);
   walk.take(*root_);
@@ -401,12 +414,7 @@ const char* RosType::read(std::string_view bytes, MessageNumbers& to) const {
   const auto empty = [](const auto& names) { return names.empty(); };
   if (lists_ > 0 && std::all_of(to.names.begin(), to.names.end(), empty))
     return "it names no joint";
-  for (std::size_t i = 0; i < fields_.size(); ++i) {
-    const std::size_t count = to.numbers[i].size();
-    if (fields_[i].names >= 0 && count != 0 &&
-        count != to.names[static_cast<std::size_t>(fields_[i].names)].size())
-      return "it has not as many numbers as names";
-  }
+  if (const char* why = objection_to(to)) return why;
   return exact_ && cdr.left() > kMostPadding ? "it is longer than its definition says" : nullptr;
 }
 

@@ -187,6 +187,7 @@ class SqliteMessages final : public BagMessages {
         static_cast<double>(seconds) + 1e-9 * static_cast<double>(t - seconds * kNanoseconds);
     message.size = sqlite3_column_int64(s, 1);
     message.bytes = bytes_in(s, 2);
+    message.channel = sqlite3_column_int64(s, 3);
     return true;
   }
 
@@ -206,12 +207,14 @@ class SqliteMessages final : public BagMessages {
     // length() of a BLOB does not read it
     messages_ = prepare(
         db, file_,
-        fmt::format("SELECT timestamp, length(data), CASE WHEN length(data) <= {} THEN data END "
-                    "FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE instr(',' || ?1 "
-                    "|| ',', ',' || name || ',') > 0 AND replace(type, '/msg/', '/') = "
-                    "replace(?2, '/msg/', '/')) ORDER BY timestamp, id",
+        fmt::format("SELECT timestamp, length(data), CASE WHEN length(data) <= {} THEN data END, "
+                    "topic_id FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE "
+                    "instr(',' || ?1 || ',', ',' || name || ',') > 0 AND serialization_format = ?3 "
+                    "AND (?3 = 'json' OR replace(type, '/msg/', '/') = "
+                    "replace(?2, '/msg/', '/'))) ORDER BY timestamp, id",
                     kMost));
     bind(messages_, 1, topic().name), bind(messages_, 2, topic().type);
+    bind(messages_, 3, topic().format);
     at_end_ = false;
     if (has_table(db, file_, "message_definitions")) find_definition();
   }

@@ -304,7 +304,8 @@ TEST_F(Bag, ErrorsNameTheRemedy) {
       "has /tf (tf2_msgs/msg/TFMessage)");
   EXPECT_EQ(
       error_of_opening(with_topic("/a", "sensor_msgs/msg/JointState", "fory", {})),
-      "topic /a is serialized as 'fory', and not as 'cdr': write it anew by ros2 bag convert");
+      "topic /a is serialized as 'fory', and not as 'cdr' or 'json': write it anew by ros2 bag "
+      "convert");
   EXPECT_EQ(error_of_opening(with({})),
             "no message on topic /joint_states can be read; of the first: there is none");
   EXPECT_EQ(error_of_opening(put("t,q1\n", "x.csv")),
@@ -385,7 +386,7 @@ TEST_F(Bag, ADamagedFileEndsInAnError) {
 
 TEST_F(Bag, AMessageIsRefusedWhereverItEnds) {
   for (const std::string& whole : {kAll, kSome}) {
-    const RosType type("sensor_msgs/msg/JointState");
+    RosType type("sensor_msgs/msg/JointState");
     MessageNumbers to;
     EXPECT_EQ(type.read(whole, to), nullptr);
     EXPECT_EQ(type.read(whole + std::string(3, '\0'), to), nullptr);

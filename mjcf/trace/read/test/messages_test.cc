@@ -156,9 +156,9 @@ TEST(RosType, ADefinitionThatGrowsWithoutEndIsAnError) {
 }
 
 TEST(RosType, ReadsAsManyBytesAsThereAre) {
-  const RosType type("a/msg/A",
-                     "string[<=2] joint_names\nfloat64[] effort\nB[] all\nbool[2000000000] x\n"
-                     "MSG: a/B\nC c\nint16[3] e\nMSG: a/C\n");
+  RosType type("a/msg/A",
+               "string[<=2] joint_names\nfloat64[] effort\nB[] all\nbool[2000000000] x\n"
+               "MSG: a/B\nC c\nint16[3] e\nMSG: a/C\n");
   MessageNumbers to;
   const std::string begin =
       SomeMessage().texts({"a", "b"}).numbers({1, 2}).number(4000000000, 4).bytes();
@@ -171,7 +171,7 @@ TEST(RosType, ReadsAsManyBytesAsThereAre) {
 }
 
 TEST(RosType, WhatItsDefinitionDoesNotSayIsNotBelieved) {
-  const RosType type("a/A", "float64 x");
+  RosType type("a/A", "float64 x");
   MessageNumbers to;
   EXPECT_EQ(type.read(SomeMessage().number(0, 8).number(0, 8).bytes(), to), nullptr);
   EXPECT_EQ(type.read(SomeMessage().number(0, 8).number(0, 8).number(0, 1).bytes(), to),
