@@ -38,7 +38,7 @@ struct Arm {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("logs", f.logs, "recordings without contact: CSV, .npy, .npz, a ROS 2 bag or LCM");
+  app.add_option("logs", f.logs, "without contact: CSV, .npy, .npz, MCAP, a ROS 2 bag or LCM");
   app.add_option("--robot", f.robot,
                  "its file of MJCF, URDF or ours; else a log of one joint is identified")
       ->type_name("FILE");

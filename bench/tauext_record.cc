@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bench/logs/lcm_trace.h"
+#include "bench/logs/mcap_samples.h"
 #include "bench/program/program.h"
 #include "bench/roster/robots.h"
 #include "bench/run/recording_flags.h"
@@ -91,6 +92,7 @@ void write(const Trace& moved, const Flags& f, const Robot& r) {
   const Trace trace = sensed(moved, r);
   if (!f.layout.empty()) return write_layout(trace, f.layout, r.gains(), r.joints(), f.out);
   if (f.out.ends_with(".npz")) return write_npz(f.out, trace);
+  if (f.out.ends_with(".mcap")) return write_mcap(trace, f.out);
   if (!is_lcm_log(f.out)) return write_csv(trace, f.out);
   LogBuffer log;
   append_samples(readings_of(trace), message_type(f.type), log);
@@ -168,7 +170,7 @@ int run(const CLI::App& app, const Flags& f) {
         "--out {}: --layout joint_state makes a bag, whose name ends in .db3, and no other's",
         f.out));
   if (!f.layout.empty() &&
-      (is_lcm_log(f.out) || f.out.ends_with(".npz") || f.out.ends_with(".npy")))
+      (is_lcm_log(f.out) || f.out.ends_with(".npz") || f.out.ends_with(".mcap")))
     throw std::invalid_argument(
         fmt::format("--layout {} writes text or a bag, and --out is {}", f.layout, f.out));
   const Robot& r = robot(with_lock(f.robot, f.lock));
@@ -200,7 +202,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Records a scenario on a simulated robot with its true tau_ext, 1 kHz, as CSV:\n"
       "t,q1..,qd1..,tau1..,tau_ext1..,contact  [s, rad, rad/s, N m; sign: see README];\n"
-      "or, to a file that ends in .npz, as NumPy's arrays t, q, .., or in .lcm, as an LCM log.\n\n"
+      "or, to a file that ends in .npz, as NumPy's arrays t, q, .., in .mcap, for Foxglove or\n"
+      "PlotJuggler, or in .lcm, as an LCM log.\n\n"
       "  tauext-record --robot wallmobot3 --scenario step --out step.csv\n",
       "tauext-record");
   Flags flags;

@@ -142,7 +142,7 @@ struct Flags {
 };
 
 void add_flags(CLI::App& app, Flags& f) {
-  app.add_option("log", f.log, "log to read: CSV, .npy, .npz, a ROS 2 bag or LCM");
+  app.add_option("log", f.log, "log to read: CSV, .npy, .npz, MCAP, a ROS 2 bag or LCM");
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
   app.add_option("--columns", f.columns,
                  "what the log's columns mean: a map, or libfranka, ur_rtde, ..")
@@ -165,7 +165,7 @@ void add_flags(CLI::App& app, Flags& f) {
                  "the force at this site or body (end_effector), and the link touched")
       ->type_name("SITE")
       ->check(not_empty);
-  app.add_option("--out", f.out, "CSV to write, or .npz; - is standard output");
+  app.add_option("--out", f.out, "CSV to write, .npz or .mcap; - is standard output");
   app.add_option("--score_from", f.score_from,
                  "errors count from this time on [s]; else from the begin")
       ->type_name("S");
@@ -196,7 +196,7 @@ void refuse_incomplete(const Flags& f) {
         "a log, --robot, --estimator and --out are required; see tauext-replay --help");
   if (is_lcm_log(f.out) || f.out.ends_with(".npy") || f.out.ends_with(".db3"))
     throw std::invalid_argument(
-        fmt::format("--out {}: estimates are written as CSV, or to an .npz", f.out));
+        fmt::format("--out {}: estimates are written as CSV, or to an .npz or an .mcap", f.out));
   refuse_twice("estimator", f.estimators);
 }
 
@@ -210,6 +210,7 @@ int replay(Flags& f) {
                            contacts_of(f.contacts, {f.log})};
   LogReader log(f.log, options);
   const RecordingContents& contents = log.contents();
+  const RecordingContents recorded = contents;
   r.require_joints(contents.dof, f.log);
   if (r.is_from_file()) log.scale_torques(torque_gains_of(r.model()));
   log.use_gains(r.gains());
@@ -232,12 +233,12 @@ int replay(Flags& f) {
   }
   truth = Trace();
   TorqueCheck torque(r, contents, f.estimators);
-  const auto out = estimates_writer(f.out, all, contents.dof);
+  const auto out = estimates_writer(f.out, all, recorded);
   for (RecordedSample sample; log.next(sample);) {
     for (Replayed& c : all) c.take(sample);
     torque.take(sample);
     if (fit) fit->take(sample, sample.contact, sample.tau_ext);
-    out->add(sample.t, all);
+    out->add(sample, log.recorded_tau(), all);
   }
 
   log.report();

@@ -231,6 +231,7 @@ struct LogReader::Impl {
   std::optional<ContactLabels> labels;  // of it
   bool own_labels = false;              // which the log has, too
   std::int64_t differing = 0;           // samples
+  VectorXd tau;                         // of the last sample, as it was read
   VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents; or [1]
   std::function<VectorXd(const VectorXd&)> gravity;  // [N m] of q, if it is to be added to tau
   std::unique_ptr<detail::UnitDoubt> doubt;
@@ -269,6 +270,9 @@ const VectorXd& LogReader::least() const {
 const VectorXd& LogReader::most() const {
   return impl_->doubt->most();
 }
+const VectorXd& LogReader::recorded_tau() const {
+  return impl_->tau;
+}
 bool LogReader::contradicts() const {
   return impl_->doubt->contradicts();
 }
@@ -280,6 +284,7 @@ bool LogReader::next(RecordedSample& s) {
     return false;
   }
   impl_->label(s);
+  impl_->tau = s.tau;
   if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
   if (impl_->gravity) s.tau += impl_->gravity(s.q);
   impl_->doubt->take(s);

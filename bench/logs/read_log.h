@@ -49,6 +49,8 @@ class LogReader final : public SampleSource {
   const RecordingContents& contents() const override;
   bool next(RecordedSample& sample) override;
   const Regularity& regularity() const override;
+  /// Of the last sample, as the log has it: not scaled, not made of currents, without gravity.
+  const Eigen::VectorXd& recorded_tau() const;
 
   std::int64_t skipped() const;          ///< rows so far, or messages of the channel, not used
   const Eigen::VectorXd& least() const;  ///< q [rad] so far, joint by joint

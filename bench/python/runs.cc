@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/logs/mcap_samples.h"
 #include "bench/python/arrays.h"
 #include "bench/replay/robot_log.h"
 #include "bench/roster/robots.h"
@@ -99,10 +100,13 @@ void bind_runs(py::module_& m) {
           [](const Trace& r, const std::string& path) {
             if (path.ends_with(".npz"))
               write_npz(path, r);
+            else if (path.ends_with(".mcap"))
+              write_mcap(r, path);
             else
               write_csv(r, path);
           },
-          py::arg("path"), "Writes a CSV, or NumPy's arrays if the path ends in .npz.");
+          py::arg("path"),
+          "Writes a CSV, NumPy's arrays if the path ends in .npz, or MCAP if in .mcap.");
   m.def("read_log", &read, py::arg("path"), py::arg("columns") = "", py::arg("channel") = "",
         py::arg("robot") = "");
 }

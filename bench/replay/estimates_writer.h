@@ -3,6 +3,7 @@
 /// The file of what estimators made of a log.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ namespace tauext {
 class EstimatesWriter {
  public:
   virtual ~EstimatesWriter() = default;
-  /// What all of them made of the sample at t [s], which they have taken.
+  /// What all of them made of the sample y, which they have taken.
+  /// @param tau of the sample, as the log has it
   /// @throws std::runtime_error naming the path
-  virtual void add(double t, const std::vector<Replayed>& all) = 0;
+  virtual void add(const RecordedSample& y, const Eigen::VectorXd& tau,
+                   const std::vector<Replayed>& all) = 0;
   /// @throws std::runtime_error naming the path
   virtual void commit() = 0;
 };
@@ -26,10 +29,13 @@ class EstimatesWriter {
 /// A CSV with a row for each sample: t, and of each estimator its tau_ext, status, mark and forces;
 /// t and tau_ext in as many digits as tell them from others, forces in nine. Standard output if the
 /// path is "-". Or a .npz with the arrays t, NAME_tau_ext, NAME_status, the marks, and NAME_force,
-/// NAME_moment and NAME_link, which lies in memory until commit().
+/// NAME_moment and NAME_link, which lies in memory until commit(). Or a .mcap with the recording as
+/// McapSamples has it, and a topic /estimate/NAME for each of them.
 /// @param all those whose estimates will come
+/// @param log the recording, before its torques were made of currents, scaled or added to
 /// @throws std::runtime_error naming the path
 std::unique_ptr<EstimatesWriter> estimates_writer(const std::string& path,
-                                                  const std::vector<Replayed>& all, int dof);
+                                                  const std::vector<Replayed>& all,
+                                                  const RecordingContents& log);
 
 }  // namespace tauext

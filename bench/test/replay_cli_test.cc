@@ -10,14 +10,17 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "bench/test/programs.h"
+#include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/layout_writer.h"
 #include "mjcf/trace/read/recording.h"
+#include "mjcf/trace/read/text/csv_rows.h"
 
 namespace tauext::test {
 namespace {
@@ -246,7 +249,7 @@ long memory_of(const std::string& folder, const std::string& command) {
 }
 
 TEST_F(Programs, ReplayTakesNoMoreMemoryForALongerLog) {
-  for (const char* ending : {"csv", "lcm"}) {
+  for (const std::string ending : {"csv", "lcm", "mcap"}) {
     std::vector<long> kilobytes;
     for (const int seconds : {2, 60}) {
       write("long.json",
@@ -262,11 +265,111 @@ TEST_F(Programs, ReplayTakesNoMoreMemoryForALongerLog) {
       kilobytes.push_back(
           memory_of(folder_.string(), "tauext-replay " + log +
                                           " --robot wallmobot3 --estimator "
-                                          "mo2,ekf --detector pan_tompkins --out est.csv"));
+                                          "mo2,ekf --detector pan_tompkins --out est." +
+                                          (ending == "mcap" ? "mcap" : "csv")));
     }
     EXPECT_LT(kilobytes[1], kilobytes[0] + 4000) << ending;
     EXPECT_LT(kilobytes[1], 64000) << ending;
   }
+}
+
+// through a row that is left out, with torques that were read at t, and with forces
+TEST_F(Programs, ReplayOfMcapIsThatOfTheCsv) {
+  const std::string arm = " --robot " + kExamples + "/arm7.xml --lock 'finger.*'";
+  const std::string record = "tauext-record" + arm + " --scenario blow --every 8 --out ";
+  ASSERT_EQ(run(record + "log.csv").code, 0);
+  ASSERT_EQ(run(record + "log.mcap").code, 0);
+  const std::string replay = arm +
+                             " --estimator mo2,eso:bandwidth=60 --detector pan_tompkins "
+                             "--wrench end_effector --out ";
+  const Outcome csv = run("tauext-replay log.csv" + replay + "csv.csv");
+  EXPECT_EQ(csv.code, 0) << csv.text;
+  EXPECT_TRUE(csv.says("recall")) << csv.text;
+  // and once more from the file that has the estimates, too
+  ASSERT_EQ(run("tauext-replay log.csv" + replay + "est.mcap").code, 0);
+  for (const char* log : {"log.mcap", "est.mcap"}) {
+    const Outcome mcap = run(std::string("tauext-replay ") + log + replay + "mcap.csv");
+    EXPECT_EQ(mcap.code, 0);
+    EXPECT_EQ(mcap.text, csv.text) << "errors and verdicts";
+    EXPECT_TRUE(content("mcap.csv") == content("csv.csv")) << log;
+  }
+}
+
+// mo2_tau_ext1 of the CSV is tau_ext[0] on /estimate/mo2
+TEST_F(Programs, ReplayWritesItsEstimatesToMcapAsToCsv) {
+  ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario collision --out log.csv").code, 0);
+  const std::string replay =
+      "tauext-replay log.csv --robot wallmobot3 --estimator mo2,ekf --detector pan_tompkins --out ";
+  ASSERT_EQ(run(replay + "est.csv").code, 0);
+  ASSERT_EQ(run(replay + "est.mcap").code, 0);
+  BagRows rows((folder_ / "est.mcap").string(), "/estimate/mo2,/estimate/ekf");
+  EXPECT_EQ(rows.columns().size(), 1U + 1 + 3 + 1 + 1) << "both have the same names";
+  for (const std::string estimator : {"mo2", "ekf"}) {
+    BagRows mcap((folder_ / "est.mcap").string(), "/estimate/" + estimator);
+    EXPECT_EQ(mcap.columns(),
+              (std::vector<std::string>{"t", "message.t", "tau_ext[0]", "tau_ext[1]", "tau_ext[2]",
+                                        "status", "mark"}));
+    CsvRows csv((folder_ / "est.csv").string(), {});
+    const auto at = [&](const std::string& name) {
+      const auto found = std::find(csv.columns().begin(), csv.columns().end(), name);
+      EXPECT_NE(found, csv.columns().end()) << name;
+      return static_cast<std::size_t>(found - csv.columns().begin());
+    };
+    const std::size_t first = at(estimator + "_tau_ext1"), status = at(estimator + "_status");
+    const std::size_t mark = at(estimator + "_pan_tompkins_mark");
+    SkippedRows skipped;
+    int count = 0, marks = 0;
+    for (std::vector<double> a, b; mcap.next(a, skipped); ++count) {
+      ASSERT_TRUE(csv.next(b, skipped));
+      ASSERT_NEAR(a[0], b[0], 0.6e-9);
+      ASSERT_EQ(a[1], b[0]);
+      for (std::size_t j = 0; j < 3; ++j) ASSERT_EQ(a[2 + j], b[first + j]);
+      ASSERT_EQ(a[5], b[status]);
+      ASSERT_EQ(a[6], b[mark]);
+      marks += a[6] != 0;
+    }
+    EXPECT_EQ(count, 30000);
+    EXPECT_GT(marks, 0);
+  }
+}
+
+// the robot's file multiplies the torques of logs, ours as others, and the log of estimates again
+TEST_F(Programs, ReplayScalesTorquesOfMcapOnce) {
+  fs::copy(kExamples + "/arm7.xml", folder_ / "arm7.xml");
+  write("arm.json", R"({"format": "tauext-robot-1", "file": "arm7.xml", "lock": "finger.*",
+    "joints": {"joint2": {"torque_gain": 1.04}, "joint4": {"torque_gain": 0.97}}})");
+  ASSERT_EQ(run("tauext-record --robot arm.json --scenario free --out log.csv").code, 0);
+  const std::string replay = " --robot arm.json --estimator mo2 --out ";
+  const Outcome csv = run("tauext-replay log.csv" + replay + "csv.csv");
+  EXPECT_EQ(run("tauext-replay log.csv" + replay + "est.mcap").code, csv.code) << csv.text;
+  EXPECT_EQ(run("tauext-replay est.mcap" + replay + "mcap.csv").code, csv.code);
+  EXPECT_TRUE(content("mcap.csv") == content("csv.csv"));
+  EXPECT_EQ(run("tauext-replay log.csv --robot arm7.xml --lock 'finger.*' --estimator mo2 --out "
+                "plain.csv")
+                .code,
+            0);
+  EXPECT_TRUE(content("plain.csv") != content("csv.csv")) << "the gains matter";
+}
+
+TEST_F(Programs, McapAppearsWholeOrNotAtAll) {
+  fs::create_symlink("/dev/full", folder_ / "full.mcap");
+  const Outcome full = run("tauext-record --robot testbed1 --scenario hold --out full.mcap");
+  EXPECT_EQ(full.code, 2) << full.text;
+  EXPECT_TRUE(full.says("No space left on device")) << full.text;
+  ASSERT_EQ(run("tauext-record --robot testbed1 --scenario hold --out log.mcap").code, 0);
+  EXPECT_EQ(run("tauext-replay log.mcap --robot wallmobot3 --estimator mo1 --out e.mcap").code, 2);
+  EXPECT_EQ(run("tauext-replay log.mcap --robot testbed1 --estimator mo1 --score_from 1e9 --out "
+                "e.mcap")
+                .code,
+            2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
+  const Outcome self =
+      run("tauext-replay log.mcap --robot testbed1 --estimator mo1 --out log.mcap");
+  EXPECT_EQ(self.code, 2) << self.text;
+  const Outcome layout =
+      run("tauext-record --robot testbed1 --scenario hold --layout libfranka --out x.mcap");
+  EXPECT_EQ(layout.code, 2) << layout.text;
+  EXPECT_TRUE(layout.says("--layout libfranka writes text or a bag, and --out is x.mcap"));
 }
 
 TEST_F(Programs, ReplayScoresFromATimeWithinTheLog) {

@@ -162,7 +162,7 @@ def test_thresholds_of_a_file_are_those_of_their_condition(arm, tmp_path):
 
 def test_runs_go_through_files(arm, tmp_path):
     run = arm.record("step")
-    for name in ("run.csv", "run.npz"):
+    for name in ("run.csv", "run.npz", "run.mcap"):
         run.save(str(tmp_path / name))
         again = tauext.read_log(tmp_path / name)
         np.testing.assert_array_equal(again.tau_ext, run.tau_ext)
