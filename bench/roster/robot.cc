@@ -59,7 +59,8 @@ bool is_robot_file(std::string_view name) {
   std::string path(name.substr(0, name.find(kLock)));
   std::transform(path.begin(), path.end(), path.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return path.ends_with(".xml") || path.ends_with(".urdf") || path.ends_with(".json");
+  return path.ends_with(".xml") || path.ends_with(".mjcf") || path.ends_with(".urdf") ||
+         path.ends_with(".json");
 }
 
 Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {

@@ -15,6 +15,7 @@
 #include "bench/roster/file_robot.h"
 #include "bench/roster/kernels/kernels.h"
 #include "bench/roster/robot_of.h"
+#include "mjcf/import/robot_file.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/trace/known.h"
@@ -57,11 +58,18 @@ const Robot& robot_of_file(const std::string& name) {
   return *r;
 }
 
+// the remedy of a file of another kind than is read here
+void refuse_other_kind(std::string_view name) {
+  const std::string why = why_other_kind(std::string(name.substr(0, name.find(kLock))));
+  if (!why.empty()) throw std::invalid_argument(why);
+}
+
 const Robot& find_robot(const std::vector<std::unique_ptr<const Robot>>& all,
                         std::string_view name) {
   for (const auto& r : all) {
     if (r->name() == name) return *r;
   }
+  refuse_other_kind(name);
   std::vector<std::string> known;
   for (const auto& r : all) known.push_back(r->name());
   known.insert(known.end(), kRobotsByMjcf.begin(), kRobotsByMjcf.end());
@@ -138,6 +146,7 @@ const std::vector<std::unique_ptr<const Robot>>& robots() {
 std::string with_lock(const std::string& robot, const std::string& lock) {
   if (lock.empty()) return robot;
   if (is_robot_file(robot)) return robot + std::string(kLock) + lock;
+  refuse_other_kind(robot);
   throw std::invalid_argument(
       fmt::format("--lock fixes joints of a robot from a file, and {} is none", robot));
 }

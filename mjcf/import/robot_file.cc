@@ -2,10 +2,17 @@
 #include "mjcf/import/robot_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "mjcf/import/json_object.h"
 #include "mjcf/trace/printable.h"
@@ -92,13 +99,97 @@ RobotFile robot_of(const Json& json, const std::string& path) {
   return r;
 }
 
+namespace fs = std::filesystem;
+
+std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// of a command line
+std::string file_word(const std::string& path) {
+  return path.find_first_of(" '\"$`\\()&;<>|*?") == path.npos ? path : '\'' + path + '\'';
+}
+
+// package://NAME/PATH is ROS's, for what lies in NAME's folder of shared files
+std::string why_address(const std::string& path) {
+  const std::size_t at = path.find("://") + 3;
+  const std::string scheme = path.substr(0, at), rest = path.substr(at);
+  if (scheme == "file://") return fmt::format("{}: give its path, {}", path, rest);
+  if (scheme != "package://")
+    return fmt::format("{}: a file is wanted, not an address: download it first", path);
+  const std::size_t end = std::min(rest.find('/'), rest.size());
+  return fmt::format(
+      "{}: an address of ROS is not looked up here; its file is $(ros2 pkg prefix --share {}){}",
+      path, rest.substr(0, end), rest.substr(end));
+}
+
+// whether it is one, by how it begins
+bool is_robot(const fs::path& file) {
+  const std::string kind = in_small_letters(file.extension().string());
+  if (kind == ".urdf" || kind == ".xacro" || kind == ".mjcf") return true;
+  if (kind != ".xml") return false;
+  std::string begin(4096, ' ');
+  std::ifstream(file).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.find("<mujoco") != begin.npos || begin.find("<robot") != begin.npos;
+}
+
+std::string why_folder(const std::string& path) {
+  std::vector<std::string> robots;
+  std::error_code error;
+  int looked_at = 0;  // a folder may be the whole disk
+  for (fs::recursive_directory_iterator at(path, error), end;
+       !error && at != end && ++looked_at < 2000; at.increment(error)) {
+    if (at.depth() > 2) at.disable_recursion_pending();
+    if (at->is_regular_file(error) && is_robot(at->path())) robots.push_back(at->path().string());
+  }
+  std::sort(robots.begin(), robots.end());
+  const std::size_t found = robots.size();
+  if (found > 8) robots.resize(8);
+  return fmt::format("{}: it is a folder; {}{}", path,
+                     found == 0
+                         ? "name an MJCF or URDF file"
+                         : fmt::format("name a robot's file, like {}", fmt::join(robots, ", ")),
+                     found > robots.size() ? ", .." : "");
+}
+
 }  // namespace
+
+std::string why_other_kind(const std::string& path) {
+  if (path.find("://") != path.npos) return why_address(path);
+  std::error_code error;
+  if (fs::is_directory(path, error)) return why_folder(path);
+  const fs::path file = path;
+  const std::string plain = file_word(fs::path(file).replace_extension().string());
+  const std::string kind = in_small_letters(file.extension().string()), own = file_word(path);
+  if (kind == ".xacro") {
+    const bool named = fs::path(file.stem()).extension() == ".urdf";  // arm.urdf.xacro
+    return fmt::format(
+        "{}: xacro has to be run first: xacro {} > {} (the package xacro of ROS, or pip's)", path,
+        own, named ? plain : plain + ".urdf");
+  }
+  if (kind == ".sdf" || kind == ".world")
+    return fmt::format(
+        "{0}: SDF is not read here; this makes MJCF of it: sdf2mjcf {1} {2}.xml (pip install "
+        "sdformat-mjcf)",
+        path, own, plain);
+  if (kind == ".usd" || kind == ".usda" || kind == ".usdc" || kind == ".usdz")
+    return fmt::format(
+        "{}: USD is not read here; this makes URDF of it: usd_to_urdf -o {}.urdf {} (pip install "
+        "nvidia-srl-usd-to-urdf)",
+        path, plain, own);
+  if (kind == ".mjb")
+    return path + ": MuJoCo's binary form is not read here; give the MJCF that it was made of";
+  return "";
+}
 
 bool is_our_robot_file(std::string_view path) {
   return path.ends_with(".json");
 }
 
 RobotFile robot_file(const std::string& path, const ImportOptions& options) {
+  if (const std::string why = why_other_kind(path); !why.empty()) throw std::invalid_argument(why);
   if (!is_our_robot_file(path)) return {path, options};
   RobotFile robot = robot_of(read_json(path), path);
   std::string& lock = robot.options.lock;

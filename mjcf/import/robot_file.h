@@ -40,6 +40,10 @@ inline constexpr const char* kRobotFileFormat = "tauext-robot-1";
 /// Whether a robot's name is the path of such a file: it ends in .json.
 bool is_our_robot_file(std::string_view path);
 
+/// Why a path is no robot that can be read, though it looks like one of another kind (xacro, SDF,
+/// USD, a folder, an address), and the command that makes a file of it; "" for any other path.
+std::string why_other_kind(const std::string& path);
+
 /// What it says.
 struct RobotFile {
   std::string path;       ///< of the MJCF or URDF, from where this program runs
@@ -48,7 +52,7 @@ struct RobotFile {
 
 /// What a robot's path stands for: a file of ours, or another one, which is itself.
 /// @throws std::runtime_error or std::invalid_argument naming the path, the key and what is wrong;
-/// also for two different locks
+/// also for two different locks, and as why_other_kind() says
 RobotFile robot_file(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace tauext

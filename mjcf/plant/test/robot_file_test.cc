@@ -160,5 +160,31 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
   }
 }
 
+TEST_F(RobotFiles, FilesOfOtherKindsAreNamedWithTheCommandThatConvertsThem) {
+  const auto why = [](const std::string& path) { return error_of([&] { robot_file(path); }); };
+  EXPECT_EQ(why("ur5e.urdf.xacro"),
+            "ur5e.urdf.xacro: xacro has to be run first: xacro ur5e.urdf.xacro > ur5e.urdf (the "
+            "package xacro of ROS, or pip's)");
+  EXPECT_NE(why("my arm.XACRO").find("xacro 'my arm.XACRO' > 'my arm'.urdf"), std::string::npos)
+      << why("my arm.XACRO");
+  EXPECT_NE(why("a/b.sdf").find("sdf2mjcf a/b.sdf a/b.xml"), std::string::npos);
+  EXPECT_NE(why("a.usdz").find("usd_to_urdf -o a.urdf a.usdz"), std::string::npos);
+  EXPECT_NE(why("a.mjb").find("give the MJCF"), std::string::npos);
+  EXPECT_NE(why("package://ur_description/urdf/ur5.urdf")
+                .find("its file is $(ros2 pkg prefix --share ur_description)/urdf/ur5.urdf"),
+            std::string::npos);
+  EXPECT_NE(why("file:///a/b.urdf").find("give its path, /a/b.urdf"), std::string::npos);
+  EXPECT_NE(why("https://x.org/b.urdf").find("download it first"), std::string::npos);
+  for (const char* path : {"a.xml", "a.urdf", "a.mjcf", "wallmobot3", "none.json"})
+    EXPECT_EQ(why_other_kind(path), "") << path;
+  // what of a folder is a robot
+  std::filesystem::create_directories(folder_ / "ur" / "urdf");
+  EXPECT_NE(why(folder_ / "ur").find("it is a folder; name an MJCF or URDF file"),
+            std::string::npos);
+  put("<package/>", "ur/package.xml");
+  const std::string urdf = put("<robot/>", "ur/urdf/ur5.urdf"), mjcf = put("<mujoco/>", "ur/a.xml");
+  EXPECT_TRUE(why(folder_ / "ur").ends_with("name a robot's file, like " + mjcf + ", " + urdf));
+}
+
 }  // namespace
 }  // namespace tauext::test
