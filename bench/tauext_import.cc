@@ -13,6 +13,8 @@
 
 #include "bench/program/program.h"
 #include "mjcf/import/robot_file.h"
+#include "mjcf/plant/mjcf_file.h"
+#include "mjcf/plant/remedy/doubts.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
@@ -24,12 +26,12 @@ namespace {
 using namespace tauext;
 
 // says what is wrong with it
-ArmTree arm_of(const std::string& file, const ImportOptions& options) {
-  const Model model = load_mjcf(file, options);
+ArmTree arm_of(const Model& model, const std::string& file, const ImportOptions& options) {
   try {
     return tree_of(model);
   } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(fmt::format("{}: {}", file, e.what()));
+    throw std::invalid_argument(
+        fmt::format("{}: {}", file, why_no_arm(e.what(), file, {}, options)));
   }
 }
 
@@ -83,7 +85,8 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
     throw std::invalid_argument(
         fmt::format("--out {}: MJCF goes to a name that ends in .xml, C++ to one in .h", out));
   const auto [file, options] = robot_file(path, how);
-  const ArmTree arm = arm_of(file, options);
+  const Model model = load_mjcf(file, options);
+  const ArmTree arm = arm_of(model, file, options);
   const ImportedText text = import_mjcf(file, options);
   double mass = 0;
   int slides = 0;
@@ -103,12 +106,14 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
                                   followers, followers == 1 ? "s" : "")
                     : ""));
   if (arm.dof() > kMostCoordinates || followers > kMostFollowers)
-    say(
+    say(why_no_arm(
         fmt::format("note: estimators take arms of 1 to {} joints and up to {} more that follow "
                     "them; --lock fixes others",
-                    kMostCoordinates, kMostFollowers));
-  if (const std::string stiff = too_stiff(load_mjcf(file, options)); !stiff.empty())
+                    kMostCoordinates, kMostFollowers),
+        file, {}, options));
+  if (const std::string stiff = too_stiff(model); !stiff.empty())
     say("note: it cannot be simulated: " + stiff);
+  if (const std::string doubts = doubts_about(*model); !doubts.empty()) say(doubts);
   if (const std::string words = in_words(text); !words.empty()) say(words);
   return kGood;
 }

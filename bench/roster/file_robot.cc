@@ -7,6 +7,9 @@
 #include <stdexcept>
 
 #include "bench/roster/kernels/kernels.h"
+#include "mjcf/import/robot_file.h"
+#include "mjcf/plant/mjcf_file.h"
+#include "mjcf/plant/remedy/doubts.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/printable.h"
 
@@ -29,15 +32,23 @@ std::unique_ptr<const Robot> robot_from(const detail::Kernels& kernels, int join
 std::unique_ptr<const Robot> file_robot(const std::string& name) {
   const std::size_t lock = name.find(kLock);
   const std::string path = name.substr(0, lock);
-  const std::string fixed = lock == name.npos ? "" : name.substr(lock + kLock.size());
+  const ImportOptions options{lock == name.npos ? "" : name.substr(lock + kLock.size()), {}, false};
   std::string changes;
-  const Model model = is_robot_file(name) ? load_mjcf(path, {fixed}, &changes) : load_robot(name);
+  const Model model = is_robot_file(name) ? load_mjcf(path, options, &changes) : load_robot(name);
   if (!changes.empty()) say(fmt::format("{}: {}", path, changes));
   const detail::Kernels& kernels = detail::kernels();  // its error is not the file's
   try {
-    return robot_from(kernels, tree_of(model).dof(), name, model);
+    const ArmTree arm = tree_of(model);
+    if (const std::string doubts = doubts_about(*model); is_robot_file(name) && !doubts.empty())
+      say(fmt::format("{}: {}", path, doubts));
+    return robot_from(kernels, arm.dof(), name, model);
   } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(fmt::format("{}: {}", path, e.what()));
+    std::string why = e.what();
+    if (is_robot_file(name)) {
+      const RobotFile file = robot_file(path, options);
+      why = why_no_arm(why, file.path, {}, file.options);
+    }
+    throw std::invalid_argument(fmt::format("{}: {}", path, why));
   }
 }
 

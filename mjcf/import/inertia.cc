@@ -13,10 +13,15 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
+// whether it is one, and not what some program made of 0: a micrometre from the centre
+bool is_moment(double moment, double kg) {
+  return moment > 1e-12 * kg;
+}
+
 // the least first, and a little within what a body can have
 Vector3d balanced(const Vector3d& moments, double kg) {
   const double r = std::cbrt(kg / 4189), most = moments[2];
-  Vector3d m = moments.cwiseMax(most > 0 ? 1e-6 * most : .4 * kg * r * r);
+  Vector3d m = moments.cwiseMax(is_moment(most, kg) ? 1e-6 * most : .4 * kg * r * r);
   if (const double missing = m[2] - m[0] - m[1] + 1e-9 * most; missing > 0)
     m += missing / 3 * Vector3d(1, 1, -1);
   return m;
@@ -31,7 +36,7 @@ MendedInertia mended(const Matrix3d& inertia, double kg) {
   const Vector3d& m = own.eigenvalues();
   MendedInertia out{inertia, balanced(m, kg), Eigen::Quaterniond(axes), m};
   out.change = (out.principal - m).cwiseAbs().maxCoeff() / out.principal[2];
-  out.few_digits = m[2] > 0 && std::max(-m[0], m[2] - m[0] - m[1]) <= 1e-3 * m[2];
+  out.few_digits = is_moment(m[2], kg) && std::max(-m[0], m[2] - m[0] - m[1]) <= 1e-3 * m[2];
   if (out.change > 0) out.inertia = axes * out.principal.asDiagonal() * axes.transpose();
   return out;
 }

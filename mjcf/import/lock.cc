@@ -82,9 +82,10 @@ bool is_idle(const XMLElement& e, const std::set<std::string>& locked, Carriers&
   const std::string one = text(e, "joint1"), two = text(e, "joint2");
   const bool first = locked.count(one) > 0, second = two.empty() || locked.count(two) > 0;
   if (!two.empty() && first != second) {
-    throw std::runtime_error(
+    throw Mendable(
         one_line(fmt::format("joint '{}' is locked and an equality ties '{}' to it: lock both",
-                             first ? one : two, first ? two : one)));
+                             first ? one : two, first ? two : one)),
+        {.lock = {first ? two : one}, .balance = false});
   }
   return first;
 }
@@ -98,8 +99,7 @@ bool moves_inside(XMLElement& body) {
   return moves;
 }
 
-}  // namespace
-
+// a body that floats alone beside an arm, like an object to grasp, has no part in its dynamics
 void settle(XMLElement& mujoco, std::map<std::string, int>& dropped) {
   bool arm = false;
   std::vector<XMLElement*> free;
@@ -109,13 +109,45 @@ void settle(XMLElement& mujoco, std::map<std::string, int>& dropped) {
     return true;
   });
   for (XMLElement* joint : free) {
-    XMLElement& body = *joint->Parent()->ToElement();
-    if (arm && !moves_inside(body)) {
+    if (arm && !moves_inside(*joint->Parent()->ToElement()))
       drop(*joint, "body that floats beside the arm, and stands now", dropped);
-    } else if (text(*joint, "name").empty() && !text(body, "name").empty()) {
-      joint->SetAttribute("name", text(body, "name").c_str());
-    }
   }
+}
+
+// MuJoCo has free joints at the top alone, where a body of a <frame> does not stand any more
+void refuse_carried(XMLElement& mujoco) {
+  Problems problems;
+  each(mujoco, [&](XMLElement& e) {
+    if (is_joint(e) && is_free(e) && parent_name(*e.Parent()->ToElement()) != "worldbody")
+      problems.add(at_line(e,
+                           "joint '{}' is free, within another body or a <frame>; --lock REGEX "
+                           "fixes such joints",
+                           text(e, "name")),
+                   {.lock = {text(e, "name")}, .balance = false});
+    return true;
+  });
+  problems.raise();
+}
+
+}  // namespace
+
+void name_joints(XMLElement& mujoco) {
+  std::set<std::string> taken;
+  each(mujoco, [&](XMLElement& e) {
+    if (is_joint(e)) taken.insert(text(e, "name"));
+    return true;
+  });
+  int number = 0;
+  each(mujoco, [&](XMLElement& e) {
+    if (!is_joint(e)) return true;
+    if (!is_free(e)) ++number;
+    if (!text(e, "name").empty()) return true;
+    std::string name = is_free(e) ? text(*e.Parent()->ToElement(), "name") : "";
+    if (name.empty()) name = is_free(e) ? "base" : fmt::format("joint{}", number);
+    while (!taken.insert(name).second) name += '_';
+    e.SetAttribute("name", name.c_str());
+    return true;
+  });
 }
 
 bool is_locked(const std::string& joint, const std::string& regex) {
@@ -130,6 +162,8 @@ bool is_locked(const std::string& joint, const std::string& regex) {
 void lock_joints(XMLElement& mujoco, const std::string& regex, std::map<std::string, int>& dropped,
                  std::map<std::string, int>& changed) {
   const std::set<std::string> locked = remove_joints(mujoco, regex, changed);
+  settle(mujoco, dropped);
+  refuse_carried(mujoco);
   Carriers carriers;
   each(mujoco, [&](XMLElement& e) {
     if (name_of(e) == "worldbody") find_carriers(e, nullptr, carriers);

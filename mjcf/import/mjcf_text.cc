@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mjcf/import/attach.h"
 #include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
 #include "mjcf/import/schema.h"
@@ -68,12 +69,15 @@ class Import {
     if (name_of(root) != "mujoco") fail(root, "<{}> is no MJCF, and no URDF", name_of(root));
     include(root, fs::path(path_).parent_path(), 0);
     problems_.raise();
+    attach(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     read_settings(root);
+    frames_to_bodies(root);
+    problems_.raise();
     detail::keep_rated(root);
     keep(root);
     problems_.raise();
-    detail::settle(root, out_.dropped);
+    detail::name_joints(root);
     detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
     mend_inertias(root);
     set_compiler(root);
@@ -124,25 +128,44 @@ class Import {
     }
   }
 
-  // <include file=".."/> by the content of that file
-  void include(XMLElement& at, const fs::path& folder, int depth) {
+  // <attach model=".."/> by what it stands for, whose own files are looked for in its own folder
+  void attach(XMLElement& root, const fs::path& folder, int depth) {
+    if (depth > 20) fail(root, "models are attached to each other in a ring");
+    detail::attach_models(root, [&](const std::string& file, detail::AttachedModel& model) {
+      XMLElement& other = load(model.doc, folder / file);
+      model.folder = (folder / file).parent_path().string();
+      include(other, model.folder, 0);
+      problems_.raise();
+      attach(other, model.folder, depth + 1);
+    });
+  }
+
+  // <include file=".."/> by the content of that file, which is looked for beside the first file,
+  // and then, as newer MuJoCo has it, beside the one that includes it
+  void include(XMLElement& at, const fs::path& folder, int depth, const fs::path& beside = {}) {
     for (XMLElement* e = at.FirstChildElement(); e != nullptr;) {
       XMLElement* const next = e->NextSiblingElement();
       if (name_of(*e) == "include") {
+        const std::string file = text(*e, "file");
+        const bool is_new = including_.insert(file).second;
         problems_.attempt([&] {
-          const std::string file = text(*e, "file");
-          if (depth > 20 || !included_.insert(file).second)
-            fail(*e, "'{}' is included twice", file);
+          if (depth > 20 || !is_new) fail(*e, "'{}' includes itself", file);
+          if (++includes_ > kMostIncludes)
+            fail(*e, "more than {} files are included", kMostIncludes);
           XMLDocument other;
-          XMLElement& root = load(other, folder / file);
-          include(root, folder, depth + 1);
+          fs::path path = folder / file;
+          if (!beside.empty() && !fs::exists(path) && fs::exists(beside / file))
+            path = beside / file;
+          XMLElement& root = load(other, path);
+          include(root, folder, depth + 1, path.parent_path());
           XMLNode* behind = e;
           for (XMLNode* c = root.FirstChild(); c != nullptr; c = c->NextSibling())
             behind = at.InsertAfterChild(behind, c->DeepClone(at.GetDocument()));
         });
+        if (is_new) including_.erase(file);
         at.DeleteChild(e);
       } else {
-        include(*e, folder, depth);
+        include(*e, folder, depth, beside);
       }
       e = next;
     }
@@ -166,6 +189,30 @@ class Import {
                  8000));
   }
 
+  // What stands in a <frame> is carried by the body around it, as by a body without a joint. Where
+  // that has an <inertial>, shapes in a frame have no mass, either.
+  void frames_to_bodies(XMLElement& root) {
+    std::set<const XMLNode*> frames;
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "frame" || !inside(e, "worldbody")) return true;
+      const XMLNode* carrier = e.Parent();
+      while (frames.count(carrier) > 0) carrier = carrier->Parent();
+      if (const XMLElement* const joint = e.FirstChildElement("joint"))
+        problems_.attempt(
+            [&] { fail(*joint, "a <joint> in a <frame>: write it into the body around that"); });
+      for (XMLElement* g = e.FirstChildElement("geom"); g != nullptr;) {
+        XMLElement* const next = g->NextSiblingElement("geom");
+        if (!from_geom_ && carrier->FirstChildElement("inertial") != nullptr)
+          drop(*g, "geom in a frame", out_.dropped);
+        g = next;
+      }
+      e.SetName("body");
+      e.DeleteAttribute("name");  // another element may have it
+      frames.insert(&e);
+      return true;
+    });
+  }
+
   void read_settings(XMLElement& root) {
     each(root, [&](XMLElement& e) {
       if (text(e, "mocap") == "true" && e.Attribute("name") != nullptr)
@@ -177,13 +224,16 @@ class Import {
         from_geom_ = text(e, "inertiafromgeom") == "true";
       if (e.Attribute("balanceinertia") != nullptr) balances_ = text(e, "balanceinertia") == "true";
       by_group_ = by_group_ || e.Attribute("inertiagrouprange") != nullptr;
+      total_mass_ = total_mass_ || e.DoubleAttribute("settotalmass", -1) > 0;
       return true;
     });
   }
-  // meshes are needed where a joint moves them, and no <inertial> says the mass
+  // meshes are needed where a joint moves them, and no <inertial> says the mass; or where all
+  // masses are scaled by their sum
   bool mass_is_of_geoms(const XMLElement& geom) const {
     const XMLNode* at = geom.Parent();
     if (!from_geom_ && at->FirstChildElement("inertial") != nullptr) return false;
+    if (total_mass_) return name_of(*at->ToElement()) != "worldbody";
     while (at != nullptr && !detail::has_joint(*at)) at = at->Parent();
     return at != nullptr;
   }
@@ -214,9 +264,21 @@ class Import {
       if (name_of(e) != "mesh" || inside(e, "default")) return true;
       std::string name = text(e, "name");
       if (name.empty()) name = fs::path(text(e, "file")).stem().string();
-      if (meshes.count(name) > 0) return true;
-      return drop(e, "mesh", out_.dropped);
+      if (meshes.count(name) == 0) return drop(e, "mesh", out_.dropped);
+      e.SetAttribute("name", name.c_str());  // MuJoCo 2.2.2 ends it at the first point
+      problems_.attempt([&] { refuse_new_inertia(e, name); });
+      return true;
     });
+  }
+
+  void refuse_new_inertia(const XMLElement& mesh, const std::string& name) const {
+    const auto own = mesh_inertia_.find(&mesh);
+    const std::string how = own == mesh_inertia_.end() ? default_mesh_inertia_ : own->second;
+    if (!how.empty() && how != "legacy")
+      fail(mesh,
+           "the mesh '{}' has inertia=\"{}\", which MuJoCo 2.2.2 does not know, and a mass comes "
+           "from it: write an <inertial> into the bodies that have it",
+           name, how);
   }
 
   // false where it was left out
@@ -242,6 +304,12 @@ class Import {
         if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
         meshes.insert(text(e, "mesh"));
       }
+    }
+    if (name_of(e) == "mesh" && e.Attribute("inertia") != nullptr) {
+      if (inside(e, "default"))
+        default_mesh_inertia_ = text(e, "inertia");
+      else
+        mesh_inertia_[&e] = text(e, "inertia");
     }
     if (name_of(e) == "numeric" && !text(e, "name").starts_with(detail::kMeasured))
       return drop(e, "numeric", out_.dropped);
@@ -335,7 +403,9 @@ class Import {
       e.SetAttribute(attribute, words.c_str());
       return true;
     });
-    if (!all.empty()) throw std::runtime_error(one_line(detail::impossible_inertias(all), 8000));
+    if (!all.empty())
+      throw Mendable(one_line(detail::impossible_inertias(all), 8000),
+                     {.lock = {}, .balance = true});
   }
 
   // the last <compiler> is obeyed; newer MuJoCo's default is that a range limits
@@ -367,12 +437,7 @@ class Import {
       return true;
     });
     each(root, [&](XMLElement& e) {
-      if (name_of(e) != "joint" || inside(e, "default") || inside(e, "equality") ||
-          inside(e, "tendon"))
-        return true;
-      if (text(e, "name").empty())
-        e.SetAttribute("name", fmt::format("joint{}", joints.size() + 1).c_str());
-      joints.push_back(text(e, "name"));
+      if (detail::is_joint(e) && name_of(e) == "joint") joints.push_back(text(e, "name"));
       return true;
     });
     XMLElement* const actuators = root.InsertNewChildElement("actuator");
@@ -384,6 +449,7 @@ class Import {
     }
   }
 
+  static constexpr int kMostIncludes = 1000;  // a file may be included by several
   static constexpr std::uintmax_t kMostBytes = 64u << 20;
 
   std::string path_;
@@ -392,9 +458,12 @@ class Import {
   ImportedText out_;
   detail::Problems problems_;
   bool from_geom_ = false, balances_ = false, tendons_have_forces_ = false;
-  bool weightless_ = false;
+  int includes_ = 0;
+  bool weightless_ = false, total_mass_ = false;
   bool by_group_ = false;  // whether the group of a shape says if it has a mass
-  std::set<std::string> included_, mocap_;
+  std::set<std::string> including_, mocap_;
+  std::map<const XMLElement*, std::string> mesh_inertia_;  // where one says how it is found
+  std::string default_mesh_inertia_;
 };
 
 std::string counted(const std::map<std::string, int>& all) {

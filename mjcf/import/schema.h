@@ -53,7 +53,8 @@ struct Kept {
 inline constexpr Kept kKept[] = {
     {"compiler",
      " boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq "
-     "inertiafromgeom inertiagrouprange autolimits assetdir meshdir "},
+     "inertiafromgeom inertiagrouprange autolimits assetdir meshdir strippath fitaabb "
+     "exactmeshinertia "},
     {"option",
      " timestep impratio gravity wind density viscosity solver iterations tolerance "
      "noslip_iterations "},
@@ -67,7 +68,7 @@ inline constexpr Kept kKept[] = {
     {"freejoint", " name "},
     {"geom",
      " name class type contype conaffinity condim size fromto friction mass density solmix solref "
-     "solimp margin gap pos quat axisangle xyaxes zaxis euler mesh fitscale "},
+     "solimp margin gap pos quat axisangle xyaxes zaxis euler mesh fitscale shellinertia "},
     {"site", " name class type size fromto pos quat axisangle xyaxes zaxis euler "},
     {"asset", " "},
     {"mesh", " name class file vertex normal face refpos refquat scale smoothnormal "},
@@ -107,8 +108,8 @@ inline constexpr std::string_view kFixedJoint = " joint coef ";
 /// no part in the dynamics that we take: left out. Any other one is an error.
 inline constexpr Kept kLeftOut[] = {
     {"compiler",
-     " texturedir strippath fitaabb discardvisual usethread fusestatic alignfree "
-     "saveinertial exactmeshinertia convexhull convexmesh "},
+     " texturedir discardvisual usethread fusestatic alignfree saveinertial convexhull "
+     "convexmesh "},
     {"option",
      " integrator cone jacobian tolerance apirate magnetic o_margin o_solref o_solimp o_friction "
      "noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance ls_iterations "
@@ -117,7 +118,7 @@ inline constexpr Kept kLeftOut[] = {
     {"body", " gravcomp user mocap sleep "},
     {"joint", " group user actuatorfrcrange actuatorfrclimited actuatorgravcomp "},
     {"freejoint", " group align "},
-    {"geom", " group priority material rgba user hfield fluidshape fluidcoef shellinertia "},
+    {"geom", " group priority material rgba user hfield fluidshape fluidcoef "},
     {"site", " group material rgba user "},
     {"mesh",
      " maxhullvert inertia content_type builtin params material user texcoord "
@@ -136,8 +137,7 @@ inline constexpr std::string_view kLeftOutElements =
     "general motor position velocity intvelocity damper cylinder muscle adhesion dcmotor plugin ";
 
 /// Newer elements that would change the arm if they were left out.
-inline constexpr std::string_view kUnknown[] = {"frame", "replicate", "attach", "composite",
-                                                "flexcomp"};
+inline constexpr std::string_view kUnknown[] = {"replicate", "composite", "flexcomp"};
 
 /// The same of URDF, and where it stands.
 struct KeptOfUrdf : Kept {

@@ -139,11 +139,20 @@ bool is_idle(const XMLElement& e, std::string_view within) {
   return true;
 }
 
+constexpr const char* kNotYet = "this is no URDF yet; run it through xacro: xacro FILE > arm.urdf";
+
+// a value that nobody asks for says nothing
+void refuse_macros(const XMLElement& at) {
+  for (const XMLElement* e = at.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const bool is_value = name_of(*e) == "xacro:property" || name_of(*e) == "xacro:arg";
+    if (name_of(*e).starts_with("xacro:") && !is_value) fail(*e, "<{}>: {}", name_of(*e), kNotYet);
+    if (known_of(name_of(*e)) != nullptr) refuse_macros(*e);
+  }
+}
+
 // typing errors would change the arm, and nobody would see it
 void refuse_unknown(const XMLElement& e, const std::string& owner,
                     std::map<std::string, int>& dropped) {
-  if (name_of(e).starts_with("xacro:"))
-    fail(e, "{}: <{}>: this is no URDF yet; run it through xacro", owner, name_of(e));
   const KeptOfUrdf* const known = known_of(name_of(e));
   if (known == nullptr) {
     for (const Kept& k : kUrdf) {
@@ -167,7 +176,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
   for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string_view name = a->Name();
     if (std::string_view(a->Value()).find("${") != name.npos)
-      fail(e, "{}: {} is '{}': this is no URDF yet; run it through xacro", owner, name, a->Value());
+      fail(e, "{}: {} is '{}': {}", owner, name, a->Value(), kNotYet);
     if (name.find(':') != name.npos) continue;
     if (!has_word(known->attributes, name))
       drop_attribute(e, owner, name, known->attributes, dropped);
@@ -215,16 +224,30 @@ class Urdf {
       read(robot);
       connect(robot);
     });
-    if (!impossible_.empty()) problems_.add(impossible_inertias(impossible_));
-    if (!massless_.empty())
-      problems_.add(fmt::format(
-          "links that move and have no mass (give them an <inertial>, or --lock their joints): {}",
-          fmt::join(massless_, ", ")));
+    if (!impossible_.empty())
+      problems_.add(impossible_inertias(impossible_), {.lock = {}, .balance = true});
+    if (!massless_.empty()) add_massless();
     problems_.raise();
   }
 
  private:
+  void add_massless() {
+    if (has_moving_mass_)
+      return problems_.add(
+          fmt::format(
+              "links that move and have no mass (give them an <inertial>, or --lock their joints): "
+              "{}",
+              fmt::join(massless_, ", ")),
+          {.lock = massless_tips_, .balance = false});
+    problems_.add(fmt::format(
+        "none of its links that move has a mass ({}), and dynamics needs them: take a file of the "
+        "same arm that has <inertial>, write them in from the maker's data sheet, or let "
+        "tauext-calibrate --masses find them in recordings",
+        fmt::join(massless_, ", ")));
+  }
+
   void read(const XMLElement& robot) {
+    refuse_macros(robot);
     for (const XMLElement* e = robot.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
       problems_.attempt([&] { read_part(*e); });
     if (links_.empty()) fail(robot, "there is no link in it; is it a file of macros (xacro)?");
@@ -232,8 +255,6 @@ class Urdf {
 
   void read_part(const XMLElement& e) {
     const std::string_view kind = name_of(e);
-    if (kind.starts_with("xacro:"))
-      fail(e, "<{}>: this is no URDF yet; run it through xacro", kind);
     if (kind != "link" && kind != "joint") return drop_other(e, how_.dropped);
     const std::string name = text(e, "name");
     if (name.empty()) fail(e, "a {} without a name", kind);
@@ -255,19 +276,22 @@ class Urdf {
     const bool whole =
         problems_.count() == 0;  // else what follows may be for want of what was refused
     XMLElement& world = *mujoco_.InsertNewChildElement("worldbody");
-    int roots = 0;
+    std::vector<std::string> roots;
     for (const auto& [name, link] : links_) {
       if (joint_of_child_.count(name) > 0) continue;
-      ++roots;
+      roots.push_back(name);
       Piece stands;
       add_body(*link, nullptr, world, 0, stands, Isometry3d::Identity());
       for (const Part& p : stands.parts)
         if (p.kg > 0) ++how_.dropped["mass of what never moves"];
     }
     if (!whole) return;
-    if (roots == 0) fail(robot, "every link is a joint's child: the joints go round in a ring");
-    if (roots != 1)
-      fail(robot, "{} links are no child of a joint, and one must be: the base", roots);
+    if (roots.empty()) fail(robot, "every link is a joint's child: the joints go round in a ring");
+    if (roots.size() != 1)
+      fail(robot,
+           "{} links are no child of a joint, and one must be: the base; join the others to it, or "
+           "take them out: {}",
+           roots.size(), fmt::join(roots, ", "));
     for (const auto& [name, link] : links_)
       if (placed_.count(name) == 0) fail(*link, "link '{}' hangs on itself", name);
   }
@@ -317,7 +341,7 @@ class Urdf {
     double behind = 0;
     for (const XMLElement* j : children_[name])
       behind += add_body(*links_.at(link_of(*j, "child")), j, body, depth + 1, all, here);
-    if (moves) add_inertial(link, own, behind, body);
+    if (moves) add_inertial(link, text(*joint, "name"), own, behind, body);
     return kg + behind;
   }
 
@@ -345,17 +369,21 @@ class Urdf {
 
   // A frame between two joints, as those that a ball joint is made of have between them, needs no
   // mass; MuJoCo wants some.
-  void add_inertial(const XMLElement& link, const Piece& piece, double behind, XMLElement& body) {
+  void add_inertial(const XMLElement& link, const std::string& joint, const Piece& piece,
+                    double behind, XMLElement& body) {
     constexpr double kNearlyNone = 1e-12;  // [kg], [kg m^2]
     Part p = sum(piece.parts);
+    has_moving_mass_ = has_moving_mass_ || p.kg > 0;
     if (p.kg == 0 && behind > 0 && !piece.has_shape) {
       p.kg = kNearlyNone;
       p.inertia = kNearlyNone * Matrix3d::Identity();
       ++how_.changed["frame between joints that has no mass, now 1e-12 kg"];
     }
-    if (p.kg == 0)
+    if (p.kg == 0) {
+      if (behind == 0) massless_tips_.insert(joint);  // which is nothing to the rest of the arm
       return massless_.push_back(
           fmt::format("'{}' (line {})", text(link, "name"), link.GetLineNum()));
+    }
     const MendedInertia m = mended(p.inertia, p.kg);
     if (!m.few_digits && !how_.balance)
       impossible_.push_back(impossible(p.links, link.GetLineNum(), m.moments));
@@ -377,10 +405,14 @@ class Urdf {
     out.SetAttribute("type", slide ? "slide" : "hinge");
     if (!slide && type != "revolute" && type != "continuous") {
       if (!moves) return;  // it is locked
-      fail(joint,
-           "joint '{}' is {}: revolute, continuous, prismatic and fixed are known; --lock REGEX "
-           "fixes others",
-           name, type);
+      const std::string words = at_line(
+          joint,
+          "joint '{}' is {}: revolute, continuous, prismatic and fixed are known; --lock REGEX "
+          "fixes others",
+          name, type);
+      for (const char* const known : {"revolute", "continuous", "prismatic", "fixed"})
+        if (type.empty() || edits(type, known) <= 2) throw std::runtime_error(words);  // misspelt
+      throw Mendable(words, {.lock = {name}, .balance = false});
     }
     problems_.attempt([&] { set_axis(joint, out); });
     problems_.attempt([&] { set_range(joint, out); });
@@ -397,7 +429,7 @@ class Urdf {
     const XMLElement* const limit = joint.FirstChildElement("limit");
     problems_.attempt(
         [&] { put_rated(mujoco_, name, bound(limit, "effort"), bound(limit, "velocity")); });
-    problems_.attempt([&] { tie(joint); });
+    problems_.attempt([&] { tie(joint, moves); });
   }
 
   static void set_axis(const XMLElement& joint, XMLElement& out) {
@@ -411,7 +443,11 @@ class Urdf {
     const std::string type = text(joint, "type"), name = text(joint, "name");
     const XMLElement* const limit = joint.FirstChildElement("limit");
     const double lower = bound(limit, "lower"), upper = bound(limit, "upper");
-    if (lower == 0 && upper == 0) return;
+    if (lower == 0 && upper == 0) {
+      if (limit != nullptr && type != "continuous" && limit->Attribute("lower") != nullptr)
+        ++how_.dropped["limits of 0 and 0"];
+      return;
+    }
     if (type == "continuous") {
       ++how_.dropped["limits of a continuous joint"];
       return;
@@ -430,31 +466,37 @@ class Urdf {
     set(out, "range", {from ? lower : -kEndless, to ? upper : kEndless});
   }
 
-  void tie(const XMLElement& joint) {
+  void tie(const XMLElement& joint, bool moves) {
     const XMLElement* const mimic = joint.FirstChildElement("mimic");
     if (mimic == nullptr) return;
-    const std::string name = text(joint, "name"), leader = leader_of(*mimic, name);
+    const std::string name = text(joint, "name"), leader = text(*mimic, "joint");
+    if (!can_lead(leader, name)) {
+      if (!moves) return;  // it is locked
+      throw Mendable(at_line(*mimic,
+                             "joint '{}': its <mimic> follows '{}', which is no other joint that "
+                             "moves",
+                             name, leader),
+                     {.lock = {name}, .balance = false});
+    }
     XMLElement& e = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
     e.SetAttribute("joint1", name.c_str());
     e.SetAttribute("joint2", leader.c_str());
     set(e, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
   }
 
-  // that moves, and is another one
-  std::string leader_of(const XMLElement& mimic, const std::string& follower) const {
-    std::string leader = text(mimic, "joint");
+  // it moves, and is another one
+  bool can_lead(const std::string& leader, const std::string& follower) const {
     const auto found = joint_by_name_.find(leader);
-    if (leader != follower && found != joint_by_name_.end() &&
-        text(*found->second, "type") != "fixed")
-      return leader;
-    fail(mimic, "joint '{}': its <mimic> follows '{}', which is no other joint that moves",
-         follower, leader);
+    return leader != follower && found != joint_by_name_.end() &&
+           text(*found->second, "type") != "fixed";
   }
 
   XMLElement& mujoco_;
   const UrdfReading& how_;
   Problems problems_;
   std::vector<std::string> impossible_, massless_;
+  std::set<std::string> massless_tips_;  // joints that carry such links, with no mass behind
+  bool has_moving_mass_ = false;
   std::map<std::string, const XMLElement*> links_, joint_by_name_, joint_of_child_;
   std::map<std::string, std::vector<const XMLElement*>> children_;
   std::vector<const XMLElement*> joints_;

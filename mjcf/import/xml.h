@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/mendable.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::detail {
@@ -32,11 +33,16 @@ inline std::string text(const XMLElement& e, const char* attribute) {
   return value == nullptr ? "" : value;
 }
 
-/// @throws std::runtime_error with these words and the number of the element's line in the file
+/// These words behind the number of the element's line in the file.
+template <class... Args>
+std::string at_line(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
+  return one_line(
+      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...)));
+}
+/// @throws std::runtime_error with the same
 template <class... Args>
 [[noreturn]] void fail(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
-  throw std::runtime_error(one_line(
-      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...))));
+  throw std::runtime_error(at_line(e, words, std::forward<Args>(args)...));
 }
 
 /// The errors of a file, for one message.
@@ -48,21 +54,27 @@ class Problems {
     try {
       what();
       return true;
+    } catch (const Mendable& e) {
+      add(e.what(), e.by());
     } catch (const std::runtime_error& e) {
       add(e.what());
-      return false;
     }
+    return false;
   }
-  void add(std::string problem) { all_.push_back(std::move(problem)); }
+  void add(std::string problem, const Mending& by = {}) {
+    all_.push_back(std::move(problem));
+    by_.add(by);
+  }
   std::size_t count() const { return all_.size(); }
-  /// @throws std::runtime_error with all of them, if there are any
+  /// @throws Mendable with all of them, if there are any
   void raise() const {
     if (!all_.empty())
-      throw std::runtime_error(one_line(fmt::format("{}", fmt::join(all_, "; ")), 8000));
+      throw Mendable(one_line(fmt::format("{}", fmt::join(all_, "; ")), 8000), by_);
   }
 
  private:
   std::vector<std::string> all_;
+  Mending by_;
 };
 
 /// What is wrong with what was read, like "mismatched element"; "no element" if nothing is.

@@ -114,6 +114,24 @@ inline bool any(const auto* of, int count) {
   return std::any_of(of, of + count, [](auto x) { return x != 0; });
 }
 
+/// Whether a flag switches the damping of joints off.
+inline bool is_undamped(const mjModel& m) {
+#if mjVERSION_HEADER < 336
+  return (m.opt.disableflags & mjDSBL_PASSIVE) != 0;
+#else
+  return (m.opt.disableflags & mjDSBL_DAMPER) != 0;
+#endif
+}
+
+/// Whether springs or damping of joints grow with higher powers.
+inline bool has_powers([[maybe_unused]] const mjModel& m) {
+#if mjVERSION_HEADER < 370
+  return false;
+#else
+  return any(m.jnt_stiffnesspoly, m.njnt * mjNPOLY) || any(m.dof_dampingpoly, m.nv * mjNPOLY);
+#endif
+}
+
 /// Whether it has what 2.2.2 does not read in a file, and what changes how the arm moves.
 inline bool moves_as_newer([[maybe_unused]] const mjModel& m) {
 #if mjVERSION_HEADER < 300

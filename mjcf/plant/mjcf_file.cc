@@ -14,8 +14,10 @@
 #include <string_view>
 #include <utility>
 
+#include "mjcf/import/mendable.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
+#include "mjcf/plant/remedy/remedy.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -52,7 +54,11 @@ std::string range_of(double least, double most) {
   return most == kAny && least == -kAny ? "finite" : fmt::format("{:g} to {:g}", least, most);
 }
 
-using Problems = std::vector<std::string>;
+// in words, and what mends them: a joint whose numbers are too large can be locked
+struct Problems {
+  std::vector<std::string> words;
+  Mending by;
+};
 
 void check_numbers(const mjModel& m, const Numbers& n, Problems& problems) {
   for (int i = 0; i < n.elements * n.width; ++i) {
@@ -62,13 +68,16 @@ void check_numbers(const mjModel& m, const Numbers& n, Problems& problems) {
     std::string problem =
         fmt::format("{}: {} is {:g}, and must be {}", element(m, n.type, n.kind, id), n.attribute,
                     value, range_of(n.least, n.most));
-    if (problems.empty() || problems.back() != problem) problems.push_back(std::move(problem));
+    if (problems.words.empty() || problems.words.back() != problem)
+      problems.words.push_back(std::move(problem));
+    const char* const name = n.type == mjOBJ_JOINT ? mj_id2name(&m, n.type, id) : nullptr;
+    if (name != nullptr && value > n.most) problems.by.lock.insert(name);
   }
 }
 
 void check_option(const char* what, double value, double least, double most, Problems& problems) {
   if (value >= least && value <= most) return;
-  problems.push_back(
+  problems.words.push_back(
       fmt::format("option: {} is {:g}, and must be {}", what, value, range_of(least, most)));
 }
 
@@ -78,8 +87,8 @@ void check_turn(const mjModel& m, const char* attribute, const mjtNum* quaternio
   for (int i = 0; i < m.nbody; ++i) {
     const double length = mju_norm(quaternions + 4 * i, 4);
     if (std::abs(length - 1) < 1e-6) continue;
-    problems.push_back(fmt::format("{}: {} has the length {:g}, and must turn",
-                                   element(m, mjOBJ_BODY, "body", i), attribute, length));
+    problems.words.push_back(fmt::format("{}: {} has the length {:g}, and must turn",
+                                         element(m, mjOBJ_BODY, "body", i), attribute, length));
   }
 }
 
@@ -133,8 +142,8 @@ void check_physical(const mjModel& m) {
     check_numbers(m, {kJoint, "joint", 1, "springref", m.qpos_spring + at, 1, -kAny, kAny, &j},
                   problems);
   }
-  if (!problems.empty())
-    throw std::runtime_error(one_line(fmt::format("{}", fmt::join(problems, "; ")), 8000));
+  if (!problems.words.empty())
+    throw Mendable(one_line(fmt::format("{}", fmt::join(problems.words, "; ")), 8000), problems.by);
 }
 
 // a step of its own, from its initial state
@@ -142,7 +151,8 @@ void try_step(const mjModel& m) {
   const State d(mj_makeData(&m));
   mj_step(&m, d.get());
   for (int w = 0; w < mjNWARNING; ++w) {
-    if (d->warning[w].number == 0) continue;
+    if (d->warning[w].number == 0 || w == mjWARN_CONTACTFULL || w == mjWARN_CNSTRFULL)
+      continue;  // shapes that touch each other count for nothing here
     throw std::runtime_error(fmt::format("cannot be simulated from its initial state: {}",
                                          mju_warningText(w, d->warning[w].lastinfo)));
   }
@@ -162,8 +172,13 @@ bool has_motors(const mjModel& m) {
   return m.nu > 0 && m.nu >= m.nv && !has_ties(m);
 }
 
-// mjMINVAL is no word of a user's
+// what MuJoCo says, with a remedy, and without mjMINVAL, which is no word of a user's
 std::string without_jargon(const std::string& message) {
+  for (const char* const missing : {"could not open", "Cannot open file", "Error opening file"})
+    if (message.find(missing) != message.npos)
+      return message +
+             "; get that file, or write an <inertial> into the bodies whose mass is that of its "
+             "mesh";
   if (message.find("mjMINVAL") == message.npos) return message;
   for (const std::string_view before : {"Object name = ", "Element name '"}) {  // MuJoCo 2, 3
     const std::size_t name = message.find(before), from = name + before.size();
@@ -187,6 +202,8 @@ Model loaded(const std::string& path, const ImportOptions& options, std::string&
     const ImportedText text = import_mjcf(path, options);
     changes = one_line(in_words(text), 8000);
     return load_files({{"robot.xml", text.xml}});
+  } catch (const Mendable&) {
+    throw;
   } catch (const std::runtime_error& e) {
     for (const char* unreadable : {"problem reading attribute", "bad format in attribute"}) {
       if (std::string_view(e.what()).find(unreadable) == std::string_view::npos) continue;
@@ -200,11 +217,25 @@ Model loaded(const std::string& path, const ImportOptions& options, std::string&
   }
 }
 
+// imported in any case
+Reading reading(const std::string& path) {
+  return [path](const ImportOptions& options) {
+    Model m = load_files({{"robot.xml", import_mjcf(path, options).xml}});
+    check_physical(*m);
+    return m;
+  };
+}
+
 // the changes in a line, and MJB
 std::string compiled(const std::string& path, const ImportOptions& options) {
   std::string changes;
-  const Model m = loaded(path, options, changes);
-  check_physical(*m);
+  Model m;
+  try {
+    m = loaded(path, options, changes);
+    check_physical(*m);
+  } catch (const Mendable& e) {
+    throw std::runtime_error(with_remedy(e.what(), path, options, reading(path)));
+  }
   refuse_nan(path);
   try_step(*m);
   std::string bytes(static_cast<std::size_t>(mj_sizeModel(m.get())), '\0');
@@ -257,6 +288,16 @@ std::string compiled_mjcf(const std::string& path, const Limits& limits,
                     path, e.what()));
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, without_jargon(e.what())));
+  }
+}
+
+std::string why_no_arm(const std::string& why, const std::string& path, const Limits& limits,
+                       const ImportOptions& options) {
+  throw_mujoco_errors();
+  try {
+    return confined(limits, [&] { return with_remedy(why, path, options, reading(path)); });
+  } catch (const std::runtime_error&) {
+    return why;
   }
 }
 

@@ -32,4 +32,10 @@ Model load_files(const std::vector<std::pair<std::string, std::string_view>>& fi
 std::string compiled_mjcf(const std::string& path, const Limits& limits = {},
                           const ImportOptions& options = {}, std::string* changes = nullptr);
 
+/// Why a file that was compiled with these options is no arm for estimators, with the flags that
+/// mend that (mjcf/plant/remedy/remedy.h).
+/// @param why without the path, as tree_of() says it
+std::string why_no_arm(const std::string& why, const std::string& path, const Limits& limits = {},
+                       const ImportOptions& options = {});
+
 }  // namespace tauext

@@ -10,13 +10,18 @@
 
 #include "mjcf/mujoco/layout.h"
 #include "mjcf/mujoco/measured.h"
+#include "mjcf/mujoco/misfits.h"
 #include "mjcf/mujoco/mujoco_functions.h"
 #include "mjcf/mujoco/ties.h"
 #include "mjcf/plant/coordinates.h"
+#include "mjcf/plant/remedy/remedy.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
+
+static_assert(kMostCoordinates == kMostLeaders && kMostFollowers == kMostTied);
+
 namespace {
 
 using Eigen::MatrixXd;
@@ -26,42 +31,6 @@ using Eigen::VectorXd;
 VectorXd together(const Ties& ties, const VectorXd& of_joint) {
   const MatrixXd moves = (ties.T.array() != 0).cast<double>();
   return moves * (moves.transpose() * of_joint);
-}
-
-// all that it would have to ignore, in one message
-void check(const mjModel& m) {
-  std::vector<std::string> problems, free, springs;
-  for (int i = 0; i < m.njnt; ++i) {
-    const bool slide = m.jnt_type[i] == mjJNT_SLIDE;
-    if (!slide && m.jnt_type[i] != mjJNT_HINGE)
-      free.push_back(fmt::format("{} is {}", joint_name(m, i),
-                                 m.jnt_type[i] == mjJNT_FREE ? "free" : "a ball"));
-    if (m.jnt_stiffness[i] != 0)
-      springs.push_back(fmt::format("{} has a spring of {:.4g} {}", joint_name(m, i),
-                                    m.jnt_stiffness[i], slide ? "N/m" : "N m/rad"));
-  }
-  if (!free.empty())
-    problems.push_back(
-        fmt::format("{}: an arm of hinges and slides on a fixed base is wanted; --lock REGEX fixes "
-                    "such joints",
-                    fmt::join(free, ", ")));
-  if (!springs.empty())
-    problems.push_back(
-        fmt::format("{}, which no estimator here knows: take the stiffness out, or "
-                    "--lock REGEX fixes such joints",
-                    fmt::join(springs, ", ")));
-  if (m.nv == 0)
-    problems.emplace_back("no joint is left that moves: an arm of hinges and slides is wanted");
-  for (const mjtNum* forces : {m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss}) {
-    if (VectorXd::Map(forces, m.ntendon).isZero(0)) continue;
-    problems.emplace_back("the model has tendons with springs or friction: take these out");
-    break;
-  }
-  if (m.opt.density != 0 || m.opt.viscosity != 0)
-    problems.emplace_back(
-        "the model has air or water around it: take density and viscosity out of <option>");
-  if (!problems.empty())
-    throw std::invalid_argument(one_line(fmt::format("{}", fmt::join(problems, "; ")), 8000));
 }
 
 Vec<3> vector(const mjtNum* v) {
@@ -171,7 +140,8 @@ void detail::require_size(const ArmTree& tree, int coordinates) {
 
 ArmTree tree_of(const Model& model) {
   const mjModel& m = *model;
-  check(m);
+  if (const std::vector<Misfit> misfits = misfits_of(m); !misfits.empty())
+    throw std::invalid_argument(in_words(misfits));
   ArmTree tree;
   if ((m.opt.disableflags & mjDSBL_GRAVITY) == 0) tree.gravity = vector(m.opt.gravity);
   const ArmCoordinates c = coordinates_of(m);

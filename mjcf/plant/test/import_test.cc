@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "mjcf/import/mjcf_text.h"
+#include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/plant.h"
+#include "mjcf/plant/remedy/doubts.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/test/arm_dynamics.h"
 #include "mjcf/plant/test/robot_folder.h"
@@ -66,6 +68,15 @@ class Import : public RobotFolder {
     return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
   }
 };
+
+// by MuJoCo alone
+Model own_reading(const std::string& path) {
+  char why[1000];
+  const Model own(mj_loadXML(path.c_str(), nullptr, why, sizeof why),
+                  [](const mjModel* m) { mj_deleteModel(const_cast<mjModel*>(m)); });
+  EXPECT_NE(own, nullptr) << why;
+  return own;
+}
 
 constexpr const char* kFingers = ".*_finger";
 
@@ -141,7 +152,7 @@ TEST_F(Import, WhatCannotBeSaysWhyAndWhatToDo) {
   has(error(path, "finger"), "there are: shoulder, elbow, left_finger, right_finger");
   has(error(path, "left_finger"), "ties 'right_finger' to it: lock both");
   has(error(path, "("), "--lock '('");
-  has(error(body("<frame><body/></frame>")), "MuJoCo 2.2.2 does not know <frame>");
+  has(error(body("<replicate><body/></replicate>")), "MuJoCo 2.2.2 does not know <replicate>");
   has(error(body("<include file='none.xml'/>")), "none.xml");
   has(error(body("<include file='robot.xml'/>")), "robot.xml");
   has(error(put("<robot/>")), "robot.xml");
@@ -180,8 +191,8 @@ TEST_F(Import, ManyErrorsAreInOneMessage) {
   };
   has(error("<mujoco><include file='a.xml'/><include file='b.xml'/></mujoco>"),
       {"a.xml: no such file", "b.xml: no such file"});
-  has(error("<mujoco><worldbody><frame/><replicate/></worldbody></mujoco>"),
-      {"<frame> (line 1)", "<replicate> (line 1)"});
+  has(error("<mujoco><worldbody><composite/><replicate/></worldbody></mujoco>"),
+      {"<composite> (line 1)", "<replicate> (line 1)"});
   has(error("<mujoco><worldbody><body><joint dampening='1' gravcomp='1'/><sight/></body>"
             "</worldbody></mujoco>"),
       {"'dampening'", "'gravcomp'", "<sight>"});
@@ -192,6 +203,11 @@ TEST_F(Import, ManyErrorsAreInOneMessage) {
   has(error("<mujoco><worldbody><body><joint name='a' damping='-1' armature='1e9'/><geom "
             "size='.1'/></body></worldbody></mujoco>"),
       {"damping is -1", "armature is 1e+09"});
+  // as bases have that are driven by nothing but the simulation
+  has(error(
+          "<mujoco><worldbody><body><joint name='a' damping='1e11'/><geom size='.1'/><body><joint "
+          "name='b'/><geom size='.1'/></body></body></worldbody></mujoco>"),
+      {"damping is 1e+11", "; to mend it: --lock 'a'"});
 }
 
 TEST_F(Import, WhatFloatsBesideTheArmStandsAndABaseThatFloatsCanBeLocked) {
@@ -210,6 +226,304 @@ TEST_F(Import, WhatFloatsBesideTheArmStandsAndABaseThatFloatsCanBeLocked) {
   EXPECT_EQ(tree_of(load_mjcf(floats, {"arm"})).dof(), 1);
 }
 
+TEST_F(Import, AFreeJointBesideTheArmCanBeLockedByItsNameToo) {
+  const std::string path = body(
+      "<body><joint name='a' axis='1 0 0'/><geom size='.1'/></body><body name='cup'><freejoint "
+      "name='cup_free'/><geom size='.1'/></body>");
+  for (const char* lock : {"", "cup_free", "cup.*"}) {
+    const ImportedText text = import_mjcf(path, {.lock = lock});
+    EXPECT_EQ(text.dropped.count("body that floats beside the arm, and stands now"), *lock == '\0')
+        << lock;
+    EXPECT_EQ(tree_of(load_mjcf(put(text.xml, "out.xml"))).dof(), 1) << lock;
+  }
+}
+
+// the flags that a message names, as ImportOptions
+ImportOptions remedy_in(const std::string& error, const std::string& path) {
+  ImportOptions options;
+  const std::string lock = "--lock '";
+  std::size_t at = error.rfind("to mend it: ");
+  if (at == error.npos) return options;
+  std::string command = error.substr(at + 12);
+  if (const std::string head = "tauext-import " + path + " "; command.starts_with(head)) {
+    options.balance = command.find("--balance --out arm.xml") != command.npos;
+    command.erase(0, head.size());
+  }
+  if (command.starts_with(lock))
+    options.lock = command.substr(lock.size(), command.find('\'', lock.size()) - lock.size());
+  return options;
+}
+
+TEST_F(Import, OneMessageHasAllThatIsWrongAndTheFlagsThatMendIt) {
+  const auto robot = [&](const char* base, const char* spring, const char* inertia) {
+    return put(fmt::format(
+        "<mujoco><worldbody><body name='arm'>{}<geom size='.1'/><body><joint name='a' axis='1 0 "
+        "0'/>"
+        "<geom size='.1' pos='0 0 .5'/><body name='hand'><joint name='grip (1)' {}/><inertial "
+        "pos='0 0 0' mass='1' diaginertia='{}'/></body></body></body></worldbody></mujoco>",
+        base, spring, inertia));
+  };
+  const auto why = [](const std::string& path, const ImportOptions& options = {}) {
+    return error_of([&] {
+      const Model model = load_mjcf(path, options);
+      try {
+        tree_of(model);
+      } catch (const std::invalid_argument& e) {
+        throw std::invalid_argument(why_no_arm(e.what(), path, {}, options));
+      }
+    });
+  };
+  const std::string wrong = robot("<freejoint/>", "stiffness='3'", ".01 .02 .04");
+  const std::string error = why(wrong);
+  for (const char* part : {"'hand' (line 1) 0.01, 0.02 and 0.04", "joint 1 'arm' is free",
+                           "has a spring of 3 N m/rad"})
+    EXPECT_NE(error.find(part), error.npos) << part << ": " << error;
+  const ImportOptions flags = remedy_in(error, wrong);
+  EXPECT_EQ(flags.lock, "arm|grip \\(1\\)");
+  EXPECT_TRUE(flags.balance);
+  EXPECT_EQ(why(wrong, flags), "no error");
+  EXPECT_EQ(tree_of(load_mjcf(wrong, flags)).dof(), 1);
+  // no more than is needed
+  const std::string floats = robot("<freejoint/>", "", ".01 .02 .03");
+  EXPECT_TRUE(why(floats).ends_with("; to mend it: --lock 'arm'")) << why(floats);
+  const std::string springs = robot("", "stiffness='3'", ".01 .02 .03");
+  EXPECT_TRUE(why(springs).ends_with("; to mend it: --lock 'grip \\(1\\)'")) << why(springs);
+  // what was locked stays so
+  const std::string both = robot("<freejoint/>", "stiffness='3'", ".01 .02 .03");
+  EXPECT_TRUE(why(both, {.lock = "arm"}).ends_with("to mend it: --lock 'arm|grip \\(1\\)'"));
+}
+
+TEST_F(Import, NamesNoFlagThatWouldLeaveNoArm) {
+  const std::string path = body(
+      "<body><freejoint/><geom size='.1'/><body><joint name='a' stiffness='1'/><geom size='.1'/>"
+      "</body></body>");
+  EXPECT_EQ(why_no_arm("it has a spring", path),
+            "it has a spring; joint 1 'base' is free: an arm of "
+            "hinges and slides on a fixed base is wanted; --lock REGEX fixes such joints; joint 2 "
+            "'a' has a spring of 1 N m/rad, which no estimator here knows: take the stiffness out, "
+            "or --lock REGEX fixes such joints");
+}
+
+// a body with an arm of seven joints, one of two, and a head
+TEST_F(Import, WhereThereAreTooManyJointsTheLongestRowIsOffered) {
+  const auto row = [](const std::string& name, int n) {
+    std::string open, close;
+    for (int i = 1; i <= n; ++i) {
+      open +=
+          fmt::format("<body><joint name='{}{}' axis='1 {} 0'/><geom size='.1'/>", name, i, i % 2);
+      close += "</body>";
+    }
+    return open + close;
+  };
+  const std::string path = body("<body name='torso'><freejoint/><geom size='.3'/>" +
+                                row("left", 2) + row("right", 7) + row("head", 1) + "</body>");
+  const std::string error = why_no_arm("10 joints", path, {}, {.lock = "torso"});
+  const std::string lock = "(?!(right1|right2|right3|right4|right5|right6|right7)$).*";
+  const std::string others = "torso|left1|left2|head1";
+  EXPECT_EQ(error,
+            "10 joints; estimators take arms of 8 joints at most, and here are 10: --lock '" +
+                others + "' keeps the 7 from 'right1' to 'right7'");
+  EXPECT_EQ(tree_of(load_mjcf(path, {others})).joint_names().front(), "right1");
+  EXPECT_EQ(tree_of(load_mjcf(path, {lock})).dof(), 7) << "the other way to say it";
+}
+
+// by MuJoCo's own reading of the bodies that the frames stand for
+TEST_F(Import, WhatStandsInAFrameIsCarriedByTheBodyAroundIt) {
+  const std::string link = "<geom type='capsule' size='.05' fromto='0 0 0 .2 .1 .4'/>";
+  const auto robot = [&](const std::string& open, const std::string& close, const char* inertial) {
+    return body("<body pos='0 0 1'><joint name='a' axis='0 1 0'/>" + std::string(inertial) + open +
+                link + close + "<body pos='0 .1 .4'><joint name='b' axis='1 0 0'/>" + open + open +
+                link + "<site name='end_effector' pos='0 0 .3'/>" + close + close +
+                "</body></body>");
+  };
+  const std::string frame = "pos='.1 -.2 .3' euler='20 30 -40'";
+  const Vec<2> q(0.4, -1.1), qd(0.7, -0.3);
+  const std::string path = robot("<frame name='b' " + frame + ">", "</frame>", "");
+  const TreeModel<2> tree = tree_model<2>(load_mjcf(path));
+  const ArmTree arm = tree_of(load_mjcf(path));
+  const std::string bodies = robot("<body " + frame + ">", "</body>", "");
+  const MjcfArm<2> oracle(own_reading(bodies));
+  EXPECT_LT((tree.inertia(q) - oracle.inertia(q)).norm(), 1e-8);
+  EXPECT_LT((tree.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-8);
+  EXPECT_EQ(arm.end_effector, tree_of(load_mjcf(bodies)).end_effector);
+  // what has an <inertial> has no other mass
+  const char* const inertial = "<inertial pos='0 0 .1' mass='2' diaginertia='.1 .1 .1'/>";
+  const ArmTree one = tree_of(load_mjcf(robot("<frame " + frame + ">", "</frame>", inertial)));
+  EXPECT_EQ(one.joints[0].mass, 2);
+  EXPECT_GT(one.joints[1].mass, 2);
+  EXPECT_NE(error_of([&] {
+              load_mjcf(body("<body><frame><joint/></frame></body>"));
+            }).find("a <joint> in a <frame>"),
+            std::string::npos);
+}
+
+// beside MuJoCo's own reading of the same arm in one file
+TEST_F(Import, WhatIsAttachedIsAsIfItStoodThere) {
+  const std::string classes =
+      "<default class='link'><joint damping='.3'/><geom density='500'/></default>";
+  const auto bodies = [](const char* p) {
+    return fmt::format(
+        "<body name='{0}upper' childclass='{0}link' pos='0 0 .2' euler='.1 .2 .3'><joint "
+        "name='{0}a' axis='0 1 0'/><geom type='capsule' size='.05' fromto='0 0 0 .2 .1 .4'/>"
+        "<body name='{0}lower' pos='0 .1 .4'><joint name='{0}b' axis='1 0 0'/><joint name='{0}c' "
+        "axis='0 0 1' class='{0}link'/><geom size='.1' pos='.1 0 .3'/></body></body>",
+        p);
+  };
+  const auto tie = [](const char* p) {
+    return fmt::format("<equality><joint joint1='{0}c' joint2='{0}b'/></equality>", p);
+  };
+  const std::string compiler = "<compiler angle='radian'/>";
+  std::filesystem::create_directories(folder_ / "parts");
+  put("<mujoco>" + compiler + "<default>" + classes +
+          "</default><worldbody><include "
+          "file='bodies.xml'/><geom size='.1'/></worldbody>" +
+          tie("") + "</mujoco>",
+      "parts/arm.xml");
+  put("<mujoco>" + bodies("") + "</mujoco>", "parts/bodies.xml");
+  const auto robot = [&](const std::string& attach) {
+    return put("<mujoco>" + compiler +
+               "<asset><model name='arm' file='parts/arm.xml'/></asset><worldbody>" +
+               "<body name='stand' pos='.3 0 1' euler='0 .4 0'>" + attach +
+               "</body></worldbody></mujoco>");
+  };
+  std::string prefixed = classes;
+  prefixed.replace(prefixed.find("'link'"), 6, "'r_link'");
+  const MjcfArm<3> oracle(
+      own_reading(put("<mujoco>" + compiler + "<default>" + prefixed +
+                          "</default><worldbody><body pos='.3 0 1' euler='0 .4 0'>" + bodies("r_") +
+                          "</body></worldbody></mujoco>",
+                      "written_out.xml")));
+  for (const char* part : {"", "body='upper'"}) {
+    const std::string path = robot(fmt::format("<attach model='arm' {} prefix='r_'/>", part));
+    const Model model = load_mjcf(path);
+    const ArmTree tree = tree_of(model);
+    EXPECT_EQ(tree.names, (std::vector<std::string>{"r_a", "r_b", "r_c"}));
+    EXPECT_EQ(tree.dof(), 2) << "c follows b";
+    const Vec<3> q(0.4, -1.1, 0.3), qd(0.7, -0.3, 0.2);
+    const MjcfArm<3> same(model);
+    EXPECT_LT((same.inertia(q) - oracle.inertia(q)).norm(), 1e-12);
+    EXPECT_LT((same.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-12);
+    EXPECT_EQ(same.friction(qd), oracle.friction(qd));
+  }
+  const auto why = [&](const std::string& attach) {
+    return error_of([&] { import_mjcf(robot(attach)); });
+  };
+  EXPECT_NE(why("<attach model='arm' body='x' prefix='r_'/>").find("has no body 'x'"),
+            std::string::npos);
+  EXPECT_NE(why("<attach body='stand' prefix='r_'/>").find("<attach> is known with a model"),
+            std::string::npos);
+  put("<mujoco><worldbody/></mujoco>", "parts/arm.xml");
+  EXPECT_NE(why("<attach model='arm' prefix='r_'/>")
+                .find("has angle=\"degree\", and this file has "
+                      "\"radian\""),
+            std::string::npos);
+}
+
+TEST_F(Import, AFileMayBeIncludedByTwoButNotByItself) {
+  put("<mujoco><geom size='.1' mass='2'/></mujoco>", "shape.xml");
+  const std::string path = body(
+      "<body><include file='shape.xml'/><joint name='a'/><body><include file='shape.xml'/><joint "
+      "name='b'/></body></body>");
+  const ArmTree arm = tree_of(load_mjcf(path));
+  EXPECT_EQ(arm.joints[0].mass, 2);
+  EXPECT_EQ(arm.joints[1].mass, 2);
+  put("<mujoco><body><include file='ring.xml'/></body></mujoco>", "ring.xml");
+  EXPECT_NE(error_of([&] {
+              import_mjcf(body("<include file='ring.xml'/>"));
+            }).find("'ring.xml' includes itself"),
+            std::string::npos);
+  // each of twenty files includes the next one twice
+  for (int i = 0; i < 20; ++i)
+    put(fmt::format("<mujoco><include file='f{0}.xml'/><include file='f{0}.xml'/></mujoco>", i + 1),
+        fmt::format("f{}.xml", i));
+  put("<mujoco/>", "f20.xml");
+  EXPECT_NE(error_of([&] {
+              import_mjcf(body("<include file='f0.xml'/>"));
+            }).find("more than 1000 files are included"),
+            std::string::npos);
+}
+
+TEST_F(Import, FindsWhatAnIncludedFileIncludesBesideIt) {
+  std::filesystem::create_directories(folder_ / "parts");
+  put("<mujoco><body><include file='joint.xml'/><geom size='.1'/></body></mujoco>",
+      "parts/link.xml");
+  put("<mujoco><joint name='a' axis='0 1 0'/></mujoco>", "parts/joint.xml");
+  const std::string path = body("<include file='parts/link.xml'/>");
+  EXPECT_EQ(tree_of(load_mjcf(path)).names, std::vector<std::string>{"a"});
+  put("<mujoco><joint name='b' axis='0 1 0'/></mujoco>", "joint.xml");
+  EXPECT_EQ(tree_of(load_mjcf(path)).names, std::vector<std::string>{"b"}) << "the main folder's";
+}
+
+TEST_F(Import, TakesEveryMassThatShapesHave) {
+  const auto same = [&](const std::string& compiler, const std::string& shell) {
+    const std::string path = put(
+        "<mujoco><compiler " + compiler +
+        "/><asset><mesh name='m' vertex='0 0 0 .3 0 0 0 .2 0 0 0 "
+        ".1'/></asset><worldbody><geom size='.4'/><body><geom type='mesh' mesh='m'/><body><joint "
+        "name='a' axis='1 0 0'/><geom type='mesh' mesh='m' pos='0 0 .5' " +
+        shell + "/></body></body></worldbody></mujoco>");
+    const Vec<1> q(0.4);
+    const TreeModel<1> tree = tree_model<1>(load_mjcf(path));
+    const MjcfArm<1> oracle(own_reading(path));
+    EXPECT_NEAR(tree.inertia(q)(0, 0), oracle.inertia(q)(0, 0), 1e-10) << compiler << shell;
+    EXPECT_NEAR(tree.gravity(q)[0], oracle.gravity(q)[0], 1e-9) << compiler << shell;
+    return tree.inertia(q)(0, 0);
+  };
+  const double solid = same("", "");
+  if (mjVERSION_HEADER < 300) {
+    EXPECT_NE(same("", "shellinertia='true'"), solid);
+  }
+  EXPECT_NE(same("settotalmass='7'", ""), solid);
+}
+
+TEST_F(Import, AMeshWhoseMassIsFoundInANewerWayIsRefusedWhereItCounts) {
+  const auto why = [&](const char* inertia, const char* inertial) {
+    return error_of([&] {
+      import_mjcf(
+          put(fmt::format("<mujoco><asset><mesh name='m' file='m.stl' {}/></asset>"
+                          "<worldbody><body><joint/>{}<geom type='mesh' mesh='m'/></body>"
+                          "</worldbody></mujoco>",
+                          inertia, inertial)));
+    });
+  };
+  EXPECT_NE(why("inertia='exact'", "").find("the mesh 'm' has inertia=\"exact\""),
+            std::string::npos);
+  EXPECT_EQ(why("inertia='legacy'", ""), "no error");
+  EXPECT_EQ(why("inertia='exact'", "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>"),
+            "no error");
+}
+
+TEST_F(Import, AFlagThatSwitchesFrictionOffIsNotOverlooked) {
+  const auto why = [&](const char* flag, const char* friction) {
+    return error_of([&] {
+      tree_of(load_mjcf(put(fmt::format(
+          "<mujoco><option><flag {}/></option><worldbody><body><joint name='a' {}/><geom size='.1' "
+          "mass='1'/></body></worldbody><actuator><motor joint='a'/></actuator></mujoco>",
+          flag, friction))));
+    });
+  };
+  if (mjVERSION_HEADER < 336) {
+    EXPECT_NE(why("passive='disable'", "damping='1'").find("switches off damping"),
+              std::string::npos);
+  }
+  EXPECT_NE(why("frictionloss='disable'", "frictionloss='1'").find("switches off frictionloss"),
+            std::string::npos);
+  EXPECT_EQ(why("frictionloss='disable'", "damping='1'"), "no error");
+}
+
+TEST_F(Import, ASpringOfAJointThatAnEqualityHoldsDoesNothing) {
+  const auto arm_with = [&](const char* equality) {
+    return put(fmt::format(
+        "<mujoco><worldbody><body><joint name='a' axis='1 0 0'/><geom size='.1' pos='0 0 .5'/>"
+        "<body><joint name='b' stiffness='3' axis='1 0 0'/><geom size='.1' pos='0 0 .5'/></body>"
+        "</body></worldbody><equality><joint joint1='b' {}/></equality></mujoco>",
+        equality));
+  };
+  EXPECT_EQ(tree_of(load_mjcf(arm_with(""))).dof(), 1);
+  EXPECT_NE(error_of([&] { tree_of(load_mjcf(arm_with("joint2='a'"))); }).find("'b' has a spring"),
+            std::string::npos);
+}
+
 // MuJoCo's own reading of what it reads
 TEST_F(Import, TakesMassAndGravityAsTheFileHasThem) {
   const std::string path = put(
@@ -217,12 +531,8 @@ TEST_F(Import, TakesMassAndGravityAsTheFileHasThem) {
       "<default><geom group='4'/></default><worldbody><body><joint name='a' axis='1 0 0'/><geom "
       "size='.1' pos='0 0 .5'/><geom size='.3' group='1'/><body><joint name='b' axis='1 0 0'/>"
       "<geom size='.1' pos='0 0 .5'/></body></body></worldbody></mujoco>");
-  char why[1000];
-  const Model own(mj_loadXML(path.c_str(), nullptr, why, sizeof why),
-                  [](const mjModel* m) { mj_deleteModel(const_cast<mjModel*>(m)); });
-  ASSERT_NE(own, nullptr) << why;
   const Vec<2> q(0.4, -1.1), qd(0.7, -0.3);
-  const MjcfArm<2> oracle(own);
+  const MjcfArm<2> oracle(own_reading(path));
   const TreeModel<2> tree = tree_model<2>(load_mjcf(path));
   EXPECT_LT((tree.inertia(q) - oracle.inertia(q)).norm(), 1e-12);
   EXPECT_LT((tree.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-12);
@@ -299,6 +609,31 @@ TEST_F(Import, NeedsNoMeshesOfWhatStandsStill) {
       "</body></worldbody></mujoco>");
   EXPECT_EQ(import_mjcf(path).dropped.at("geom (mesh)"), 2);
   EXPECT_EQ(tree_of(load_mjcf(path)).joints.size(), 1u);
+}
+
+TEST_F(Import, DoubtsInertiasThatAreLargerThanTheArmAndMassesThatAreHeavierThanGold) {
+  const auto doubts = [&](const char* mass, const char* inertia) {
+    const std::string link = "<inertial pos='0 0 .1' mass='1' diaginertia='.01 .01 .01'/>";
+    return doubts_about(*load_mjcf(body(fmt::format(
+        "<body><joint axis='0 1 0'/>{0}<body pos='0 0 .2'><joint axis='0 1 0'/>{0}<body "
+        "name='hand' pos='0 0 .2'><joint axis='0 0 1'/><inertial pos='0 0 .1' mass='{1}' "
+        "diaginertia='{2} {2} {2}'/></body></body></body>",
+        link, mass, inertia))));
+  };
+  EXPECT_EQ(doubts(".5", ".002"), "");
+  EXPECT_EQ(doubts(".5", ".12"), "") << "0.49 m of 0.5";
+  // a ring of 0.1 kg and 1 kg m^2 has a diameter of 2 sqrt(10) m
+  EXPECT_NE(doubts(".1", "1").find(
+                "the arm reaches 0.5 m: 'hand' of 0.1 kg has the inertia of something 6.3 m wide"),
+            std::string::npos)
+      << doubts(".1", "1");
+  // wheels on a base are no arm
+  const std::string wheel =
+      "<body><joint axis='0 1 0'/><inertial pos='0 0 0' mass='3' diaginertia='1 1 1'/></body>";
+  EXPECT_EQ(doubts_about(*load_mjcf(body(wheel + wheel + wheel))), "");
+  // 19300 / 8 kg are 2412.5
+  EXPECT_EQ(doubts("2400", "9"), "");
+  EXPECT_NE(doubts("2500", "9").find("it weighs 2.5e+03 kg"), std::string::npos);
 }
 
 }  // namespace

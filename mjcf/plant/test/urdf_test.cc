@@ -128,14 +128,19 @@ TEST_F(OfUrdf, SaysWhatIsWrong) {
     std::string astray = fingers;
     astray.replace(astray.find("joint='left'/>"), 12, leader);
     has(error(astray), "joint 'right': its <mimic> follows");
+    EXPECT_TRUE(error(astray).ends_with("; to mend it: --lock 'right'")) << error(astray);
+    EXPECT_EQ(error(astray, "right"), "no error");
   }
   has(error("<joint name='x' type='fixed'><parent link='tool'/><child link='none'/></joint>"),
       "joint 'x': its child 'none' is no link");
-  has(error("<link name='alone'/>"), "2 links are no child");
+  has(error("<link name='alone'/>"),
+      "2 links are no child of a joint, and one must be: the base; join the others to it, or take "
+      "them out: alone, base");
   has(error("<link name='c'/><joint name='y' type='floating'><parent link='tool'/><child "
             "link='c'/></joint>"),
       "joint 'y' is floating");
-  has(error("<xacro:include filename='x'/>"), "xacro");
+  has(error("<xacro:include filename='x'/>"), "run it through xacro: xacro FILE > arm.urdf");
+  EXPECT_EQ(error("<xacro:property name='width' value='.2'/>"), "no error") << "nobody asks for it";
   has(error("<link name='c'/><joint name='y' type='fixed'><parent link='tool'/><child link='c'/>"
             "<origin xyz='0 0'/></joint>"),
       "xyz of <origin> is '0 0', and must be 3 numbers");
@@ -243,7 +248,9 @@ TEST_F(OfUrdf, InertiasThatNoBodyHasAreMendedIfLittleIsMissingOrIfAsked) {
   EXPECT_EQ(of(".04", true).changed.begin()->first, "inertia of 'lower' by 9.1 %");
   std::string point = urdf();
   for (const char* moment : {"ixx='.02'", "iyy='.02'", "izz='.01'"})
-    point.replace(point.find(moment, point.find("'lower'")) + 5, 3, "0.0");
+    point.replace(point.find(moment, point.find("'lower'")) + 5, 3, "4e-18");
+  EXPECT_NE(error_of([&] { load_mjcf(put(point, "arm.urdf")); }).find("'lower' (line 1)"),
+            std::string::npos);
   const double r = std::cbrt(2 / 4189.);
   EXPECT_LT((tree_of(load_mjcf(put(point, "arm.urdf"), {.balance = true})).joints[1].inertia -
              .8 * r * r * Mat<3>::Identity())
@@ -274,6 +281,14 @@ TEST_F(OfUrdf, LimitsMayBeInfiniteAndAFileOfMacrosIsNamed) {
   EXPECT_EQ(import_mjcf(put(text, "arm.urdf")).dropped.at("endless limit"), 2);
   EXPECT_EQ(error_of([&] { import_mjcf(put("<robot name='x'></robot>", "arm.urdf")); }),
             "line 1: there is no link in it; is it a file of macros (xacro)?");
+}
+
+TEST_F(OfUrdf, LimitsThatLeaveNoWayAreNoneAndNamed) {
+  std::string text = urdf();
+  text.replace(text.find("lower='-2' upper='2'"), 20, "lower='0' upper='0'");
+  const std::string path = put(text, "arm.urdf");
+  EXPECT_EQ(import_mjcf(path).dropped.at("limits of 0 and 0"), 1);
+  EXPECT_TRUE(std::isinf(tree_of(load_mjcf(path)).upper[0]));
 }
 
 TEST_F(OfUrdf, ALimitOnOneSideStays) {
@@ -358,6 +373,36 @@ TEST_F(OfUrdf, AJointOfAnyTypeCanBeLocked) {
            "</link><joint name='y' type='floating'><parent link='tool'/><child link='c'/></joint>"),
       "arm.urdf");
   EXPECT_NEAR(tree_of(load_mjcf(path, {"y"})).joints[2].mass, 1.5, 1e-12);
+}
+
+TEST_F(OfUrdf, WithoutAnyMassNamesTheWaysToGetOne) {
+  std::string text = urdf();
+  for (std::size_t at; (at = text.find("<inertial>")) != text.npos;)
+    text.erase(at, text.find("</inertial>") + 11 - at);
+  const std::string error = error_of([&] { load_mjcf(put(text, "arm.urdf")); });
+  EXPECT_NE(
+      error.find("none of its links that move has a mass ('upper' (line 1), 'lower' (line 1), "
+                 "'tool' (line 1)), and dynamics needs them"),
+      std::string::npos)
+      << error;
+  EXPECT_NE(error.find("tauext-calibrate --masses"), std::string::npos);
+  EXPECT_EQ(error.find("to mend it"), std::string::npos) << error;
+}
+
+// a finger without a mass, which floats, and a link whose inertia no body has
+TEST_F(OfUrdf, TheRemedyOfAllIsOneCommand) {
+  std::string text = urdf(
+      "<link name='f'/><joint name='grip' type='prismatic'><parent link='tool'/><child link='f'/>"
+      "</joint><link name='c'/><joint name='y' type='floating'><parent link='tool'/><child "
+      "link='c'/></joint>");
+  const auto error = [&] { return error_of([&] { load_mjcf(put(text, "arm.urdf")); }); };
+  EXPECT_TRUE(error().ends_with("; to mend it: --lock 'grip|y'")) << error();
+  text.replace(text.find("ixx='.02'"), 9, "ixx='.04'");
+  const std::string path = put(text, "arm.urdf");
+  EXPECT_TRUE(error().ends_with("; to mend it: tauext-import " + path +
+                                " --lock 'grip|y' --balance --out arm.xml"))
+      << error();
+  EXPECT_EQ(tree_of(load_mjcf(path, {.lock = "grip|y", .balance = true})).dof(), 3);
 }
 
 TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Errors of robots' files that flags mend.
+#pragma once
+
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace tauext {
+
+/// Flags of tauext-import, beside those that were given.
+struct Mending {
+  std::set<std::string> lock;  ///< joints to fix, by name
+  bool balance = false;        ///< ImportOptions::balance
+
+  bool empty() const { return lock.empty() && !balance; }
+  void add(const Mending& other) {
+    lock.insert(other.lock.begin(), other.lock.end());
+    balance = balance || other.balance;
+  }
+};
+
+/// An error that names all that is wrong, and the flags that mend it, or some of it.
+class Mendable : public std::runtime_error {
+ public:
+  Mendable(const std::string& words, Mending by) : std::runtime_error(words), by_(std::move(by)) {}
+
+  const Mending& by() const { return by_; }
+
+ private:
+  Mending by_;
+};
+
+}  // namespace tauext
