@@ -150,5 +150,40 @@ TEST_F(Programs, AnImportedArmIsTheFilesOwn) {
   EXPECT_FALSE(exists("x.csv"));
 }
 
+// the message's own command, as a user copies it
+TEST_F(Programs, WhatARefusedRobotNeedsIsNamedAndMendsIt) {
+  std::string floats = hinge_arm(9, false);
+  floats.insert(floats.find("</worldbody>"), "</body>");
+  floats.insert(floats.find("<worldbody>") + 11, "<body name='base'><freejoint/><geom size='.1'/>");
+  write("humanoid.xml", floats);
+  const Outcome refused = run("tauext-import humanoid.xml --out arm.xml");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_FALSE(exists("arm.xml"));
+  EXPECT_TRUE(refused.says("humanoid.xml: joint 1 'base' is free")) << refused.text;
+  EXPECT_TRUE(refused.says("; to mend it: --lock 'base'")) << refused.text;
+  EXPECT_EQ(run("tauext-import humanoid.xml --lock 'base' --out arm.xml").code, 0);
+  // nine joints are too many for estimators, and eight are not
+  const Outcome live = run("tauext-record --list --robot humanoid.xml");
+  EXPECT_EQ(live.code, 2);
+  const std::string keeps = " keeps the 8 from ";
+  const std::size_t end = live.text.find(keeps), at = live.text.rfind("--lock '", end);
+  ASSERT_NE(end, live.text.npos) << live.text;
+  const Outcome fewer =
+      run("tauext-record --list --robot humanoid.xml " + live.text.substr(at, end - at));
+  EXPECT_EQ(fewer.code, 0) << fewer.text;
+  EXPECT_TRUE(fewer.says("robot humanoid.xml")) << fewer.text;
+
+  write("arm.urdf.xacro", "<robot/>");
+  for (const char* command :
+       {"tauext-import arm.urdf.xacro --out x.xml", "tauext-record --list --robot arm.urdf.xacro",
+        "tauext-record --list --robot arm.urdf.xacro --lock grip"}) {
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2);
+    EXPECT_TRUE(o.says("xacro arm.urdf.xacro > arm.urdf")) << o.text;
+  }
+  EXPECT_TRUE(run("tauext-record --list --robot .").says("like ./arm.urdf.xacro")) << "a folder";
+  EXPECT_FALSE(exists("x.xml"));
+}
+
 }  // namespace
 }  // namespace tauext::test
