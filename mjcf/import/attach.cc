@@ -19,7 +19,7 @@ using tinyxml2::XMLNode;
 
 // attributes that are names, or refer to one
 constexpr std::string_view kNames =
-    " name class childclass joint joint1 joint2 jointinparent body body1 body2 mesh material "
+    " name joint joint1 joint2 jointinparent body body1 body2 mesh material "
     "tendon "
     "tendon1 tendon2 site sidesite geom geom1 geom2 cranksite slidersite refsite ";
 
@@ -105,18 +105,27 @@ bool has_class(XMLElement& mujoco, const std::string& name) {
   return has;
 }
 
-// The defaults of the model, as a class of its own within the file's; its name.
+// The defaults of the model, as a class of its own within the file's, whose name is returned; the
+// model's classes get names that begin with it, as both may have one of the same name.
 std::string graft_defaults(const XMLElement& attach, XMLElement& parent, XMLElement& child) {
-  std::string name;
-  for (int n = 1; name.empty() || has_class(parent, name) || has_class(child, name); ++n)
-    name = fmt::format("tauext:attached{}", n);
-  XMLElement* top = parent.FirstChildElement("default");
   for (const XMLElement* d : sections(parent, "default"))
     for (const XMLElement* e = d->FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
       if (name_of(*e) != "default" && has_word(elements_of(kKept), name_of(*e)))
         fail(*e,
              "a default of all is not known beside an <attach> (line {}); give that <{}> a class",
              attach.GetLineNum(), name_of(*e));
+  std::string name, main = "main";
+  for (int n = 1; name.empty() || has_class(parent, name) || has_class(child, name); ++n)
+    name = fmt::format("tauext:attached{}", n);
+  for (const XMLElement* d : sections(child, "default"))
+    if (d->Attribute("class") != nullptr) main = text(*d, "class");
+  each(child, [&](XMLElement& e) {
+    for (const char* const which : {"class", "childclass"})
+      if (const std::string own = text(e, which); !own.empty())
+        e.SetAttribute(which, (own == main ? name : name + '/' + own).c_str());
+    return true;
+  });
+  XMLElement* top = parent.FirstChildElement("default");
   if (top == nullptr) top = parent.InsertNewChildElement("default");
   XMLElement& all = *top->InsertNewChildElement("default");
   all.SetAttribute("class", name.c_str());
@@ -141,7 +150,7 @@ bool is_about(XMLElement& e, const std::set<std::string>& names) {
   const auto look = [&](const XMLElement& at) {
     for (const tinyxml2::XMLAttribute* a = at.FirstAttribute(); a != nullptr; a = a->Next()) {
       const std::string_view what = a->Name();
-      if (what == "name" || what == "class" || !has_word(kNames, what)) continue;
+      if (what == "name" || !has_word(kNames, what)) continue;
       all = all && names.count(a->Value()) > 0;
     }
     return true;

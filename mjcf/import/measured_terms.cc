@@ -88,28 +88,6 @@ void put_payload(XMLElement& root, const Payload& p) {
   inertial->SetAttribute("diaginertia", fmt::format("{0:.17g} {0:.17g} {0:.17g}", I).c_str());
 }
 
-// an attribute, or that of its class: the one that it names, or a body around it, or the file's
-std::string with_defaults(XMLElement& root, const XMLElement& e, const char* attribute) {
-  if (e.Attribute(attribute) != nullptr) return text(e, attribute);
-  std::string name = text(e, "class");
-  for (const tinyxml2::XMLNode* at = e.Parent(); name.empty() && at->ToElement() != nullptr;
-       at = at->Parent())
-    name = text(*at->ToElement(), "childclass");
-  const XMLElement* found = nullptr;
-  each(root, [&](XMLElement& d) {
-    if (name_of(d) == "default" &&
-        (name.empty() ? parent_name(d) != "default" : text(d, "class") == name))
-      found = &d;
-    return found == nullptr;
-  });
-  for (; found != nullptr && name_of(*found) == "default"; found = found->Parent()->ToElement()) {
-    const XMLElement* const values = found->FirstChildElement(e.Name());
-    if (values != nullptr && values->Attribute(attribute) != nullptr)
-      return text(*values, attribute);
-  }
-  return "";
-}
-
 // the larger end of a range; 0 without one
 double most(const std::string& range) {
   double from = 0, to = 0;

@@ -219,6 +219,8 @@ class Import {
         mocap_.insert(text(e, "name"));
       if (name_of(e) == "tendon" && inside(e, "default"))
         tendons_have_forces_ = tendons_have_forces_ || has_forces(e);
+      if (name_of(e) == "geom" && inside(e, "default"))
+        class_has_mesh_ = class_has_mesh_ || e.Attribute("mesh") != nullptr;
       if (name_of(e) != "compiler") return true;
       if (e.Attribute("inertiafromgeom") != nullptr)
         from_geom_ = text(e, "inertiafromgeom") == "true";
@@ -300,9 +302,12 @@ class Import {
       return drop(e, "equality that drags by a mocap body", out_.dropped);  // as an actuator would
     if (name_of(e) == "geom" && !inside(e, "default")) {
       if (e.Attribute("hfield") != nullptr) return drop(e, "geom (hfield)", out_.dropped);
-      if (e.Attribute("mesh") != nullptr) {
+      if (const std::string mesh = class_has_mesh_
+                                       ? detail::with_defaults(*doc_.RootElement(), e, "mesh")
+                                       : text(e, "mesh");
+          !mesh.empty()) {
         if (!mass_is_of_geoms(e)) return drop(e, "geom (mesh)", out_.dropped);
-        meshes.insert(text(e, "mesh"));
+        meshes.insert(mesh);
       }
     }
     if (name_of(e) == "mesh" && e.Attribute("inertia") != nullptr) {
@@ -459,7 +464,7 @@ class Import {
   detail::Problems problems_;
   bool from_geom_ = false, balances_ = false, tendons_have_forces_ = false;
   int includes_ = 0;
-  bool weightless_ = false, total_mass_ = false;
+  bool weightless_ = false, total_mass_ = false, class_has_mesh_ = false;
   bool by_group_ = false;  // whether the group of a shape says if it has a mass
   std::set<std::string> including_, mocap_;
   std::map<const XMLElement*, std::string> mesh_inertia_;  // where one says how it is found

@@ -126,6 +126,28 @@ void each(XMLElement& at, Visit&& visit) {
   }
 }
 
+/// An attribute, or that of its class: the one that it names, or a body around it, or the file's.
+inline std::string with_defaults(XMLElement& root, const XMLElement& e, const char* attribute) {
+  if (e.Attribute(attribute) != nullptr) return text(e, attribute);
+  std::string name = text(e, "class");
+  for (const tinyxml2::XMLNode* at = e.Parent(); name.empty() && at->ToElement() != nullptr;
+       at = at->Parent())
+    name = text(*at->ToElement(), "childclass");
+  const XMLElement* found = nullptr;
+  each(root, [&](XMLElement& d) {
+    if (name_of(d) == "default" &&
+        (name.empty() ? parent_name(d) != "default" : text(d, "class") == name))
+      found = &d;
+    return found == nullptr;
+  });
+  for (; found != nullptr && name_of(*found) == "default"; found = found->Parent()->ToElement()) {
+    const XMLElement* const values = found->FirstChildElement(e.Name());
+    if (values != nullptr && values->Attribute(attribute) != nullptr)
+      return text(*values, attribute);
+  }
+  return "";
+}
+
 /// Deletes it and counts that; false, for `each`.
 inline bool drop(XMLElement& e, const std::string& what, std::map<std::string, int>& dropped) {
   ++dropped[what];

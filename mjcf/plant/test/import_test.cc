@@ -373,6 +373,8 @@ TEST_F(Import, WhatIsAttachedIsAsIfItStoodThere) {
     return fmt::format("<equality><joint joint1='{0}c' joint2='{0}b'/></equality>", p);
   };
   const std::string compiler = "<compiler angle='radian'/>";
+  // another class of that name in the file itself
+  const std::string own = "<default><default class='link'><joint damping='9'/></default></default>";
   std::filesystem::create_directories(folder_ / "parts");
   put("<mujoco>" + compiler + "<default>" + classes +
           "</default><worldbody><include "
@@ -381,7 +383,7 @@ TEST_F(Import, WhatIsAttachedIsAsIfItStoodThere) {
       "parts/arm.xml");
   put("<mujoco>" + bodies("") + "</mujoco>", "parts/bodies.xml");
   const auto robot = [&](const std::string& attach) {
-    return put("<mujoco>" + compiler +
+    return put("<mujoco>" + compiler + own +
                "<asset><model name='arm' file='parts/arm.xml'/></asset><worldbody>" +
                "<body name='stand' pos='.3 0 1' euler='0 .4 0'>" + attach +
                "</body></worldbody></mujoco>");
@@ -599,6 +601,18 @@ TEST_F(Import, AnExpressionOfJointsToLockEndsSoon) {
             std::string::npos);
   EXPECT_NE(error_of([&] { import_mjcf(path, {.lock = "(a)\\1"}); }).find("--lock '"),
             std::string::npos);
+}
+
+TEST_F(Import, AMeshMayBeThatOfAClass) {
+  const std::string path = put(
+      "<mujoco><default><default class='link'><geom type='mesh' mesh='m.0'/></default></default>"
+      "<asset><mesh name='m.0' vertex='0 0 0 .3 0 0 0 .2 0 0 0 "
+      ".1'/></asset><worldbody><body><joint "
+      "name='a'/><geom class='link'/></body></worldbody></mujoco>");
+  const Vec<1> q(0.4);
+  const MjcfArm<1> oracle(own_reading(path));
+  EXPECT_NEAR(tree_model<1>(load_mjcf(path)).gravity(q)[0], oracle.gravity(q)[0], 1e-9);
+  EXPECT_EQ(import_mjcf(path).dropped.count("mesh"), 0u);
 }
 
 TEST_F(Import, NeedsNoMeshesOfWhatStandsStill) {
