@@ -34,10 +34,22 @@ struct Payload {
   double center[3] = {0, 0, 0};  ///< [m] of mass, in the frame of the body or of the site
 };
 
+/// What a body that a joint moves has, with all that is fixed to it.
+struct MeasuredBody {
+  double mass = 0;                         ///< [kg]
+  double center[3] = {0, 0, 0};            ///< [m] of mass, in the body's frame
+  double inertia[6] = {0, 0, 0, 0, 0, 0};  ///< [kg m^2] xx, yy, zz, xy, xz and yz of the tensor
+                                           ///< about the center of mass, in the body's axes
+};
+
 /// All of it.
 struct MeasuredTerms {
   std::map<std::string, MeasuredJoint> joints;  ///< by name
   std::optional<Payload> payload;               ///< if there is one
+  std::map<std::string, MeasuredBody> bodies;   ///< by name
+
+  /// Whether nothing was measured.
+  bool empty() const { return joints.empty() && !payload && bodies.empty(); }
 };
 
 namespace detail {

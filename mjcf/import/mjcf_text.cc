@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "mjcf/import/attach.h"
+#include "mjcf/import/body_masses.h"
 #include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
 #include "mjcf/import/schema.h"
@@ -62,7 +63,8 @@ class Import {
     if (name_of(load(doc_, path_)) == "robot") {
       XMLDocument mjcf;
       detail::urdf_to_mjcf(*doc_.RootElement(), mjcf,
-                           {options_.lock, options_.balance, out_.dropped, out_.changed});
+                           {options_.lock, options_.balance, options_.masses_unknown,
+                            options_.measured.bodies, out_.dropped, out_.changed});
       mjcf.DeepCopy(&doc_);
     }
     XMLElement& root = *doc_.RootElement();
@@ -79,6 +81,8 @@ class Import {
     problems_.raise();
     detail::name_joints(root);
     detail::lock_joints(root, options_.lock, out_.dropped, out_.changed);
+    detail::put_bodies(root, options_.measured.bodies);
+    if (options_.masses_unknown) out_.massless = detail::fill_masses(root);
     mend_inertias(root);
     set_compiler(root);
     XMLElement* const option = root.InsertNewChildElement("option");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "mjcf/import/measured_terms.h"
@@ -17,11 +18,12 @@ struct ImportOptions {
   std::string lock;
   MeasuredTerms measured;  ///< in the place of what the file says
   bool balance = false;    ///< mend inertias that no body has
+  /// Bodies that move without a mass are no error, and get one that means nothing: for whoever
+  /// finds out what they have.
+  bool masses_unknown = false;
 
   /// Whether the file is to be taken as it is.
-  bool changes_nothing() const {
-    return lock.empty() && measured.joints.empty() && !measured.payload;
-  }
+  bool changes_nothing() const { return lock.empty() && measured.empty(); }
 };
 
 /// A text, and what of the file is not in it.
@@ -29,6 +31,7 @@ struct ImportedText {
   std::string xml;                     ///< MJCF, in one piece
   std::map<std::string, int> dropped;  ///< how often each element or attribute, like "geom (mesh)"
   std::map<std::string, int> changed;  ///< what is different, like "joint locked"
+  std::set<std::string> massless;      ///< bodies, as ImportOptions::masses_unknown has it
 };
 
 /// What is different and what is left out, each with its number, in one line; "" if nothing is.

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/import/body_masses.h"
+#include "mjcf/import/inertia.h"
 #include "mjcf/import/json_object.h"
 #include "mjcf/trace/printable.h"
 
@@ -75,8 +77,38 @@ Payload payload_of(const Json& json, const std::string& where) {
   return p;
 }
 
+MeasuredBody body_of(const Json& json, const std::string& where) {
+  const JsonObject o(json, where, {"mass", "center", "inertia", "about"});
+  MeasuredBody b;
+  b.mass = o.number("mass", kLittle, kMuch);
+  const Eigen::VectorXd c = o.vector("center", 3), I = o.vector("inertia", 6);
+  std::copy(c.begin(), c.end(), b.center);
+  std::copy(I.begin(), I.end(), b.inertia);
+  const Eigen::Vector3d m = detail::mended(detail::tensor(b), b.mass).moments;
+  const double missing = std::max(-m[0], m[2] - m[0] - m[1]);
+  if (m[0] > 0 && missing <= 1e-6 * m[2]) return b;  // as many digits as people print
+  throw std::invalid_argument(fmt::format(
+      "{}: \"inertia\" has the principal moments {:.4g}, {:.4g} and {:.4g} kg m^2, and no body has "
+      "those: each must be above 0, and at most the sum of the others. It is [xx, yy, zz, xy, xz, "
+      "yz] about the center of mass",
+      where, m[0], m[1], m[2]));
+}
+
+// an object with a key for each
+template <class Take>
+void each_of(const JsonObject& o, const std::string& path, const char* key, const char* kind,
+             Take&& take) {
+  if (!o.has(key)) return;
+  if (!o.at(key).is_object())
+    throw std::invalid_argument(
+        fmt::format("{}: \"{}\" must be an object, a key for each {}", path, key, kind));
+  for (const auto& [name, value] : o.at(key).items())
+    take(name, value, fmt::format("{}: {} '{}'", path, kind, printable_name(name)));
+}
+
 RobotFile robot_of(const Json& json, const std::string& path) {
-  const JsonObject o(json, path, {"format", "file", "lock", "joints", "payload", "about"});
+  const JsonObject o(json, path,
+                     {"format", "file", "lock", "joints", "bodies", "payload", "about"});
   if (o.text("format", "") != kRobotFileFormat)
     throw std::invalid_argument(fmt::format(
         "{}: no robot file: its \"format\" is {}, and must be \"{}\"", path,
@@ -87,15 +119,16 @@ RobotFile robot_of(const Json& json, const std::string& path) {
     throw std::invalid_argument(path + ": \"file\" must name an MJCF or URDF file");
   r.path = (std::filesystem::path(path).parent_path() / file).string();
   r.options.lock = o.text("lock", "");
-  if (o.has("joints")) {
-    if (!o.at("joints").is_object())
-      throw std::invalid_argument(path + ": \"joints\" must be an object, a key for each joint");
-    for (const auto& [name, joint] : o.at("joints").items())
-      r.options.measured.joints.emplace(
-          name, joint_of(joint, fmt::format("{}: joint '{}'", path, printable_name(name))));
-  }
-  if (o.has("payload"))
-    r.options.measured.payload = payload_of(o.at("payload"), path + ": payload");
+  MeasuredTerms& measured = r.options.measured;
+  each_of(o, path, "joints", "joint",
+          [&](const std::string& name, const Json& j, const std::string& where) {
+            measured.joints.emplace(name, joint_of(j, where));
+          });
+  each_of(o, path, "bodies", "body",
+          [&](const std::string& name, const Json& b, const std::string& where) {
+            measured.bodies.emplace(name, body_of(b, where));
+          });
+  if (o.has("payload")) measured.payload = payload_of(o.at("payload"), path + ": payload");
   return r;
 }
 
@@ -198,6 +231,7 @@ RobotFile robot_file(const std::string& path, const ImportOptions& options) {
         fmt::format("{}: has a \"lock\" of its own, so --lock cannot be another one", path));
   if (lock.empty()) lock = options.lock;
   robot.options.balance = options.balance;
+  robot.options.masses_unknown = options.masses_unknown;
   return robot;
 }
 

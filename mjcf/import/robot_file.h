@@ -18,13 +18,22 @@
 ///           "standard_errors": {..}           // of the same keys; for the reader
 ///         }
 ///       },
+///       "bodies": {
+///         "forearm": {                        // each that is here, with all that is fixed to it
+///           "mass": 3.9,                      // kg
+///           "center": [0, 0, 0.21],           // m, of mass, in the body's frame
+///           "inertia": [0.11, 0.11, 0.01, 0, 0, 0]  // kg m^2, xx, yy, zz, xy, xz, yz of the
+///         }                                   // tensor about that center, in the body's axes
+///       },
 ///       "payload": {"body": "wrist_3_link", "mass": 2.8, "center": [0, 0, 0.1]},  // kg, m
 ///       "about": {..}                         // anything
 ///     }
 ///
-/// A body's payload stands in its frame; a site may be named instead. No offset can be told from
-/// a Coulomb friction that differs by the direction: [up, down] is (up + down) / 2 and an offset
-/// of (up - down) / 2.
+/// Bodies are those that a joint moves (URDF: links), in the place of what the file says, or does
+/// not say, of their masses; what a body has on it that no joint moves is part of it, and the
+/// payload adds to that. A body's payload stands in its frame; a site may be named instead. No
+/// offset can be told from a Coulomb friction that differs by the direction: [up, down] is
+/// (up + down) / 2 and an offset of (up - down) / 2.
 #pragma once
 
 #include <string>

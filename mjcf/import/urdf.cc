@@ -372,6 +372,10 @@ class Urdf {
   void add_inertial(const XMLElement& link, const std::string& joint, const Piece& piece,
                     double behind, XMLElement& body) {
     constexpr double kNearlyNone = 1e-12;  // [kg], [kg m^2]
+    if (how_.bodies.count(text(link, "name")) > 0) {
+      has_moving_mass_ = true;
+      return;
+    }
     Part p = sum(piece.parts);
     has_moving_mass_ = has_moving_mass_ || p.kg > 0;
     if (p.kg == 0 && behind > 0 && !piece.has_shape) {
@@ -379,6 +383,7 @@ class Urdf {
       p.inertia = kNearlyNone * Matrix3d::Identity();
       ++how_.changed["frame between joints that has no mass, now 1e-12 kg"];
     }
+    if (p.kg == 0 && how_.masses_unknown) return;
     if (p.kg == 0) {
       if (behind == 0) massless_tips_.insert(joint);  // which is nothing to the rest of the arm
       return massless_.push_back(

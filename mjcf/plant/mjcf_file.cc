@@ -184,8 +184,8 @@ std::string without_jargon(const std::string& message) {
     const std::size_t name = message.find(before), from = name + before.size();
     if (name == message.npos) continue;
     return fmt::format(
-        "body '{}' moves, and mass or inertia of it is not above 0; give it an "
-        "<inertial> with both",
+        "body '{}' moves, and mass or inertia of it is not above 0; give it an <inertial> with "
+        "both, or find them from recordings (tauext-calibrate --masses)",
         message.substr(from, message.find(before.back() == '\'' ? "', id" : ", id", from) - from));
   }
   return message;

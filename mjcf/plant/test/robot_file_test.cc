@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "mjcf/plant/any_tree.h"
@@ -118,6 +119,51 @@ TEST_F(RobotFiles, APayloadStandsInTheFrameThatItNames) {
   EXPECT_LT((there - 2 * tool).norm(), 1e-9) << there.transpose();
 }
 
+// the frame is the body's, whose joint may stand elsewhere; what is fixed to it is part of it
+TEST_F(RobotFiles, BodiesHaveTheMassesThatAreSaid) {
+  std::ofstream(folder_ / "arm.xml")
+      << "<mujoco><worldbody><body name='b'><joint name='j' pos='0 0 .1' axis='0 1 0'/><geom "
+         "size='.1'/><inertial pos='0 0 .2' mass='3' diaginertia='.1 .1 .1'/><body name='part' "
+         "pos='0 0 .3'><geom size='.1'/><body name='deeper'><inertial pos='0 0 0' mass='1' "
+         "diaginertia='.1 .1 .1'/></body></body></body></worldbody></mujoco>";
+  const ArmTree a = arm(R"(, "bodies": {"b": {"mass": 2, "center": [0.1, 0.2, 0.3],
+      "inertia": [0.05, 0.04, 0.03, 0.002, -0.001, 0.003]}})");
+  EXPECT_EQ(a.joints[0].mass, 2);
+  EXPECT_LT((a.joints[0].center - Vec<3>(0.1, 0.2, 0.2)).norm(), 1e-12);
+  Mat<3> I;
+  I << 0.05, 0.002, -0.001, 0.002, 0.04, 0.003, -0.001, 0.003, 0.03;
+  EXPECT_LT((a.joints[0].inertia - I).norm(), 1e-12) << a.joints[0].inertia;
+  const ArmTree loaded = arm(R"(, "bodies": {"b": {"mass": 2, "center": [0, 0, 0],
+      "inertia": [0.05, 0.04, 0.03, 0, 0, 0]}},
+      "payload": {"body": "part", "mass": 2, "center": [0, 0, 0]})");
+  EXPECT_EQ(loaded.joints[0].mass, 4);
+  EXPECT_LT((loaded.joints[0].center - Vec<3>(0, 0, 0.15 - 0.1)).norm(), 1e-12);
+}
+
+// as hundreds of industrial arms have them
+TEST_F(RobotFiles, BodiesMakeAnArmOfAFileWithoutMasses) {
+  std::ofstream(folder_ / "arm.xml")
+      << "<robot name='r'><link name='base'/><link name='l'/><link name='flange'/><joint name='j' "
+         "type='continuous'><parent link='base'/><child link='l'/><axis xyz='0 1 0'/></joint>"
+         "<joint name='f' type='fixed'><parent link='l'/><child link='flange'/></joint></robot>";
+  const std::string file = folder_ / "arm.xml";
+  EXPECT_NE(error_of([&] { load_mjcf(file); }).find("tauext-calibrate --masses"),
+            std::string::npos);
+  const ArmTree a = arm(R"(, "bodies": {"l": {"mass": 2, "center": [0.1, 0, 0],
+      "inertia": [0.05, 0.04, 0.03, 0, 0, 0]}})");
+  EXPECT_EQ(a.joints[0].mass, 2);
+  EXPECT_NEAR(a.usual_torque[0], 2 * 9.81 * 0.1, 0.1);
+  ImportOptions how;
+  how.masses_unknown = true;
+  EXPECT_EQ(import_mjcf(file, how).massless, std::set<std::string>{"l"});
+  EXPECT_EQ(tree_of(load_mjcf(file, how)).dof(), 1);
+  std::ofstream(folder_ / "arm.xml")
+      << "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>";
+  EXPECT_NE(error_of([&] { load_mjcf(file); }).find("tauext-calibrate --masses"),
+            std::string::npos);
+  EXPECT_EQ(import_mjcf(file, how).massless, std::set<std::string>{"b"});
+}
+
 TEST_F(RobotFiles, AnImportedTextHoldsAllOfIt) {
   const auto [path, options] = robot_file(written(
       R"({"format": "tauext-robot-1", "file": "arm.xml",
@@ -152,6 +198,19 @@ TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
            {head + R"("joints": {"elbow": {"effort": 0}}})", "\"effort\" is 0, and must be 1e-06"},
            {head + R"("payload": {"body": "hand", "mass": 1, "center": [0, 0, 0]}})",
             "unknown body 'hand'; known: lower, upper"},
+           {head + R"("bodies": []})", "\"bodies\" must be an object, a key for each body"},
+           {head + R"("bodies": {"hand": {"mass": 1, "center": [0, 0, 0],
+              "inertia": [1, 1, 1, 0, 0, 0]}}})",
+            "unknown body with a joint 'hand'; known: lower, upper"},
+           {head + R"("bodies": {"lower": {"mass": 0, "center": [0, 0, 0],
+              "inertia": [1, 1, 1, 0, 0, 0]}}})",
+            "body 'lower': \"mass\" is 0, and must be 1e-06"},
+           {head + R"("bodies": {"lower": {"mass": 1, "center": [0, 0, 0],
+              "inertia": [1, 1, 2.1, 0, 0, 0]}}})",
+            "body 'lower': \"inertia\" has the principal moments 1, 1 and 2.1 kg m^2, and no body"},
+           {head + R"("bodies": {"lower": {"mass": 1, "center": [0, 0, 0],
+              "inertia": [1, 1, 1]}}})",
+            "\"inertia\" is [1,1,1], and must be 6 numbers"},
            {head + R"("payload": {"body": "lower", "mass": -1, "center": [0, 0, 0]}})",
             "payload: \"mass\" is -1"}}) {
     EXPECT_TRUE(error_of_robot(json).starts_with((folder_ / "arm.json").string())) << json;
