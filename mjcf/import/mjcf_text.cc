@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "mjcf/import/attach.h"
-#include "mjcf/import/body_masses.h"
-#include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
+#include "mjcf/import/masses/body_masses.h"
+#include "mjcf/import/masses/inertia.h"
 #include "mjcf/import/schema.h"
 #include "mjcf/import/urdf.h"
 #include "mjcf/import/xml.h"

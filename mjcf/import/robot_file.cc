@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "mjcf/import/body_masses.h"
-#include "mjcf/import/inertia.h"
 #include "mjcf/import/json_object.h"
+#include "mjcf/import/masses/body_masses.h"
+#include "mjcf/import/masses/inertia.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {

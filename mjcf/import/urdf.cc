@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "mjcf/import/inertia.h"
 #include "mjcf/import/lock.h"
+#include "mjcf/import/masses/inertia.h"
 #include "mjcf/import/measured_terms.h"
 #include "mjcf/import/schema.h"
 #include "mjcf/import/xml.h"

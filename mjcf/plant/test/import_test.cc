@@ -407,18 +407,28 @@ TEST_F(Import, WhatIsAttachedIsAsIfItStoodThere) {
     EXPECT_LT((same.bias(q, qd) - oracle.bias(q, qd)).norm(), 1e-12);
     EXPECT_EQ(same.friction(qd), oracle.friction(qd));
   }
-  const auto why = [&](const std::string& attach) {
-    return error_of([&] { import_mjcf(robot(attach)); });
+}
+
+TEST_F(Import, WhatCannotBeAttachedIsNamed) {
+  std::filesystem::create_directories(folder_ / "parts");
+  const auto why = [&](const std::string& attach, const std::string& part) {
+    put(part, "parts/arm.xml");
+    return error_of([&] {
+      import_mjcf(
+          put("<mujoco><compiler angle='radian'/><asset><model name='arm' "
+              "file='parts/arm.xml'/></asset><worldbody><body name='stand'>" +
+              attach + "</body></worldbody></mujoco>"));
+    });
   };
-  EXPECT_NE(why("<attach model='arm' body='x' prefix='r_'/>").find("has no body 'x'"),
-            std::string::npos);
-  EXPECT_NE(why("<attach body='stand' prefix='r_'/>").find("<attach> is known with a model"),
-            std::string::npos);
-  put("<mujoco><worldbody/></mujoco>", "parts/arm.xml");
-  EXPECT_NE(why("<attach model='arm' prefix='r_'/>")
-                .find("has angle=\"degree\", and this file has "
-                      "\"radian\""),
-            std::string::npos);
+  const std::string empty = "<mujoco><worldbody/></mujoco>",
+                    arm = "<mujoco><compiler angle='radian'/><worldbody/></mujoco>";
+  const auto expect = [](const std::string& error, const char* words) {
+    EXPECT_NE(error.find(words), std::string::npos) << error;
+  };
+  expect(why("<attach model='arm' body='x' prefix='r_'/>", arm), "has no body 'x'");
+  expect(why("<attach body='stand' prefix='r_'/>", arm), "<attach> is known with a model");
+  expect(why("<attach model='arm' prefix='r_'/>", empty),
+         "has angle=\"degree\", and this file has \"radian\"");
 }
 
 TEST_F(Import, AFileMayBeIncludedByTwoButNotByItself) {

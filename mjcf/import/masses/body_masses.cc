@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/import/body_masses.h"
+#include "mjcf/import/masses/body_masses.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mjcf/import/inertia.h"
+#include "mjcf/import/masses/inertia.h"
 #include "mjcf/import/xml.h"
 #include "mjcf/trace/known.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/import/inertia.h"
+#include "mjcf/import/masses/inertia.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
