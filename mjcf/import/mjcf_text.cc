@@ -204,17 +204,29 @@ class Import {
       if (const XMLElement* const joint = e.FirstChildElement("joint"))
         problems_.attempt(
             [&] { fail(*joint, "a <joint> in a <frame>: write it into the body around that"); });
-      for (XMLElement* g = e.FirstChildElement("geom"); g != nullptr;) {
+      const bool has_mass = !from_geom_ && carrier->FirstChildElement("inertial") != nullptr;
+      for (XMLElement* g = e.FirstChildElement("geom"); g != nullptr && has_mass;) {
         XMLElement* const next = g->NextSiblingElement("geom");
-        if (!from_geom_ && carrier->FirstChildElement("inertial") != nullptr)
-          drop(*g, "geom in a frame", out_.dropped);
+        drop(*g, "geom in a frame", out_.dropped);
         g = next;
       }
+      if (!has_mass) give_some_mass(*e.Parent()->ToElement());
       e.SetName("body");
       e.DeleteAttribute("name");  // another element may have it
       frames.insert(&e);
       return true;
     });
+  }
+
+  // MuJoCo 2.2.2 wants a mass in a body that moves, whatever it carries
+  static void give_some_mass(XMLElement& carrier) {
+    if (!detail::has_joint(carrier)) return;
+    XMLElement& geom = *carrier.InsertNewChildElement("geom");
+    geom.SetAttribute("type", "sphere");
+    geom.SetAttribute("size", "1");
+    geom.SetAttribute("mass", "1e-12");
+    geom.SetAttribute("contype", "0");
+    geom.SetAttribute("conaffinity", "0");
   }
 
   void read_settings(XMLElement& root) {
