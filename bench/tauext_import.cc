@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   ImportOptions options;
   app.add_option("file", file, "MJCF or URDF file, or robot file of ours (.json)")
       ->required()
-      ->type_name("FILE.xml|FILE.urdf|FILE.json");
+      ->type_name("FILE.xml|FILE.mjcf|FILE.urdf|FILE.json");
   app.add_option("--lock", options.lock,
                  "fix joints whose whole name matches where they are 0; mass stays")
       ->type_name("REGEX")
