@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mjcf/test/error_of.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/test/same_trace.h"
 #include "mjcf/trace/test/some_trace.h"
 
@@ -33,6 +34,7 @@ class McapRun : public testing::Test {
     return trace;
   }
   Trace through_a_file(const Trace& t) const {
+    release_input(path_.string());
     write_mcap(t, path_.string());
     return again();
   }
@@ -42,7 +44,6 @@ class McapRun : public testing::Test {
 
 TEST_F(McapRun, ComesBackBitForBit) {
   Trace run = some_trace(3, 20'000);
-  run.contact[5] = 2;
   run.q(0, 7) = -0.0;
   for (double& t : run.t) t += 1.7e9;  // whose nanoseconds a double does not have
   expect_same(through_a_file(run), run);
@@ -76,7 +77,7 @@ TEST_F(McapRun, SaysWhatItsTorqueIs) {
   run.tau_is_current = false, run.tau_without_gravity = true;
   EXPECT_TRUE(through_a_file(run).tau_without_gravity);
   EXPECT_EQ(again().tau, run.tau);
-  fs::remove(path_);
+  fs::remove(path_), release_input(path_.string());
   run.torque_at_instants = false;
   const std::string error = error_of([&] { write_mcap(run, path_.string()); });
   EXPECT_TRUE(error.starts_with(path_.string() + ": the log's torques without gravity hold"))

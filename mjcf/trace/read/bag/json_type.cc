@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mjcf/trace/read/bag/json_type.h"
 
+#ifdef TAUEXT_RAPIDJSON
+#include <rapidjson/memorystream.h>
+#include <rapidjson/reader.h>
+#endif
+
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace tauext {
@@ -19,7 +26,7 @@ constexpr std::size_t kMostLevels = 64;    // of objects and arrays in each othe
 }  // namespace
 
 // of a member or, without a key, of what an array has
-int JsonType::add_node(int parent, const std::string& key) {
+int JsonType::add_node(int parent, std::string_view key) {
   Node node;
   node.key = key;
   node.parent = parent;
@@ -37,7 +44,7 @@ int JsonType::add_node(int parent, const std::string& key) {
 }
 
 // `expected`: how many members came before it, as most messages have one order
-int JsonType::member(int node, const std::string& key, std::size_t expected) {
+int JsonType::member(int node, std::string_view key, std::size_t expected) {
   if (expected < at(node).order.size()) {
     const int next = at(node).order[expected];
     if (at(next).key == key) return next;
@@ -94,27 +101,45 @@ int JsonType::list_above(int node) {
   return kNone;
 }
 
-// takes a message as nlohmann's parser meets it
-class JsonWalk final : public nlohmann::json_sax<nlohmann::json> {
+#ifdef TAUEXT_RAPIDJSON
+
+JsonType::JsonType() : nodes_(1) {}
+
+// takes a message as RapidJSON's reader meets it
+class JsonWalk {
  public:
+  using Ch = char;
+  static constexpr const char* kNoJson = "it is no JSON";
+
   JsonWalk(JsonType& type, MessageNumbers& to) : type_(type), to_(to) { levels_.reserve(8); }
 
   const char* objection() const { return why_; }
 
-  bool null() override { return take(std::numeric_limits<double>::quiet_NaN()); }
-  bool boolean(bool x) override { return take(x ? 1 : 0); }
-  bool number_integer(std::int64_t x) override { return take(static_cast<double>(x)); }
-  bool number_unsigned(std::uint64_t x) override { return take(static_cast<double>(x)); }
-  bool number_float(double x, const std::string&) override { return take(x); }
-  bool binary(nlohmann::json::binary_t&) override { return fail(kNoJson); }
+  bool Null() { return take(std::numeric_limits<double>::quiet_NaN()); }
+  bool Bool(bool x) { return take(x ? 1 : 0); }
+  bool RawNumber(const Ch* text, rapidjson::SizeType size, bool) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(text, text + size, x);
+    return error == std::errc() && end == text + size ? take(x) : fail(kNoJson);
+  }
+  // numbers come as they are written
+  bool Int(int) { return fail(kNoJson); }
+  bool Uint(unsigned) { return fail(kNoJson); }
+  bool Int64(std::int64_t) { return fail(kNoJson); }
+  bool Uint64(std::uint64_t) { return fail(kNoJson); }
+  bool Double(double) { return fail(kNoJson); }
 
-  bool string(std::string& text) override {
+  bool String(const Ch* text, rapidjson::SizeType size, bool) {
     if (levels_.empty()) return fail(kNoObject);
-    if (levels_.back().in_array && levels_.back().node != kNone) take_name(text);
+    if (levels_.back().in_array && levels_.back().node != kNone) take_name({text, size});
     return finish_value();
   }
-
-  bool start_object(std::size_t) override {
+  bool Key(const Ch* text, rapidjson::SizeType size, bool) {
+    Level& l = levels_.back();
+    l.member = l.node == kNone ? kNone : type_.member(l.node, {text, size}, l.count);
+    return true;
+  }
+  bool StartObject() {
     if (levels_.empty()) return enter(0, false);
     Level& above = levels_.back();
     if (!above.in_array) return enter(above.member, false);
@@ -123,24 +148,15 @@ class JsonWalk final : public nlohmann::json_sax<nlohmann::json> {
     if (elements != kNone) element_ = above.count;
     return enter(elements, false);
   }
-  bool start_array(std::size_t) override {
+  bool StartArray() {
     if (levels_.empty()) return fail(kNoObject);
     return enter(levels_.back().in_array ? kNone : levels_.back().member, true);
   }
-  bool key(std::string& name) override {
-    Level& l = levels_.back();
-    l.member = l.node == kNone ? kNone : type_.member(l.node, name, l.count);
-    return true;
-  }
-  bool end_object() override { return leave(); }
-  bool end_array() override { return leave(); }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
-    return fail(kNoJson);
-  }
+  bool EndObject(rapidjson::SizeType) { return leave(); }
+  bool EndArray(rapidjson::SizeType) { return leave(); }
 
  private:
   static constexpr int kNone = JsonType::kNone;
-  static constexpr const char* kNoJson = "it is no JSON";
   static constexpr const char* kNoObject = "it is no object of JSON";
 
   // an object or an array that is open
@@ -188,7 +204,7 @@ class JsonWalk final : public nlohmann::json_sax<nlohmann::json> {
     return finish_value();
   }
 
-  void take_name(const std::string& name) {
+  void take_name(std::string_view name) {
     const int list = type_.list_of(levels_.back().node);
     if (list == kNone) return;
     to_.names.resize(type_.lists_);
@@ -198,7 +214,7 @@ class JsonWalk final : public nlohmann::json_sax<nlohmann::json> {
     else if (names.size() == kMostJoints)
       why_ = "it has more than 64 joints";
     else
-      names.push_back(name);
+      names.emplace_back(name);
   }
 
   JsonType& type_;
@@ -208,13 +224,33 @@ class JsonWalk final : public nlohmann::json_sax<nlohmann::json> {
   const char* why_ = nullptr;
 };
 
+// RapidJSON's own stack grows by the heap, and numbers are left to std
 const char* JsonType::read(std::string_view bytes, MessageNumbers& to) {
+  constexpr unsigned kFlags = rapidjson::kParseIterativeFlag |
+                              rapidjson::kParseNumbersAsStringsFlag |
+                              rapidjson::kParseValidateEncodingFlag;
   clear(to);
   JsonWalk walk(*this, to);
-  nlohmann::json::sax_parse(bytes.begin(), bytes.end(), &walk);
+  rapidjson::MemoryStream stream(bytes.data(), bytes.size());
+  const bool good = !rapidjson::Reader().Parse<kFlags>(stream, walk).IsError();
   if (const char* why = walk.objection()) return why;
+  if (!good || stream.Tell() != bytes.size()) return JsonWalk::kNoJson;  // it ends at a 0, too
   to.names.resize(lists_), to.numbers.resize(fields_.size());
   return objection_to(to);
 }
+
+#else
+
+JsonType::JsonType() {
+  throw std::runtime_error(
+      "messages in JSON are left out of this build: install Debian's rapidjson-dev, and build "
+      "again");
+}
+
+const char* JsonType::read(std::string_view, MessageNumbers&) {
+  return "it is JSON";
+}
+
+#endif
 
 }  // namespace tauext

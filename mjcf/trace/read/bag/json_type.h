@@ -23,7 +23,8 @@ namespace tauext {
 /// arrays beside it, and in the objects beside it.
 class JsonType final : public BagMessageType {
  public:
-  JsonType() : nodes_(1) {}
+  /// @throws std::runtime_error naming the package, if RapidJSON was missing at build
+  JsonType();
 
   bool learns() const override { return true; }
   const char* read(std::string_view bytes, MessageNumbers& to) override;
@@ -47,8 +48,8 @@ class JsonType final : public BagMessageType {
   };
 
   Node& at(int node) { return nodes_[static_cast<std::size_t>(node)]; }
-  int add_node(int parent, const std::string& key);
-  int member(int node, const std::string& key, std::size_t expected);
+  int add_node(int parent, std::string_view key);
+  int member(int node, std::string_view key, std::size_t expected);
   int elements_of(int array);
   int field_of(int node, bool many);
   int list_of(int array);

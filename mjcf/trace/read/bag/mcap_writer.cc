@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "mjcf/trace/read/numpy/inflater.h"
 
@@ -111,7 +113,7 @@ void McapWriter::Times::take(std::uint64_t t) {
 
 McapWriter::McapWriter(const std::string& path) : path_(path), file_(path) {
   require_packer(path_);
-  chunk_.reserve(kFullChunk + kFullChunk / 8);
+  for (Chunk* c : {&chunk_, &packing_}) c->bytes.reserve(kFullChunk + kFullChunk / 8);
   put(kMcapMagic);
   put(RecordText().text("").text("tauext").as(kind::kHeader));
 }
@@ -137,7 +139,7 @@ std::size_t McapWriter::add(const McapTopic& topic) {
   while (schema <= schemas_.size() && schemas_[schema - 1] != record_of(schema)) ++schema;
   if (schema > schemas_.size()) {
     schemas_.push_back(record_of(schema));
-    chunk_ += schemas_.back();
+    chunk_.bytes += schemas_.back();
   }
   RecordText metadata;
   for (const auto& [key, value] : topic.metadata) metadata.text(key).text(value);
@@ -148,16 +150,16 @@ std::size_t McapWriter::add(const McapTopic& topic) {
                            .text("json")
                            .text(metadata.bytes())
                            .as(kind::kChannel),
-                       0,
-                       {}});
-  chunk_ += channels_.back().record;
+                       0});
+  chunk_.bytes += channels_.back().record;
+  for (Chunk* c : {&chunk_, &packing_}) c->indices.resize(channels_.size());
   return channels_.size() - 1;
 }
 
 void McapWriter::write(std::size_t topic, double t, std::string_view message) {
   constexpr double kMost = 1.8e10;   // [s] of 64 bits
   constexpr std::size_t kHead = 22;  // [bytes] before a message
-  const bool is_first = chunks_ == 0 && !chunk_times_.any;
+  const bool is_first = chunks_ == 0 && !packed_.valid() && !chunk_.times.any;
   if (is_first && t < 0 && t >= -kMost) shift_ = -t;
   t += shift_;
   if (!(t >= 0 && t <= kMost))
@@ -168,64 +170,74 @@ void McapWriter::write(std::size_t topic, double t, std::string_view message) {
   const double whole = std::floor(t);
   const std::uint64_t ns = static_cast<std::uint64_t>(whole) * 1'000'000'000 +
                            static_cast<std::uint64_t>(std::llround((t - whole) * 1e9));
-  Channel& c = channels_[topic];
-  c.index.emplace_back(ns, chunk_.size());
-  append_little(kind::kMessage, 1, chunk_);
-  append_little(kHead + message.size(), 8, chunk_);
-  append_little(topic, 2, chunk_);
-  append_little(c.messages++, 4, chunk_);
-  append_little(ns, 8, chunk_);  // logged
-  append_little(ns, 8, chunk_);  // published
-  chunk_ += message;
-  chunk_times_.take(ns);
-  if (chunk_.size() >= kFullChunk) flush();
+  append_little(ns, 8, chunk_.indices[topic]);
+  append_little(chunk_.bytes.size(), 8, chunk_.indices[topic]);
+  std::string& to = chunk_.bytes;
+  append_little(kind::kMessage, 1, to);
+  append_little(kHead + message.size(), 8, to);
+  append_little(topic, 2, to);
+  append_little(channels_[topic].messages++, 4, to);
+  append_little(ns, 8, to);  // logged
+  append_little(ns, 8, to);  // published
+  to += message;
+  chunk_.times.take(ns);
+  if (to.size() >= kFullChunk) flush();
 }
 
-// writes the chunk
+// hands the chunk over, when the one before it is written
 void McapWriter::flush() {
-  if (chunk_.empty()) return;
-  const std::string bytes = packed(chunk_, path_);
+  finish_chunk();
+  if (chunk_.bytes.empty()) return;
+  std::swap(chunk_, packing_);
+  // where there can be no thread, it waits for get()
+  packed_ = std::async(std::launch::async | std::launch::deferred, [this]() -> Packed {
+    const std::string& bytes = packing_.bytes;
+    return {packed(bytes, path_), crc32_of(0, bytes.data(), bytes.size())};
+  });
+}
+
+void McapWriter::finish_chunk() {
+  if (!packed_.valid()) return;
+  const Packed done = packed_.get();
+  const Times times = std::exchange(packing_.times, {});
   const std::string head = RecordText()
-                               .number(chunk_times_.from, 8)
-                               .number(chunk_times_.to, 8)
-                               .number(chunk_.size(), 8)
-                               .number(crc32_of(0, chunk_.data(), chunk_.size()), 4)
+                               .number(times.from, 8)
+                               .number(times.to, 8)
+                               .number(packing_.bytes.size(), 8)
+                               .number(done.crc, 4)
                                .text(kZstd)
-                               .number(bytes.size(), 8)
+                               .number(done.bytes.size(), 8)
                                .bytes();
   const std::uint64_t begin = at_;
-  put(RecordText().number(kind::kChunk, 1).number(head.size() + bytes.size(), 8).bytes());
+  put(RecordText().number(kind::kChunk, 1).number(head.size() + done.bytes.size(), 8).bytes());
   put(head);
-  put(bytes);
+  put(done.bytes);
   const std::uint64_t end = at_;
   const std::string places = write_indices();
   chunk_indices_ += RecordText()
-                        .number(chunk_times_.from, 8)
-                        .number(chunk_times_.to, 8)
+                        .number(times.from, 8)
+                        .number(times.to, 8)
                         .number(begin, 8)
                         .number(end - begin, 8)
                         .text(places)
                         .number(at_ - end, 8)
                         .text(kZstd)
-                        .number(bytes.size(), 8)
-                        .number(chunk_.size(), 8)
+                        .number(done.bytes.size(), 8)
+                        .number(packing_.bytes.size(), 8)
                         .as(kind::kChunkIndex);
   ++chunks_;
-  if (chunk_times_.any) times_.take(chunk_times_.from), times_.take(chunk_times_.to);
-  chunk_times_ = {};
-  chunk_.clear();
+  if (times.any) times_.take(times.from), times_.take(times.to);
+  packing_.bytes.clear();
 }
 
 // of the chunk; where those of each channel are
 std::string McapWriter::write_indices() {
   RecordText places;
-  for (std::size_t id = 0; id < channels_.size(); ++id) {
-    auto& index = channels_[id].index;
+  for (std::size_t id = 0; id < packing_.indices.size(); ++id) {
+    std::string& index = packing_.indices[id];
     if (index.empty()) continue;
-    RecordText entries;
-    for (const auto& [t, place] : index) entries.number(t, 8).number(place, 8);
     places.number(id, 2).number(at_, 8);
-    put(RecordText().number(id, 2).text(entries.bytes()).as(kind::kMessageIndex));
+    put(RecordText().number(id, 2).text(index).as(kind::kMessageIndex));
     index.clear();
   }
   return places.bytes();
@@ -280,6 +292,7 @@ std::string McapWriter::summary() {
 
 void McapWriter::commit() {
   flush();
+  finish_chunk();
   put(RecordText().number(crc_, 4).as(kind::kDataEnd));
   const std::string end = summary();
   put(end);

@@ -5,11 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <map>
-#include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mjcf/trace/atomic_file.h"
@@ -24,9 +23,9 @@ struct McapTopic {
   std::map<std::string, std::string> metadata;  ///< for people
 };
 
-/// A file that appears whole, by commit(), or not at all. Chunks of 1 MB are compressed by zstd and
-/// written as they fill, with their index; a summary and checksums are at the end. What stays in
-/// memory is some 100 bytes for each chunk.
+/// A file that appears whole, by commit(), or not at all. Chunks of 1 MB are compressed by zstd, in
+/// a thread beside the caller's, and written as they fill, with their index; a summary and checksums
+/// are at the end. What stays in memory is some 100 bytes for each chunk.
 class McapWriter {
  public:
   /// @throws std::runtime_error naming the path, also if libarchive or zlib were missing at build
@@ -44,18 +43,27 @@ class McapWriter {
 
  private:
   struct Channel {
-    std::string record;                                          // as the summary has it, too
-    std::uint32_t messages = 0;                                  // so far
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // times and places in this chunk
+    std::string record;          // as the summary has it, too
+    std::uint32_t messages = 0;  // so far
   };
   struct Times {
     std::uint64_t from = 0, to = 0;  // [ns]
     bool any = false;
     void take(std::uint64_t t);
   };
+  struct Chunk {
+    std::string bytes;
+    Times times;
+    std::vector<std::string> indices;  // of each channel: times, and places in it
+  };
+  struct Packed {
+    std::string bytes;
+    std::uint32_t crc = 0;  // of what they were
+  };
 
   void put(std::string_view bytes);
   void flush();
+  void finish_chunk();
   std::string write_indices();
   std::string summary();
 
@@ -63,13 +71,14 @@ class McapWriter {
   AtomicFile file_;
   std::uint64_t at_ = 0;   // [bytes] written
   std::uint32_t crc_ = 0;  // of these
-  std::string chunk_;
-  double shift_ = 0;  // [s]
-  Times chunk_times_, times_;
+  double shift_ = 0;       // [s]
+  Times times_;
   std::vector<std::string> schemas_;  // records
   std::vector<Channel> channels_;
   std::string chunk_indices_;  // records
   std::uint32_t chunks_ = 0;
+  Chunk chunk_, packing_;       // the one that fills, and the one that is being compressed
+  std::future<Packed> packed_;  // which ends before that does
 };
 
 }  // namespace tauext

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -170,6 +172,23 @@ class Cdr {
     align(n.size);
     const std::string_view bytes = take(static_cast<std::uint64_t>(n.size));
     return cut_off_ ? 0 : n.value(reinterpret_cast<const unsigned char*>(bytes.data()));
+  }
+  // as many as an array of a field may have
+  void numbers(NpyNumber n, std::uint64_t count, std::vector<double>& to) {
+    if (count == 0) return;
+    n.big = big_;
+    align(n.size);
+    const std::string_view bytes = take(count * static_cast<std::uint64_t>(n.size));
+    if (cut_off_) return;
+    constexpr bool kLittle = std::endian::native == std::endian::little;
+    if (kLittle && to.empty() && n.kind == 'f' && n.size == 8 && !n.big) {
+      to.resize(count);
+      std::memcpy(to.data(), bytes.data(), bytes.size());
+      return;
+    }
+    const auto* at = reinterpret_cast<const unsigned char*>(bytes.data());
+    for (std::uint64_t i = 0; i < count && to.size() < kMostOfField; ++i, at += n.size)
+      to.push_back(n.value(at));
   }
   void skip(const NpyNumber& n, std::uint64_t count) {
     if (count == 0) return;
@@ -353,11 +372,7 @@ class MessageWalk {
       if (names != 0 && count != 0 && count != names) why_ = "it has not as many numbers as names";
     }
     if (n.field < 0 || count > kMostOfField || why_ != nullptr) return cdr_.skip(n.number, count);
-    std::vector<double>& numbers = to_.numbers[static_cast<std::size_t>(n.field)];
-    for (std::uint64_t i = 0; i < count && !cdr_.cut_off(); ++i) {
-      const double x = cdr_.number(n.number);
-      if (numbers.size() < kMostOfField) numbers.push_back(x);
-    }
+    cdr_.numbers(n.number, count, to_.numbers[static_cast<std::size_t>(n.field)]);
   }
 
   void take_name(std::vector<std::string>& names) {

@@ -65,7 +65,7 @@ TEST_F(JsonBag, OurSamplesAreReadWithTheirTruth) {
     EXPECT_EQ(t.qd.col(k), Eigen::Vector2d(0.25, 0.5));
     EXPECT_EQ(t.tau.col(k), Eigen::Vector2d(10 * at, 20 * at));
     EXPECT_EQ(t.tau_ext.col(k), Eigen::Vector2d(1 + at, 2 + at));
-    EXPECT_EQ(t.contact[static_cast<std::size_t>(k)], k);
+    EXPECT_EQ(t.contact[static_cast<std::size_t>(k)], k != 0) << "0, 1, 2 in the file";
   }
   EXPECT_FALSE(t.torque_at_instants);
   EXPECT_FALSE(read_recording(kSamples, {"", "/measured", {}}, &skipped).has_truth());
@@ -96,7 +96,7 @@ TEST_F(JsonBag, NumbersAreFoundByTheirPathsWhateverHasThem) {
   EXPECT_EQ(rows.columns(), (Names{"t", "legs[0].q", "legs[1].q", "legs[0].on", "legs[1].on",
                                    "x.y.z[0]", "x.y.z[1]", "x.y.z[2]", "x"}));
   const double none = std::nan("");
-  expect_same_rows(rows_of(BagRows(kJson, "/a")), {{6e-9, 1.5, none, 1, 0, 1, 2, none, none},
+  expect_same_rows(rows_of(BagRows(kJson, "/a")), {{6 * 1e-9, 1.5, none, 1, 0, 1, 2, none, none},
                                                    {8e-9, 2.5, 3.5, none, 1, none, none, none, 7}});
 }
 
