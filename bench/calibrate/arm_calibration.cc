@@ -41,13 +41,9 @@ ArmTree bare(const ArmTree& arm, const Terms& terms) {
   const auto asked = [&](auto&& which) { return std::any_of(terms.begin(), terms.end(), which); };
   const bool armature = asked([](const JointTerm*t) { return t->column == nullptr; }),
              friction = asked([](const JointTerm*t) { return t->column != nullptr; });
+  require_own_joints(arm);
   ArmTree b = arm;
-  for (int i = 0; i < arm.dof(); ++i) {
-    const int leader = arm.leaders[static_cast<std::size_t>(i)];
-    if (!arm.drho.row(leader).isApprox(MatrixXd::Identity(arm.dof(), arm.dof()).row(i)))
-      throw std::invalid_argument(
-          "the arm's coordinates mix its joints (motors on tendons): friction of a joint has no "
-          "place in them");
+  for (const int leader : arm.leaders) {
     TreeJoint& j = b.joints[static_cast<std::size_t>(leader)];
     if (armature) j.armature = 0;
     if (friction) j.viscous = j.viscous_skew = j.dry = j.offset = 0;
@@ -146,6 +142,16 @@ std::string joint_name_in_file(const ArmTree& arm, int coordinate) {
   const int joint = arm.leaders[static_cast<std::size_t>(coordinate)];
   const std::string& name = arm.names[static_cast<std::size_t>(joint)];
   return name.empty() ? fmt::format("joint{}", joint + 1) : name;
+}
+
+void require_own_joints(const ArmTree& arm) {
+  for (int i = 0; i < arm.dof(); ++i) {
+    const int leader = arm.leaders[static_cast<std::size_t>(i)];
+    if (!arm.drho.row(leader).isApprox(MatrixXd::Identity(arm.dof(), arm.dof()).row(i)))
+      throw std::invalid_argument(
+          "the arm's coordinates mix its joints (motors on tendons): friction of a joint has no "
+          "place in them");
+  }
 }
 
 std::vector<CalibratedJoint> calibrate_arm(const ArmTree& arm, const std::vector<Trace>& logs,

@@ -33,6 +33,9 @@ struct CalibrateOptions {
 /// The name of a coordinate's joint in a robot file: its own, or what the import calls it.
 std::string joint_name_in_file(const ArmTree& arm, int coordinate);
 
+/// @throws std::invalid_argument for an arm whose coordinates mix joints
+void require_own_joints(const ArmTree& arm);
+
 /// @param arm of which is left aside what is to be found: the joints' armature, and all of their
 /// friction and offset if any of these is
 /// @throws std::invalid_argument for an unknown term, an arm whose coordinates mix joints, another

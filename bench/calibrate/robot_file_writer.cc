@@ -67,6 +67,16 @@ Json payload_json(const Weighing& w) {
            {{"mass", rounded(w.payload.mass_error, 2)}, {"center", list(w.center_error, 2)}}}};
 }
 
+// with digits enough for a thin body to stay one
+Json body_json(const MeasuredBody& b) {
+  constexpr int kDigits = 12;
+  Json json;
+  json["mass"] = rounded(b.mass, kDigits);
+  for (const double x : b.center) json["center"].push_back(rounded(x, kDigits));
+  for (const double x : b.inertia) json["inertia"].push_back(rounded(x, kDigits));
+  return json;
+}
+
 // a folder that is gone afterwards
 class Folder {
  public:
@@ -84,13 +94,6 @@ class Folder {
  private:
   std::string path_;
 };
-
-ArmTree read_back(const NewRobotFile& robot) {
-  const Folder folder;
-  const std::string path = folder.path() + "/arm.json";
-  std::ofstream(path) << robot_file_text(robot, path);
-  return tree_of(load_mjcf(path));
-}
 
 // [N m] rms that is left of a joint's torque
 double left_over(const std::vector<Trace>& logs, const std::vector<ArmMotion>& motions, int joint,
@@ -141,6 +144,13 @@ void doubt_friction(CalibratedJoint& j, double rated) {
 
 }  // namespace
 
+ArmTree read_back(const NewRobotFile& robot) {
+  const Folder folder;
+  const std::string path = folder.path() + "/arm.json";
+  std::ofstream(path) << robot_file_text(robot, path);
+  return tree_of(load_mjcf(path));
+}
+
 void judge_by_file(NewRobotFile& robot, const std::vector<Trace>& logs, const Windows& windows) {
   const ArmTree arm = read_back(robot);
   std::vector<ArmMotion> motions;
@@ -166,6 +176,7 @@ std::string robot_file_text(const NewRobotFile& robot, const std::string& out) {
     const Json found = joint_json(j);
     for (const auto& [key, value] : found.items()) known[key] = value;
   }
+  for (const auto& [name, body] : robot.bodies) json["bodies"][name] = body_json(body);
   if (robot.payload != nullptr) json["payload"] = payload_json(*robot.payload);
   json["about"] = {{"made_by", "tauext-calibrate"}, {"recordings", robot.recordings}};
   return json.dump(2) + "\n";

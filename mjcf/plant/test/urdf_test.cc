@@ -153,8 +153,8 @@ TEST_F(OfUrdf, SaysWhatIsWrong) {
   has(error(limited("revolute", "lower='-170' upper='170'")),
       "joint 'y' goes from -170 to 170 rad: give radians");
   has(error(limited("revolute", "lower='-1' upper='1'")),
-      "links that move and have no mass (give them an <inertial>, or --lock their joints): 'c' "
-      "(line");
+      "links that move and have no mass (give them an <inertial>, or --lock their joints, or find "
+      "the masses from recordings: tauext-calibrate --masses): 'c' (line");
 }
 
 TEST_F(OfUrdf, MayDescribeControllersAndSensorsBesideTheArm) {
@@ -349,7 +349,7 @@ TEST_F(OfUrdf, AFrameBetweenJointsNeedsNoMass) {
   // a part that somebody drew will have one
   EXPECT_NE(error_of([&] {
               import_mjcf(put(wrist("<visual/>"), "arm.urdf"));
-            }).find("no mass (give them an <inertial>, or --lock their joints): 'frame'"),
+            }).find("tauext-calibrate --masses): 'frame'"),
             std::string::npos);
 }
 
