@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mjcf/import/body_masses.h"
+#include "mjcf/import/masses/body_masses.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
