@@ -5,18 +5,24 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench/calibrate/arm_calibration.h"
 #include "bench/calibrate/calibration_report.h"
 #include "bench/calibrate/identify.h"
+#include "bench/calibrate/masses/mass_report.h"
+#include "bench/calibrate/masses/masses.h"
 #include "bench/calibrate/robot_file_writer.h"
 #include "bench/calibrate/weighing.h"
 #include "bench/logs/read_log.h"
 #include "bench/program/program.h"
 #include "bench/replay/torque_fit.h"
+#include "mjcf/import/robot_file.h"
 #include "mjcf/plant/coordinates.h"
+#include "mjcf/plant/model.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
@@ -29,12 +35,13 @@ struct Flags {
   std::vector<std::string> logs, loaded, terms;
   std::string channel, columns, contacts, robot, lock, out, format = "text";
   Windows windows;
-  bool list = false, apply = false;
+  bool list = false, apply = false, masses = false;
 };
 
 struct Arm {
   ArmTree tree;
-  Eigen::VectorXd torque_gain;  // [1] of logs of torques
+  Eigen::VectorXd torque_gain;     // [1] of logs of torques
+  std::set<std::string> massless;  // bodies whose masses the file does not have
 };
 
 void add_flags(CLI::App& app, Flags& f) {
@@ -51,6 +58,8 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--weigh", f.loaded,
                  "recordings with a payload, which is weighed; the logs are without it")
       ->type_name("LOG..");
+  app.add_flag("--masses", f.masses,
+               "find the masses of all bodies, too, also of a file that has none");
   app.add_option("--columns", f.columns, "what the logs' columns mean (see tauext-replay --help)")
       ->type_name("PRESET|FILE.toml");
   app.add_option("--contacts", f.contacts,
@@ -159,16 +168,46 @@ Recordings read_logs(const Flags& f, const Arm& arm, const std::vector<std::stri
   return all;
 }
 
+// bodies without a mass, of a file that cannot be read for them; what else is wrong with it is said
+// when it is read without their masses
+std::set<std::string> massless_of(const Flags& f) {
+  try {
+    load_mjcf(f.robot, {f.lock, {}});
+    return {};
+  } catch (const std::runtime_error&) {
+    ImportOptions how{f.lock, {}};
+    how.masses_unknown = true;
+    load_mjcf(f.robot, how);
+    const RobotFile file = robot_file(f.robot, how);
+    return import_mjcf(file.path, file.options).massless;
+  }
+}
+
 // says what is wrong with the robot's file
 Arm arm_of(const Flags& f) {
   std::string changes;
-  const Model model = load_mjcf(f.robot, {f.lock, {}}, &changes);
+  ImportOptions how{f.lock, {}};
+  const std::set<std::string> massless = f.masses ? massless_of(f) : std::set<std::string>();
+  how.masses_unknown = !massless.empty();
+  const Model model = load_mjcf(f.robot, how, &changes);
   if (!changes.empty()) say(fmt::format("{}: {}", f.robot, changes));
   try {
-    return {tree_of(model), torque_gains_of(model)};
+    return {tree_of(model), torque_gains_of(model), massless};
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(fmt::format("{}: {}", f.robot, e.what()));
   }
+}
+
+// and what was held; whether there is no doubt
+bool say_doubts(const std::vector<CalibratedJoint>& joints) {
+  bool sure = true;
+  for (const CalibratedJoint& j : joints) {
+    const std::string name = printable_name(j.name);
+    for (const std::string& words : j.held) say(fmt::format("{}: {}", name, words));
+    for (const std::string& why : j.doubts) say(fmt::format("joint '{}': {}", name, why));
+    sure = sure && j.doubts.empty();
+  }
+  return sure;
 }
 
 int calibrate(const Flags& f, const Arm& robot_arm) {
@@ -197,14 +236,35 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
   const TableFormat format = table_format(f.format);
   fmt::print(to, "{}", parameter_table(robot.joints, format));
   if (format == TableFormat::kText) fmt::print(to, "\n{}", fit_report(robot.joints));
-  bool sure = true;
-  for (const CalibratedJoint& j : robot.joints) {
-    const std::string name = printable_name(j.name);
-    for (const std::string& words : j.held) say(fmt::format("{}: {}", name, words));
-    for (const std::string& why : j.doubts) say(fmt::format("joint '{}': {}", name, why));
-    sure = sure && j.doubts.empty();
-  }
-  if (!sure) return not_sure(f);
+  if (!say_doubts(robot.joints)) return not_sure(f);
+  if (!f.out.empty()) write_file(robot_file_text(robot, f.out), f.out);
+  return usable ? kGood : kAnswerIsNo;
+}
+
+// torques are compared with the masses that were found, as those of the file may be wrong
+int find_masses(const Flags& f, const Arm& robot_arm) {
+  auto [logs, usable, gravity_added] = read_logs(f, robot_arm, f.logs);
+  if (gravity_added)
+    throw std::invalid_argument(
+        "--masses: these recordings have torques without gravity, which shows most of the masses: "
+        "record torques with gravity in them");
+  for (Trace& log : logs) make_torques(log, robot_arm.tree.gain);
+  NewRobotFile robot{f.robot, f.lock, {}, nullptr, f.logs, {}};
+  const IdentifiedMasses m = naming(f.logs, [&] {
+    return identify_masses(robot_arm.tree, robot_arm.massless, logs, f.windows, robot);
+  });
+  judge_by_file(robot, logs, f.windows);
+  std::FILE* const to = f.out == "-" ? stderr : stdout;
+  const TableFormat format = table_format(f.format);
+  fmt::print(to, "{}", body_table(m, format));
+  if (format == TableFormat::kText)
+    fmt::print(to, "\n{}\n{}", parameter_table(robot.joints, format), mass_report(m));
+  bool sure = say_doubts(robot.joints);
+  for (const std::string& why : m.doubts) say(why);
+  if (!sure || !m.doubts.empty()) return not_sure(f);
+  TorqueFit fit(read_back(robot), logs.front().torque_at_instants, false);
+  for (const Trace& log : logs) fit.take(log);
+  usable = fits(fit, fmt::format("{}", fmt::join(f.logs, ", "))) && usable;
   if (!f.out.empty()) write_file(robot_file_text(robot, f.out), f.out);
   return usable ? kGood : kAnswerIsNo;
 }
@@ -235,7 +295,7 @@ int run(const CLI::App& app, Flags& f) {
     return kGood;
   }
   if (f.robot.empty()) {
-    require_mode(app, false, "--robot", {"--weigh", "--lock", "--apply"});
+    require_mode(app, false, "--robot", {"--weigh", "--lock", "--apply", "--masses"});
     return identify_one(f);
   }
   table_format(f.format);
@@ -245,6 +305,8 @@ int run(const CLI::App& app, Flags& f) {
           fmt::format("--out {}: the name of a robot file ends in .json", f.out));
     const AtomicFile probe(f.out);  // an unwritable path should not cost a run
   }
+  require_mode(app, !f.masses, "finding a payload, friction or scales, not masses",
+               {"--weigh", "--terms", "--apply"});
   const Arm arm = arm_of(f);
   if (!f.loaded.empty()) {
     require_mode(app, false, "calibrating, not with --weigh", {"--terms", "--apply"});
@@ -252,7 +314,7 @@ int run(const CLI::App& app, Flags& f) {
   }
   if (f.logs.empty())
     throw std::invalid_argument("recordings are required; see tauext-calibrate --help");
-  return calibrate(f, arm);
+  return f.masses ? find_masses(f, arm) : calibrate(f, arm);
 }
 
 }  // namespace
@@ -262,9 +324,11 @@ int main(int argc, char** argv) {
       "Finds friction, rotors' inertia, torque offsets and drives' gains of an arm from "
       "recordings\n"
       "without contact, with errors, and writes a robot file that every --robot takes. With\n"
-      "--weigh it weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) it finds\n"
-      "tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd), or other --terms.\n\n"
+      "--weigh it weighs a payload, and with --masses it finds the masses of the arm, too. Of one\n"
+      "joint (a log of t,q1,qd1,tau1, no --robot) it finds tau = theta1 qdd + theta2 g cos q +\n"
+      "theta3 g sin q + theta4 sign(qd), or other --terms.\n\n"
       "  tauext-calibrate free*.csv --robot arm.urdf --columns ur_rtde --out arm.json\n"
+      "  tauext-calibrate free*.csv --robot arm.urdf --masses --out arm.json\n"
       "  tauext-calibrate free*.csv --robot arm.json --columns ur_rtde --weigh loaded.csv\n",
       "tauext-calibrate");
   Flags f;

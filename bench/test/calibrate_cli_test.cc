@@ -71,5 +71,41 @@ TEST_F(Programs, CalibrateLeavesLabelledContactsOut) {
   EXPECT_TRUE(o.says("'other.csv'")) << o.text;
 }
 
+// arm6 as a URDF without any mass
+TEST_F(Programs, CalibrateFindsMassesOfAFileThatHasNone) {
+  const auto part = [](int i, const std::string& joint, const std::string& at,
+                       const std::string& axis) {
+    const std::string link = "l" + std::to_string(i + 1), parent = "l" + std::to_string(i);
+    return "<link name='" + link + "'/><joint name='" + joint +
+           "' type='continuous'><parent link='" + parent + "'/><child link='" + link +
+           "'/><origin xyz='" + at + "'/><axis xyz='" + axis + "'/></joint>";
+  };
+  write("bare.urdf",
+        "<robot name='bare'><link name='l0'/>" + part(0, "shoulder_pan", "0 0 .16", "0 0 1") +
+            part(1, "shoulder_lift", "0 .13 0", "0 1 0") + part(2, "elbow", "0 -.12 .43", "0 1 0") +
+            part(3, "wrist1", "0 0 .39", "0 1 0") + part(4, "wrist2", "0 .12 0", "0 0 1") +
+            part(5, "wrist3", "0 0 .1", "0 1 0") + "</robot>");
+  const std::string record = "tauext-record --scenarios " + kExamples +
+                             "/recordings/motions.json --every 8 --velocity_noise 1e-3 --robot " +
+                             kExamples + "/arm6.json --scenario ";
+  for (const std::string name : {"free1", "free2", "free3", "free4"})
+    run(record + name + " --out " + name + ".csv");
+  const Outcome refused = run("tauext-calibrate free1.csv --robot bare.urdf --out found.json");
+  EXPECT_EQ(refused.code, 2) << refused.text;
+  EXPECT_TRUE(refused.says("tauext-calibrate --masses")) << refused.text;
+  const Outcome found = run(
+      "tauext-calibrate free1.csv free2.csv free3.csv --robot bare.urdf --masses --out found.json");
+  EXPECT_EQ(found.code, 0) << found.text;
+  EXPECT_TRUE(found.says("No single mass, center or inertia is known by this")) << found.text;
+  // a motion that it has not seen, by the masses that were found
+  const Outcome again = run("tauext-calibrate free4.csv --robot found.json --out again.json");
+  EXPECT_EQ(again.code, 0) << again.text;
+  EXPECT_EQ(run("tauext-import found.json --out found.xml").code, 0);
+  const Outcome poor =
+      run("tauext-calibrate free1.csv --robot bare.urdf --masses --terms coulomb --out no.json");
+  EXPECT_EQ(poor.code, 2) << poor.text;
+  EXPECT_FALSE(exists("no.json"));
+}
+
 }  // namespace
 }  // namespace tauext::test

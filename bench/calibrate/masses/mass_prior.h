@@ -3,6 +3,7 @@
 /// The bodies of an arm before anything is known of them but their file.
 #pragma once
 
+#include <Eigen/Core>
 #include <set>
 #include <string>
 #include <vector>
