@@ -216,9 +216,8 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
   const bool currents = logs.front().tau_is_current;
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
-  if (!logs.front().tau_is_current) {
+  if (!logs.front().tau_is_current)
     usable = torques_fit(arm, logs, gravity_added, f.logs) && usable;
-  }
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;
@@ -262,9 +261,7 @@ int find_masses(const Flags& f, const Arm& robot_arm) {
   bool sure = say_doubts(robot.joints);
   for (const std::string& why : m.doubts) say(why);
   if (!sure || !m.doubts.empty()) return not_sure(f);
-  TorqueFit fit(read_back(robot), logs.front().torque_at_instants, false);
-  for (const Trace& log : logs) fit.take(log);
-  usable = fits(fit, fmt::format("{}", fmt::join(f.logs, ", "))) && usable;
+  usable = torques_fit(read_back(robot), logs, false, f.logs) && usable;
   if (!f.out.empty()) write_file(robot_file_text(robot, f.out), f.out);
   return usable ? kGood : kAnswerIsNo;
 }

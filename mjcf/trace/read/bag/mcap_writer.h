@@ -23,9 +23,9 @@ struct McapTopic {
   std::map<std::string, std::string> metadata;  ///< for people
 };
 
-/// A file that appears whole, by commit(), or not at all. Chunks of 1 MB are compressed by zstd in a
-/// thread of their own, and written as they fill, with their index; a summary and checksums are at
-/// the end. What stays in memory is some 100 bytes for each chunk.
+/// A file that appears whole, by commit(), or not at all. Chunks of 1 MB are compressed by zstd in
+/// a thread of their own, and written as they fill, with their index; a summary and checksums are
+/// at the end. What stays in memory is some 100 bytes for each chunk.
 class McapWriter {
  public:
   /// @throws std::runtime_error naming the path, also if libarchive or zlib were missing at build
