@@ -212,12 +212,14 @@ bool say_doubts(const std::vector<CalibratedJoint>& joints) {
 
 int calibrate(const Flags& f, const Arm& robot_arm) {
   const ArmTree& arm = robot_arm.tree;
-  auto [logs, usable, gravity_added] = read_logs(f, robot_arm, f.logs);
+  Recordings all = read_logs(f, robot_arm, f.logs);
+  std::vector<Trace>& logs = all.logs;
+  bool usable = all.usable;
   const bool currents = logs.front().tau_is_current;
   if ((arm.gain.array() != 0).all())  // else they are found
     for (Trace& log : logs) make_torques(log, arm.gain);
   if (!logs.front().tau_is_current)
-    usable = torques_fit(arm, logs, gravity_added, f.logs) && usable;
+    usable = torques_fit(arm, logs, all.gravity_added, f.logs) && usable;
   CalibrateOptions o;
   o.windows = f.windows;
   o.terms = f.terms;
@@ -242,8 +244,9 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
 
 // torques are compared with the masses that were found, as those of the file may be wrong
 int find_masses(const Flags& f, const Arm& robot_arm) {
-  auto [logs, usable, gravity_added] = read_logs(f, robot_arm, f.logs);
-  if (gravity_added)
+  Recordings all = read_logs(f, robot_arm, f.logs);
+  std::vector<Trace>& logs = all.logs;
+  if (all.gravity_added)
     throw std::invalid_argument(
         "--masses: these recordings have torques without gravity, which shows most of the masses: "
         "record torques with gravity in them");
@@ -261,7 +264,7 @@ int find_masses(const Flags& f, const Arm& robot_arm) {
   bool sure = say_doubts(robot.joints);
   for (const std::string& why : m.doubts) say(why);
   if (!sure || !m.doubts.empty()) return not_sure(f);
-  usable = torques_fit(read_back(robot), logs, false, f.logs) && usable;
+  const bool usable = torques_fit(read_back(robot), logs, false, f.logs) && all.usable;
   if (!f.out.empty()) write_file(robot_file_text(robot, f.out), f.out);
   return usable ? kGood : kAnswerIsNo;
 }
