@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kArm6 = "bench/examples/arm6.xml";
+constexpr const char* kArmFile = "bench/examples/arm6.xml";
 constexpr const char* kArm6Known = "bench/examples/arm6.json";  // with friction and rotors
 
 // joints that swing together, each at frequencies of its own
@@ -63,7 +63,7 @@ class Masses : public testing::Test {
   }
   // arm6 whose bodies have 1.2 or 0.8 times their masses, in turn
   std::string arm6_with_wrong_masses() const {
-    std::ifstream in(kArm6);
+    std::ifstream in(kArmFile);
     std::string text, line;
     for (int body = 0; std::getline(in, line); text += line + "\n") {
       const std::size_t at = line.find("mass=\"");
