@@ -22,7 +22,7 @@ namespace tauext {
 
 /// Numbers of a body: m [kg], h [kg m] (3), and xx, yy, zz, xy, xz, yz of the tensor I [kg m^2].
 inline constexpr int kBodyTerms = 10;
-using BodyVector = Eigen::Matrix<double, kBodyTerms, 1>;
+using BodyVector = Eigen::Matrix<double, kBodyTerms, 1>;  ///< these of a body
 
 /// Those of a body about its joint's frame.
 BodyVector body_vector(const TreeJoint& joint);

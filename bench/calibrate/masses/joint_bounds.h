@@ -16,7 +16,7 @@ namespace tauext {
 /// Of some joints, whose terms stand in theta behind `before` other numbers.
 class JointBounds {
  public:
-  JointBounds(int before, int joints);
+  JointBounds(int before, int joints);  ///< all are free
 
   /// theta = (this) phi, of what is free.
   Eigen::MatrixXd freedom() const;

@@ -15,7 +15,7 @@ namespace tauext {
 
 /// A body that a joint moves.
 struct MovingBody {
-  std::string name;
+  std::string name;        ///< as the file has it
   int joint = 0;           ///< whose body it is, by its number in ArmTree::joints
   Eigen::Vector3d origin;  ///< [m] of its frame in that of the joint, which has the same axes
   bool known = true;       ///< whether the file has a mass of it

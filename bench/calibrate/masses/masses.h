@@ -26,7 +26,7 @@ namespace tauext {
 
 /// A body that a joint moves, before and after.
 struct IdentifiedBody {
-  std::string name;
+  std::string name;         ///< as the file has it
   bool known = true;        ///< whether the file has a mass of it
   MeasuredBody file;        ///< if so
   MeasuredBody identified;  ///< near `file` in what the recordings do not show
@@ -45,10 +45,10 @@ struct JointOfMasses {
 
 /// All of it.
 struct IdentifiedMasses {
-  std::vector<IdentifiedBody> bodies;
-  std::vector<JointOfMasses> joints;
-  BaseParameters base;              ///< of these bodies
-  bool has_nominal = false;         ///< whether the file has all masses
+  std::vector<IdentifiedBody> bodies;  ///< all that joints move
+  std::vector<JointOfMasses> joints;   ///< in the arm's order
+  BaseParameters base;                 ///< of these bodies
+  bool has_nominal = false;            ///< whether the file has all masses
   double scale = 1;                 ///< [1] the identified gravity torques by the file's; if known
   std::vector<std::string> doubts;  ///< why these numbers are not to be used; else none
 };

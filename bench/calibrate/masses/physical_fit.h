@@ -25,8 +25,8 @@ namespace tauext {
 /// |R theta - r|^2 / 2 without the constant: theta^T H theta / 2 - b^T theta. The numbers of bodies
 /// stand first in theta.
 struct Quadratic {
-  Eigen::MatrixXd H;
-  Eigen::VectorXd b;
+  Eigen::MatrixXd H;  ///< R^T R
+  Eigen::VectorXd b;  ///< R^T r
 };
 
 /// P of a body [kg m^2, kg m, kg].

@@ -32,7 +32,7 @@ struct WindowSums {
 
   /// Of none.
   explicit WindowSums(int columns = 0);
-  WindowSums& operator+=(const WindowSums& more);
+  WindowSums& operator+=(const WindowSums& more);  ///< of other windows
   /// rms of y - A theta [N m].
   double residual(const Eigen::VectorXd& theta) const;
 };

@@ -33,7 +33,7 @@ class JsonMessage {
 
 /// A field of a message, for people and for viewers.
 struct JsonField {
-  std::string name;
+  std::string name;   ///< by which messages have it
   bool many = false;  ///< an array of numbers; else one
   std::string what;   ///< it is, with its unit
 };
