@@ -58,8 +58,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--weigh", f.loaded,
                  "recordings with a payload, which is weighed; the logs are without it")
       ->type_name("LOG..");
-  app.add_flag("--masses", f.masses,
-               "find the masses of all bodies, too, also of a file that has none");
+  app.add_flag("--masses", f.masses, "find the bodies' masses, also of a file that has none");
   app.add_option("--columns", f.columns, "what the logs' columns mean (see tauext-replay --help)")
       ->type_name("PRESET|FILE.toml");
   app.add_option("--contacts", f.contacts,
@@ -321,14 +320,14 @@ int run(const CLI::App& app, Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Finds friction, rotors' inertia, torque offsets and drives' gains of an arm from "
-      "recordings\n"
-      "without contact, with errors, and writes a robot file that every --robot takes. With\n"
-      "--weigh it weighs a payload, and with --masses it finds the masses of the arm, too. Of one\n"
-      "joint (a log of t,q1,qd1,tau1, no --robot) it finds tau = theta1 qdd + theta2 g cos q +\n"
-      "theta3 g sin q + theta4 sign(qd), or other --terms.\n\n"
+      "Finds friction, rotors' inertia, torque offsets and drives' gains of an arm (--masses: and "
+      "its\n"
+      "masses) from recordings without contact, with errors, and writes a robot file that every\n"
+      "--robot takes. --weigh weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) "
+      "it\n"
+      "finds tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd), or other "
+      "--terms.\n\n"
       "  tauext-calibrate free*.csv --robot arm.urdf --columns ur_rtde --out arm.json\n"
-      "  tauext-calibrate free*.csv --robot arm.urdf --masses --out arm.json\n"
       "  tauext-calibrate free*.csv --robot arm.json --columns ur_rtde --weigh loaded.csv\n",
       "tauext-calibrate");
   Flags f;

@@ -240,6 +240,10 @@ TEST_F(RobotFiles, FilesOfOtherKindsAreNamedWithTheCommandThatConvertsThem) {
   std::filesystem::create_directories(folder_ / "ur" / "urdf");
   EXPECT_NE(why(folder_ / "ur").find("it is a folder; name an MJCF or URDF file"),
             std::string::npos);
+  const auto put = [this](const char* text, const char* name) {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  };
   put("<package/>", "ur/package.xml");
   const std::string urdf = put("<robot/>", "ur/urdf/ur5.urdf"), mjcf = put("<mujoco/>", "ur/a.xml");
   EXPECT_TRUE(why(folder_ / "ur").ends_with("name a robot's file, like " + mjcf + ", " + urdf));
