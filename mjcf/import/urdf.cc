@@ -234,10 +234,10 @@ class Urdf {
   void add_massless() {
     if (has_moving_mass_)
       return problems_.add(
-          fmt::format(
-              "links that move and have no mass (give them an <inertial>, or --lock their joints): "
-              "{}",
-              fmt::join(massless_, ", ")),
+          fmt::format("links that move and have no mass (give them an <inertial>, or --lock their "
+                      "joints, or "
+                      "find the masses from recordings: tauext-calibrate --masses): {}",
+                      fmt::join(massless_, ", ")),
           {.lock = massless_tips_, .balance = false});
     problems_.add(fmt::format(
         "none of its links that move has a mass ({}), and dynamics needs them: take a file of the "
