@@ -320,13 +320,11 @@ int run(const CLI::App& app, Flags& f) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Finds friction, rotors' inertia, torque offsets and drives' gains of an arm (--masses: and "
-      "its\n"
-      "masses) from recordings without contact, with errors, and writes a robot file that every\n"
-      "--robot takes. --weigh weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) "
-      "it\n"
-      "finds tau = theta1 qdd + theta2 g cos q + theta3 g sin q + theta4 sign(qd), or other "
-      "--terms.\n\n"
+      "Finds friction, rotors' inertia, offsets and drives' gains (--masses: masses, too) of an "
+      "arm\n"
+      "from recordings without contact, and writes a robot file that every --robot takes. --weigh\n"
+      "weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) it finds terms of "
+      "--list.\n\n"
       "  tauext-calibrate free*.csv --robot arm.urdf --columns ur_rtde --out arm.json\n"
       "  tauext-calibrate free*.csv --robot arm.json --columns ur_rtde --weigh loaded.csv\n",
       "tauext-calibrate");
