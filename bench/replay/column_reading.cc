@@ -328,8 +328,8 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
   }
   const VectorXd& after = found.unexplained;
   const bool one_alone = ((after.array() + kKnown) < 0.1 * (before.array() + kKnown)).any(),
-             none_worse = ((after.array() < 0.1) || (after.array() < before.array())).all();
-  if (!(Search::size(before) - Search::size(after) > kTenTimes) || !one_alone || !none_worse ||
+             all_fit = (after.array() < 0.02).all();
+  if (!(Search::size(before) - Search::size(after) > kTenTimes) || !one_alone || !all_fit ||
       search.has_simpler_cause(Search::size(after)))
     return {};
   const double than_loads = Search::size(search.unexplained(own, true)) - Search::size(after);
