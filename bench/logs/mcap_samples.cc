@@ -39,7 +39,7 @@ McapTopic measured_topic(const RecordingContents& has, const JsonField& torque, 
                                 {"qd", true, "[rad/s] its velocity"},
                                 torque};
   if (has.has_driver)
-    fields.push_back({"driver", true, "[N m] the maker's own estimate of tau_ext"});
+    fields.push_back({"driver", true, "[N m] the robot driver's own estimate of tau_ext"});
   if (has_force)
     fields.push_back({"force", true, "[N] of a sensor, on the end effector, axes of the world"});
   const std::string type(kMeasuredType);

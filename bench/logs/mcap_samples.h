@@ -18,9 +18,9 @@ namespace tauext {
 
 /// A sample is a message on /measured with t [s], q [rad], qd [rad/s] and tau [N m]; a torque that
 /// was read at t is called tau_instant, one without gravity tau_without_gravity, and drives'
-/// currents current [A]. With them go the maker's estimate, driver [N m], and a sensor's force [N],
-/// where the recording has these. What is known of the truth is on /truth: t, tau_ext [N m] with
-/// the sign of (3), and contact. The preset tauext_mcap reads all of it.
+/// currents current [A]. With them go the robot driver's estimate, driver [N m], and a sensor's
+/// force [N], where the recording has these. What is known of the truth is on /truth: t, tau_ext
+/// [N m] with the sign of (3), and contact. The preset tauext_mcap reads all of it.
 class McapSamples {
  public:
   /// @param has the recording, before its torques were made of currents, scaled or added to

@@ -224,7 +224,7 @@ class Search {
     T.bottomRightCorner(d.b.size() - n, d.b.size() - n).setIdentity();
     const double factor =
         (scaled_inverse(T.transpose() * d.H * T) * (T.transpose() * (d.b - d.H * known)))[0];
-    if (!(factor > 0)) return;  // what is wrong then is said later
+    if (!(factor > 0)) return;  // such torques are doubted when all is fitted
     for (MovingBody& b : bodies_)
       if (!b.known) b.prior *= std::clamp(factor, 0.01, 100.);
   }
