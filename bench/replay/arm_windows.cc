@@ -92,6 +92,11 @@ ArmWindow WindowMaker::window(MatrixXd motion, const VectorN& tau) const {
   return w;
 }
 
+void WindowMaker::interrupt(bool torque_at_instants) {
+  begun_ = false;
+  at_instants_ = torque_at_instants;
+}
+
 void WindowMaker::begin(const Sample& y) {
   begun_ = true;
   integral_ = VectorXd::Zero(n_);

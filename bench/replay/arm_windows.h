@@ -37,8 +37,8 @@ class WindowMaker {
   /// The next sample; none in a contact.
   /// @param tau [N m] without what is known of tau_ext
   void take(const Sample& y, const Eigen::VectorXd& tau, bool contact);
-  /// The next one is of another recording.
-  void interrupt() { begun_ = false; }
+  /// The next one is of another recording, whose torques are read at instants, or held.
+  void interrupt(bool torque_at_instants);
 
   const ArmWindows& windows() const { return windows_; }  ///< those so far
   /// One whose motion it is.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -209,12 +210,17 @@ std::string words(const ColumnReading& r) {
   }
   if (r.degrees)
     all.push_back("q and qd fit as degrees: set `unit` of [q] and [qd] in a map (--columns)");
-  std::vector<int> torques, motions, both, zeros;
+  std::vector<int> torques, motions, both;
+  std::vector<std::pair<int, double>> zeros;
   for (Index j = 0; j < r.zero.size(); ++j) {
+    // by the recording's joint, whose sign and zero a map has before it orders them
+    const auto at = static_cast<std::size_t>(j);
     const bool torque = r.torque_sign[j] < 0, motion = r.motion_sign[j] < 0;
-    const int number = static_cast<int>(j) + 1;
-    if (torque || motion) (torque && motion ? both : torque ? torques : motions).push_back(number);
-    if (r.zero[j] != 0) zeros.push_back(number);
+    const bool same = torque && motion && r.torque[at] == r.motion[at];
+    if (same) both.push_back(r.torque[at] + 1);
+    if (torque && !same) torques.push_back(r.torque[at] + 1);
+    if (motion && !same) motions.push_back(r.motion[at] + 1);
+    if (r.zero[j] != 0) zeros.emplace_back(r.motion[at] + 1, r.zero[j]);
   }
   if (!torques.empty())
     all.push_back(
@@ -231,19 +237,26 @@ std::string words(const ColumnReading& r) {
         fmt::format("the signs of q, qd and tau of {} are reversed: set `sign` of [q], "
                     "[qd] and [tau] in a map (--columns)",
                     listed(both)));
-  for (const int j : zeros)
+  for (const auto& [j, zero] : zeros)
     all.push_back(
         fmt::format("q of joint {} has its zero elsewhere than the robot's file: it fits "
                     "with {:.3g} rad added, by `zero` of [q] in a map (--columns)",
-                    j, r.zero[j - 1]));
+                    j, zero));
   return fmt::format("{}", fmt::join(all, "; and "));
 }
 
-// those that both neighbours touch, with the neighbours
+// Those that both neighbours touch, with the neighbours; all of as many steps as most of them, as
+// where samples jitter some have fewer.
 std::vector<std::array<const ArmWindow*, 3>> in_threes(const ArmWindows& windows) {
   std::vector<std::array<const ArmWindow*, 3>> all;
-  const auto touch = [](const ArmWindow& a, const ArmWindow& b) {
-    return a.motion(0, a.motion.cols() - 1) == b.motion(0, 0) && a.steps.cols() == b.steps.cols();
+  std::map<Index, int> counts;
+  for (const ArmWindow& w : windows) ++counts[w.steps.cols()];
+  const auto usual =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto touch = [&](const ArmWindow& a, const ArmWindow& b) {
+    return a.motion(0, a.motion.cols() - 1) == b.motion(0, 0) && a.steps.cols() == usual->first &&
+           b.steps.cols() == usual->first;
   };
   for (std::size_t i = 1; i + 1 < windows.size(); ++i)
     if (touch(windows[i - 1], windows[i]) && touch(windows[i], windows[i + 1]))

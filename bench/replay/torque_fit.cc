@@ -52,11 +52,11 @@ void TorqueFit::take(const Sample& y, bool contact, const VectorXd& tau_ext) {
 }
 
 void TorqueFit::take(const Trace& log) {
+  maker_.interrupt(log.torque_at_instants);
   for (int k = 0; k < log.size(); ++k)
     take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
          !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
          log.has_truth() ? VectorXd(log.tau_ext.col(k)) : VectorXd());
-  maker_.interrupt();
 }
 
 // those in which a joint carries something, and hardly more than that

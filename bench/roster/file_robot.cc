@@ -47,6 +47,9 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
     if (is_robot_file(name)) {
       const RobotFile file = robot_file(path, options);
       why = why_no_arm(why, file.path, {}, file.options);
+      if (options.lock != file.options.lock)
+        why += fmt::format("; {} has a \"lock\" of its own, in whose place that expression goes",
+                           path);
     }
     throw std::invalid_argument(fmt::format("{}: {}", path, why));
   }

@@ -48,6 +48,7 @@ void refuse_other_compiler(const XMLElement& attach, XMLElement& parent, XMLElem
                                       {"boundmass", "0"},
                                       {"boundinertia", "0"},
                                       {"settotalmass", "-1"},
+                                      {"exactmeshinertia", "false"},
                                       {"strippath", "false"},
                                       {"fitaabb", "false"}}) {
     const std::string own = compiler(parent, attribute, otherwise),
@@ -160,7 +161,9 @@ bool is_about(XMLElement& e, const std::set<std::string>& names) {
   return all;
 }
 
-void graft_sections(XMLElement& parent, XMLElement& child, XMLElement& bodies) {
+// @param main the class that the model's default of all has become
+void graft_sections(XMLElement& parent, XMLElement& child, XMLElement& bodies,
+                    const std::string& main) {
   std::set<std::string> names;  // of bodies, joints and sites that come along; then of tendons
   each(bodies, [&](const XMLElement& e) {
     names.insert(text(e, "name"));
@@ -174,7 +177,10 @@ void graft_sections(XMLElement& parent, XMLElement& child, XMLElement& bodies) {
         const bool kept =
             std::string_view(name) == "asset" ? name_of(*e) == "mesh" : is_about(*e, names);
         if (!kept) continue;
-        to.InsertEndChild(e->DeepClone(parent.GetDocument()));
+        XMLElement& copy = *e->DeepClone(parent.GetDocument())->ToElement();
+        const bool may = std::string_view(name) != "contact";  // which have none
+        if (may && copy.Attribute("class") == nullptr) copy.SetAttribute("class", main.c_str());
+        to.InsertEndChild(&copy);
         names.insert(text(*e, "name"));
       }
     }
@@ -190,7 +196,8 @@ void graft(XMLElement& attach, XMLElement& parent, AttachedModel& model) {
   // a body without a joint: it is carried by the one around it
   XMLElement& place = *attach.GetDocument()->NewElement("body");
   attach.Parent()->InsertAfterChild(&attach, &place);
-  place.SetAttribute("childclass", graft_defaults(attach, parent, child).c_str());
+  const std::string main = graft_defaults(attach, parent, child);
+  place.SetAttribute("childclass", main.c_str());
   if (part.empty()) {
     for (XMLElement* const world : sections(child, "worldbody"))
       for (const XMLNode* c = world->FirstChild(); c != nullptr; c = c->NextSibling())
@@ -206,7 +213,7 @@ void graft(XMLElement& attach, XMLElement& parent, AttachedModel& model) {
     }
     place.InsertEndChild(body->DeepClone(parent.GetDocument()));
   }
-  graft_sections(parent, child, place);
+  graft_sections(parent, child, place, main);
   attach.Parent()->DeleteChild(&attach);
 }
 

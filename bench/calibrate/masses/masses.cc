@@ -49,7 +49,7 @@ MatrixXd inverse_root(const MatrixXd& square) {
 }
 
 MatrixXd scaled_inverse(const MatrixXd& positive) {
-  const VectorXd scale = positive.diagonal().cwiseSqrt().cwiseInverse();
+  const VectorXd scale = positive.diagonal().cwiseSqrt().cwiseMax(1e-150).cwiseInverse();
   const MatrixXd scaled = scale.asDiagonal() * positive * scale.asDiagonal();
   return scale.asDiagonal() *
          MatrixXd(scaled.ldlt().solve(MatrixXd::Identity(scaled.rows(), scaled.cols()))) *
@@ -355,15 +355,16 @@ class Search {
       const double usually = usual[static_cast<Index>(i)];
       if (j.gravity_error > kMostError * usually)
         m.doubts.push_back(fmt::format(
-            "joint '{}': the torque that holds it is known to +- {:.3g} N m in other poses, and it "
-            "is used to {:.3g} N m: record motions in which it and the joints around it go "
-            "further, "
-            "and lift what they carry",
+            "joint '{}': the torque that holds it is known to +- {:.3g} N m in other poses, and "
+            "its "
+            "usual torque is {:.3g} N m: record motions in which it and the joints around it go "
+            "further, and raise the links against gravity",
             j.name, j.gravity_error, usually));
       if (kAcceleration * j.inertia_error > kMostError * usually)
         m.doubts.push_back(fmt::format(
             "joint '{}': its inertia is known to +- {:.3g} kg m^2, which makes {:.3g} N m at {:g} "
-            "rad/s^2, and it is used to {:.3g} N m: record motions that accelerate it more, in "
+            "rad/s^2, and its usual torque is {:.3g} N m: record motions that accelerate it more, "
+            "in "
             "several poses of the other joints",
             j.name, j.inertia_error, kAcceleration * j.inertia_error, kAcceleration, usually));
       if (j.held_out > j.torque / 2)
@@ -383,11 +384,11 @@ class Search {
       m.doubts.emplace_back(
           "in stretches that the fit has not seen, the masses that were found are no better than "
           "those of the file: keep these");
-    if (m.scale > kMostScale || m.scale < 1 / kMostScale)
+    if (m.scale > kMostScale || m.scale < kLeastScale)
       m.doubts.push_back(fmt::format(
           "the masses that were found hold {:.3g} times the torque of the file's, which must be "
-          "within 1/{:g} and {:g}: are torques in N m, on the arm's side of the gears?",
-          m.scale, kMostScale, kMostScale));
+          "within {:g} and {:g}: are torques in N m, on the arm's side of the gears?",
+          m.scale, kLeastScale, kMostScale));
   }
 
   // what a robot file and its judge want to know of each joint

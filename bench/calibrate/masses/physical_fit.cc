@@ -102,7 +102,7 @@ void physical_fit(const Quadratic& data, const std::vector<BodyVector>& prior, V
         gradient[at + static_cast<Index>(k)] += (pull * directions()[k]).trace();
       hessian.block<kBodyTerms, kBodyTerms>(at, at) += metric(body_part(theta, b));
     }
-    const VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
+    const VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseMax(1e-150).cwiseInverse();
     const MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
     const VectorXd down = -scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(gradient)));
     const double slope = gradient.dot(down);  // minus the square of Newton's decrement

@@ -245,6 +245,19 @@ TEST_F(TorqueFits, AFactorOfOneJointAloneIsNoLoads) {
   }
 }
 
+// whose windows have 5 to 10 steps, and recordings of other rates beside it
+TEST_F(TorqueFits, JitterAndOtherRatesAreNothing) {
+  const Robot robot = arm6();
+  const Trace log = robot.run("in_motion");
+  std::vector<int> some, few;
+  for (int k = 0; k < log.size(); k += k / 3000 % 2 == 0 ? 10 : 17) some.push_back(k);
+  for (int k = 0; k < log.size(); k += 40) few.push_back(k);
+  TorqueFit fit(robot.arm, log.torque_at_instants, false);
+  for (const Trace& part : {select_samples(log, some), log, select_samples(log, few)})
+    fit.take(part);
+  EXPECT_EQ(fit.contradiction() + fit.doubt(), "");
+}
+
 TEST_F(TorqueFits, TwoChannelsThatAreOneAreNamed) {
   const Robot robot = arm6();
   Trace log = robot.run("in_motion");

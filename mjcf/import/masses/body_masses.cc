@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
 #include <stdexcept>
 #include <vector>
 
@@ -54,11 +55,17 @@ void remove_masses(XMLElement& body) {
   });
 }
 
-bool has_mass(XMLElement& body) {
+// a shape has one by its class, too, or none
+bool has_mass(XMLElement& mujoco, XMLElement& body) {
   bool any = false;
+  const auto is_none = [&](const XMLElement& e, const char* attribute) {
+    const std::string value = with_defaults(mujoco, e, attribute);
+    return !value.empty() && !(std::strtod(value.c_str(), nullptr) > 0);
+  };
   each_part(body, [&](const XMLElement& e) {
-    const bool counts = name_of(e) == "geom" || name_of(e) == "inertial";
-    any = any || (counts && (e.Attribute("mass") == nullptr || e.DoubleAttribute("mass", 1) > 0));
+    if (name_of(e) == "inertial") any = any || e.DoubleAttribute("mass", 1) > 0;
+    if (name_of(e) != "geom" || is_none(e, "mass")) return;
+    any = any || !with_defaults(mujoco, e, "mass").empty() || !is_none(e, "density");
   });
   return any;
 }
@@ -105,7 +112,7 @@ void put_bodies(XMLElement& mujoco, const std::map<std::string, MeasuredBody>& b
 std::set<std::string> fill_masses(XMLElement& mujoco) {
   std::set<std::string> filled;
   each_moving(mujoco, [&](XMLElement& e) {
-    if (has_mass(e)) return;
+    if (has_mass(mujoco, e)) return;
     if (text(e, "name").empty())
       fail(e, "a body that moves has no mass and no name: give it a name");
     remove_masses(e);

@@ -109,8 +109,10 @@ void SampleLayout::convert(const std::vector<double>& row, std::vector<double>& 
   sample.resize(static_cast<std::size_t>(size));
   sample[0] = 0;
   for (const auto& [c, gain] : t) sample[0] += gain * row[static_cast<std::size_t>(c)];
-  for (std::size_t i = 0; i < rest.size(); ++i)
-    sample[i + 1] = rest[i].gain * row[static_cast<std::size_t>(rest[i].column)] + rest[i].zero;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    sample[i + 1] = rest[i].gain * row[static_cast<std::size_t>(rest[i].column)];
+    if (rest[i].zero != 0) sample[i + 1] += rest[i].zero;  // and -0 stays what it is
+  }
 }
 
 SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,

@@ -25,7 +25,7 @@ struct SampleLayout {
   struct Number {
     int column;
     double gain;  ///< to SI units
-    double zero;  ///< that is added then
+    double zero;  ///< [SI] that is added then
   };
   std::vector<Number> rest;        ///< all others
   std::vector<std::string> names;  ///< of all, like "[q] of joint 2"; the first is that of t

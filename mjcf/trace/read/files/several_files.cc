@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "mjcf/trace/printable.h"
@@ -33,6 +34,13 @@ struct Part {
   std::string name;
 };
 
+// 0: it is none
+long number_in(const std::string& text) {
+  long number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+}
+
 std::vector<Part> parts_of(const std::string& folder, const std::string& expression) {
   std::vector<Part> all;
   const std::regex wanted(expression);
@@ -42,8 +50,7 @@ std::vector<Part> parts_of(const std::string& folder, const std::string& express
     std::smatch match;
     constexpr std::size_t kLongest = 255;
     if (name.size() > kLongest || !std::regex_match(name, match, wanted)) continue;
-    const bool numbered = match.size() > 1 && match[1].matched;
-    all.push_back({numbered ? std::atol(match[1].str().c_str()) : 0, name});
+    all.push_back({match.size() > 1 ? number_in(match[1].str()) : 0, name});
   }
   if (error)
     throw std::runtime_error(fmt::format(
@@ -187,12 +194,16 @@ class SideBySide final : public RowSource {
   bool finish(const File& ended, std::int64_t wanted, SkippedRows& skipped) {
     ended_ = true;
     count(ended.at - wanted + 1, skipped);
-    for (File& f : files_)
-      if (&f != &ended && (f.at > ended.at || read(f, skipped)))
+    for (File& f : files_) {
+      if (&f == &ended) continue;
+      while (f.at < ended.at && read(f, skipped)) {
+      }
+      if (f.at > ended.at || read(f, skipped))
         throw std::runtime_error(
             fmt::format("{}: has {} rows, and {} has more: are they of one "
                         "recording, with a header each or none?",
                         ended.path, ended.at, f.path));
+    }
     return false;
   }
 

@@ -57,6 +57,7 @@ TEST_F(SeveralFiles, ThatAreNoPartsOfOneRecordingAreErrors) {
   put(head_ + "0,0,0,0\n1,0,0,0\n", "run_1.csv");
   const std::string second = put("t,q1,tau1,qd1\n2,0,0,0\n", "run_2.csv");
   EXPECT_EQ(error(folder_.string(), parts_), second + ": its columns are not those of 'run_1.csv'");
+  std::filesystem::remove(second);
   put(head_ + "2,0,0,0\n", "run_01.csv");
   EXPECT_EQ(error(folder_.string(), parts_),
             folder_.string() + ": 'run_01.csv' and 'run_1.csv' are both part 1");
@@ -76,6 +77,15 @@ TEST_F(SeveralFiles, StandSideBySide) {
   EXPECT_EQ(both.q, (Eigen::RowVector3d{1, 2, 5}));
   EXPECT_EQ(both.tau, (Eigen::RowVector3d{10, 20, 50}));
   EXPECT_EQ(skipped_.total(), 2);
+  // the last line is cut off in one of them, whichever comes first
+  put("t,a\n0,1\n0.01,2\n0.02", "motion.csv");
+  put("a,b\n0,10\n0,20\n0,30\n", "torque.csv");
+  EXPECT_EQ(read(log, map).size(), 2);
+  put("t,a\n0,1\n0.01,2\n0.02,3\n", "motion.csv");
+  put("a,b\n0,10\n0,20\n0", "torque.csv");
+  EXPECT_EQ(read(log, map).size(), 2);
+  put("t,a\n0,1\n0.01,2\n0.02,x\n0.03,4\n0.04,5\n", "motion.csv");
+  put("a,b\n0,10\n0,20\n0,30\n0,40,50\n0,50\n", "torque.csv");
   // each in its own
   const Trace same = read(folder_.string(),
                           "[t]\nfile = 'motion.csv'\ncolumns = ['t']\n[q]\nfile = 'motion.csv'\n"
