@@ -323,27 +323,38 @@ class Search {
             terms_.at(poses.col(k), only).momentum.row(i);
       }
     }
-    set_scale(gravity, m);
     for (std::size_t j = 0; j < m.joints.size(); ++j) {
       gravity[j].col(bounds_.at(static_cast<int>(j), kTermsOfJoint - 1)).setOnes();  // its offset
       inertia[j].col(bounds_.at(static_cast<int>(j), 0)).setOnes();                  // its rotor
       m.joints[j].gravity_error = error_of(gravity[j]);
       m.joints[j].inertia_error = error_of(inertia[j]);
     }
+    set_scale(gravity, m);
   }
 
-  // of gravity, by the file's
+  // of gravity, by the file's, and whether that is all by which they differ
   void set_scale(const std::vector<MatrixXd>& gravity, IdentifiedMasses& m) const {
     if (!m.has_nominal) return;
-    VectorXd file = VectorXd::Zero(best_.theta.size());
+    const Index n = terms_.columns();
+    VectorXd file(n);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       file.segment<kBodyTerms>(static_cast<Index>(b) * kBodyTerms) = bodies_[b].file;
     double product = 0, square = 0;
     for (const MatrixXd& rows : gravity) {
-      product += (rows * file).dot(rows * best_.theta);
-      square += (rows * file).squaredNorm();
+      const VectorXd of_file = rows.leftCols(n) * file;
+      product += of_file.dot(rows.leftCols(n) * best_.theta.head(n));
+      square += of_file.squaredNorm();
     }
-    if (square > 0) m.scale = product / square;
+    if (!(square > 0)) return;
+    m.scale = product / square;
+    constexpr double kAlike = 0.5, kSeen = 5;  // [1] of gravity, and of its standard error
+    m.differs_by_scale = true;
+    for (std::size_t j = 0; j < gravity.size(); ++j) {
+      const double all = (gravity[j].leftCols(n) * best_.theta.head(n)).norm(),
+                   left = (gravity[j].leftCols(n) * (best_.theta.head(n) - m.scale * file)).norm();
+      if (all > kSeen * m.joints[j].gravity_error * std::sqrt(kPoses) && left > kAlike * all)
+        m.differs_by_scale = false;
+    }
   }
 
   void judge_joints(const VectorXd& usual, IdentifiedMasses& m) {
@@ -384,7 +395,7 @@ class Search {
       m.doubts.emplace_back(
           "in stretches that the fit has not seen, the masses that were found are no better than "
           "those of the file: keep these");
-    if (m.scale > kMostScale || m.scale < kLeastScale)
+    if (m.differs_by_scale && (m.scale > kMostScale || m.scale < kLeastScale))
       m.doubts.push_back(fmt::format(
           "the masses that were found hold {:.3g} times the torque of the file's, which must be "
           "within {:g} and {:g}: are torques in N m, on the arm's side of the gears?",

@@ -50,6 +50,7 @@ struct IdentifiedMasses {
   BaseParameters base;                 ///< of these bodies
   bool has_nominal = false;            ///< whether the file has all masses
   double scale = 1;                 ///< [1] the identified gravity torques by the file's; if known
+  bool differs_by_scale = false;    ///< whether these torques are else much like the file's
   std::vector<std::string> doubts;  ///< why these numbers are not to be used; else none
 };
 

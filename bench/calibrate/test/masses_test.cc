@@ -239,7 +239,7 @@ TEST_F(Masses, ThatTheRecordingsDoNotShowAreDoubted) {
   };
   // hardly any way, about one pose
   EXPECT_TRUE(doubts(found(file, wrong, recorded(truth, swing(20, 0.02, 1.5, kBent))),
-                     "in other poses, and it is used to"));
+                     "in other poses, and its usual torque"));
   Trace log = recorded(truth, swing(30, 0.9, 1, kBent));
   EXPECT_TRUE(doubts(found(right, kArm6Known, log), "keep these"));
   log.tau *= -1;
