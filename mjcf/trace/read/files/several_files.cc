@@ -92,8 +92,16 @@ class Parts final : public RowSource {
       skipped.not_a_number += here.not_a_number, skipped.time_order += here.time_order;
       skipped.alone += here.alone;
       add_words(skipped, here, parts_[part_].name);
-      if (any) return true;
+      if (any) {
+        if (repeats_last(row)) continue;
+        last_ = row;
+        return true;
+      }
       open_next();
+      if (rows_ == nullptr && repeated_ > 0)
+        skipped.notes.push_back(fmt::format(
+            "{} of {} parts begin with the last row of the one before, which is left out there",
+            repeated_, parts_.size()));
     }
     return false;
   }
@@ -102,9 +110,19 @@ class Parts final : public RowSource {
  private:
   std::string path() const { return (fs::path(folder_) / parts_[part_].name).string(); }
 
+  // as long as every part has begun so, for rows that an arm at rest repeats are its own
+  bool repeats_last(const std::vector<double>& row) {
+    if (!begins_) return false;
+    begins_ = false;
+    overlap_ = overlap_ && row == last_;
+    repeated_ += overlap_ ? 1 : 0;
+    return overlap_;
+  }
+
   void open_next() {
     rows_.reset();
     if (++part_ == parts_.size()) return;
+    begins_ = true;
     rows_ = open_(path());
     if (rows_->columns() != columns_)
       throw std::runtime_error(fmt::format("{}: its columns are not those of '{}'", path(),
@@ -119,6 +137,9 @@ class Parts final : public RowSource {
   std::unique_ptr<RowSource> rows_;  // of that part
   std::vector<std::string> columns_;
   std::vector<int> wanted_;
+  std::vector<double> last_;
+  bool begins_ = false, overlap_ = true;
+  int repeated_ = 0;
 };
 
 class SideBySide final : public RowSource {

@@ -20,7 +20,8 @@ inline constexpr char kOfFile[] = ": ";
 
 /// The rows of the files in a folder whose whole names an expression matches, one file after the
 /// other: in the order of the numbers in the expression's first group, and else of their names. All
-/// have the columns of the first.
+/// have the columns of the first. If each begins with the last row of the one before, that comes
+/// once, and a note says so.
 /// @throws std::runtime_error naming the path: no folder, none that matches, two of one number; and
 /// of next(), too, a part with other columns
 std::unique_ptr<RowSource> parts_in(const std::string& folder, const std::string& expression,

@@ -50,6 +50,27 @@ TEST_F(SeveralFiles, FollowEachOtherByTheirNumbers) {
   EXPECT_NEAR(counted.t.back(), 109 / 50., 1e-12);
 }
 
+TEST_F(SeveralFiles, ThatEachBeginWithTheRowBeforeHaveItOnce) {
+  const auto cut = [&](int each, int rows_again) {
+    for (int part = 0; part < 4; ++part) {
+      std::string csv = "q1,tau1\n";
+      for (int k = each * part - (part > 0 ? rows_again : 0); k < each * (part + 1); ++k)
+        csv += fmt::format("{},{}\n", k / 3, k);  // q stands for three rows
+      put(csv, fmt::format("run_{}.csv", part + 1));
+    }
+    return read(folder_.string(),
+                "parts = 'run_(.+).csv'\nrate = 50\n[q]\ncolumns = ['q1']\n[tau]\n"
+                "columns = ['tau1']\n");
+  };
+  const Trace whole = cut(10, 0), again = cut(10, 1);
+  EXPECT_EQ(whole.size(), 40);
+  EXPECT_EQ(again.q, whole.q);
+  EXPECT_EQ(again.tau, whole.tau);
+  EXPECT_EQ(skipped_.notes.back(),
+            "3 of 4 parts begin with the last row of the one before, which is left out there");
+  EXPECT_EQ(cut(10, 2).size(), 46);  // two rows again are no overlap of one
+}
+
 TEST_F(SeveralFiles, ThatAreNoPartsOfOneRecordingAreErrors) {
   EXPECT_EQ(
       error(folder_.string(), parts_),
