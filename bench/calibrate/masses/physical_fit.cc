@@ -86,7 +86,7 @@ namespace {
 
 // where F is least, from theta on: Newton's method, with steps that are halved until F falls
 void physical_fit(const Quadratic& data, const std::vector<BodyVector>& prior, VectorXd& theta) {
-  constexpr int kSteps = 200;
+  constexpr int kSteps = 2000;
   constexpr double kExact = 1e-14, kRounded = 1e-9;  // [1] of F that a step may still promise
   std::vector<Matrix4d> prior_inverse;
   for (const BodyVector& b : prior) prior_inverse.push_back(inverse_of_pseudo(pseudo_inertia(b)));
@@ -129,7 +129,7 @@ void physical_fit(const Quadratic& data, const std::vector<BodyVector>& prior, V
 // from little weight of the recordings to all of it: where they ask for what no body has, that is
 // shorter than one way there
 VectorXd physical_fit(const Quadratic& data, const std::vector<BodyVector>& prior) {
-  constexpr double kFirst = 1e-9, kMore = 10;  // [1]
+  constexpr double kFirst = 1e-9, kMore = 4;  // [1]
   VectorXd theta = VectorXd::Zero(data.b.size());
   for (std::size_t b = 0; b < prior.size(); ++b)
     theta.segment<kBodyTerms>(static_cast<Index>(b) * kBodyTerms) = prior[b];
