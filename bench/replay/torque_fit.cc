@@ -59,19 +59,23 @@ void TorqueFit::take(const Trace& log) {
          log.has_truth() ? VectorXd(log.tau_ext.col(k)) : VectorXd());
 }
 
-// those in which a joint carries something, and hardly more than that
+// those in which a joint carries something, and hardly more than that; none where most are at rest
+// and as the model has them but for dry friction, so that the others are what it does not know
 TorqueFit::Windows TorqueFit::slow(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
   const double stiction = kStiction * arm_.joints[leader].dry;
   Windows some;
+  std::size_t held = 0;
   for (const ArmWindow& w : maker_.windows()) {
     const double g = std::abs(w.gravity[j]);
-    // at rest dry friction may take as much
-    if (std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction) continue;
-    if (g > kMinTorqueShare * arm_.usual_torque[j] && std::abs(w.model[j] - w.gravity[j]) < 0.2 * g)
+    if (g < kMinTorqueShare * arm_.usual_torque[j] || std::abs(w.model[j] - w.gravity[j]) > 0.2 * g)
+      continue;
+    if (std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction)
+      ++held;
+    else
       some.push_back(&w);
   }
-  return some;
+  return held > some.size() ? Windows() : some;
 }
 
 // those that carry something, in slow poses
