@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
 #include <regex>
 #include <stdexcept>
 #include <system_error>
@@ -77,6 +78,8 @@ class Parts final : public RowSource {
       : folder_(folder), open_(std::move(open)), parts_(parts_of(folder, expression)) {
     rows_ = open_(path());
     columns_ = rows_->columns();
+    wanted_.resize(columns_.size());
+    std::iota(wanted_.begin(), wanted_.end(), 0);
   }
 
   const std::vector<std::string>& columns() const override { return columns_; }
@@ -94,7 +97,7 @@ class Parts final : public RowSource {
       add_words(skipped, here, parts_[part_].name);
       if (any) {
         if (repeats_last(row)) continue;
-        last_ = row;
+        keep(row);
         return true;
       }
       open_next();
@@ -110,11 +113,19 @@ class Parts final : public RowSource {
  private:
   std::string path() const { return (fs::path(folder_) / parts_[part_].name).string(); }
 
+  void keep(const std::vector<double>& row) {
+    last_.clear();
+    for (const int c : wanted_) last_.push_back(row[static_cast<std::size_t>(c)]);
+  }
+
   // as long as every part has begun so, for rows that an arm at rest repeats are its own
   bool repeats_last(const std::vector<double>& row) {
     if (!begins_) return false;
     begins_ = false;
-    overlap_ = overlap_ && row == last_;
+    overlap_ =
+        overlap_ && std::equal(last_.begin(), last_.end(), wanted_.begin(), [&](double was, int c) {
+          return row[static_cast<std::size_t>(c)] == was;
+        });
     repeated_ += overlap_ ? 1 : 0;
     return overlap_;
   }
@@ -127,7 +138,7 @@ class Parts final : public RowSource {
     if (rows_->columns() != columns_)
       throw std::runtime_error(fmt::format("{}: its columns are not those of '{}'", path(),
                                            printable_name(parts_.front().name)));
-    if (!wanted_.empty()) rows_->read_only(wanted_);
+    rows_->read_only(wanted_);
   }
 
   std::string folder_;
@@ -137,7 +148,7 @@ class Parts final : public RowSource {
   std::unique_ptr<RowSource> rows_;  // of that part
   std::vector<std::string> columns_;
   std::vector<int> wanted_;
-  std::vector<double> last_;
+  std::vector<double> last_;  // what was wanted of the row before
   bool begins_ = false, overlap_ = true;
   int repeated_ = 0;
 };

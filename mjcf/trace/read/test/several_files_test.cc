@@ -53,9 +53,9 @@ TEST_F(SeveralFiles, FollowEachOtherByTheirNumbers) {
 TEST_F(SeveralFiles, ThatEachBeginWithTheRowBeforeHaveItOnce) {
   const auto cut = [&](int each, int rows_again) {
     for (int part = 0; part < 4; ++part) {
-      std::string csv = "q1,tau1\n";
+      std::string csv = "q1,none,tau1\n";
       for (int k = each * part - (part > 0 ? rows_again : 0); k < each * (part + 1); ++k)
-        csv += fmt::format("{},{}\n", k / 3, k);  // q stands for three rows
+        csv += fmt::format("{},{},{}\n", k / 3, part, k);  // q stands for three rows
       put(csv, fmt::format("run_{}.csv", part + 1));
     }
     return read(folder_.string(),
