@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -72,8 +73,8 @@ constexpr const char* kHeldOutLegend =
     "\n{}alarms: recordings in which the thresholds of all others would mark (the metric by which "
     "`clamping` weighs the joints has seen all of them).\n";
 
-// what labels leave of a recording, in stretches: from metrics::kGrace after a contact to the next
-// one. Those that are too short to train on are left out
+// what its contacts leave of a recording, in stretches: from metrics::kGrace after a contact to the
+// next one. Those that are too short to train on are left out
 std::vector<study::FreeRecording> free_stretches(const std::string& path, const Trace& trace) {
   std::vector<study::FreeRecording> all;
   std::vector<int> samples;
@@ -126,7 +127,8 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
     RecordedLog log = robot_log(r, path, f.channel, f.columns, contacts);
     log.require_consistent(path);
     usable = usable && log.usable();
-    if (contacts == nullptr || contacts->of(path).empty()) {
+    const std::vector<std::uint8_t>& contact = log.trace.contact;
+    if (std::all_of(contact.begin(), contact.end(), [](auto c) { return c == 0; })) {
       recordings.push_back({path, std::move(log.trace)});
       continue;
     }
@@ -134,7 +136,8 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
       recordings.push_back(std::move(part));
   }
   if (recordings.empty())
-    throw std::invalid_argument(f.contacts + ": no stretch without contact is long enough");
+    throw std::invalid_argument(
+        "no stretch of the recordings without contact is long enough; record motions without");
   Progress progress("calibrating");
   std::vector<study::HeldOut> held_out;
   const Thresholds thresholds =
