@@ -123,7 +123,7 @@ std::string graft_defaults(const XMLElement& attach, XMLElement& parent, XMLElem
   each(child, [&](XMLElement& e) {
     for (const char* const which : {"class", "childclass"})
       if (const std::string own = text(e, which); !own.empty())
-        e.SetAttribute(which, (own == main ? name : name + '/' + own).c_str());
+        e.SetAttribute(which, own == main ? name.c_str() : fmt::format("{}/{}", name, own).c_str());
     return true;
   });
   XMLElement* top = parent.FirstChildElement("default");

@@ -82,8 +82,8 @@ bool is_small_arm(const ImportOptions& options, const Reading& read) {
 }
 
 std::string flags(const std::string& path, const ImportOptions& given, const ImportOptions& more) {
-  const std::string lock = more.lock == given.lock ? "" : "--lock " + quoted(more.lock);
-  if (more.balance == given.balance) return lock;
+  if (more.balance == given.balance)
+    return more.lock == given.lock ? "" : "--lock " + quoted(more.lock);
   return fmt::format("tauext-import {}{}{} --balance --out arm.xml", path_word(path),
                      more.lock.empty() ? "" : " --lock ",
                      more.lock.empty() ? "" : quoted(more.lock));
