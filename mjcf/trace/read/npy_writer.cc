@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "mjcf/trace/atomic_file.h"
-#include "mjcf/trace/read/numpy/inflater.h"
+#include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {
 namespace {
@@ -109,7 +109,6 @@ void write_npy(const std::string& path, const NpyArray& array,
 }
 
 void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
-  require_zlib();
   refuse_too_large(path, arrays);
   AtomicFile file(path);
   std::string directory;

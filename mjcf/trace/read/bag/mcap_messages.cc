@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/numpy/inflater.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {

@@ -2,6 +2,8 @@
 #include "mjcf/trace/read/bag/mcap_writer.h"
 
 #include <fmt/format.h>
+
+#include "mjcf/trace/read/text/unpacked_file.h"
 #ifdef TAUEXT_ARCHIVE
 #include <archive.h>
 #include <archive_entry.h>
@@ -13,8 +15,6 @@
 #include <new>
 #include <stdexcept>
 #include <utility>
-
-#include "mjcf/trace/read/numpy/inflater.h"
 
 namespace tauext {
 namespace {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/numpy/npy_number.h"
+#include "mjcf/trace/read/numpy/npy_header.h"
 
 namespace tauext {
 

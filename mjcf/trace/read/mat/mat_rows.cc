@@ -23,7 +23,7 @@
 
 #include "mjcf/trace/child/confined.h"
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/numpy/byte_file.h"
+#include "mjcf/trace/read/byte_file.h"
 #include "mjcf/trace/read/numpy/npy_header.h"
 
 namespace tauext {

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -183,26 +181,24 @@ NpyHeader parse_npy_header(std::string_view text, const std::string& what) {
   return Parser(text, what).header();
 }
 
-NpyHeader read_npy_header(ByteStream& stream) {
-  const std::string& what = stream.extent().what;
-  std::array<unsigned char, 8> begin{};
-  stream.read(begin.data(), begin.size());
-  if (std::memcmp(begin.data(), "\x93NUMPY", 6) != 0 || begin[6] < 1 || begin[6] > 3) {
-    throw std::runtime_error(
-        fmt::format("{}: begins as no NumPy array of version 1 to 3 does", what));
-  }
-  std::array<unsigned char, 4> length{};
-  const int length_size = begin[6] == 1 ? 2 : 4;
-  stream.read(length.data(), static_cast<std::size_t>(length_size));
-  const std::uint64_t size = little_endian(length.data(), length_size);
-  if (size > kMostText) {
-    throw std::runtime_error(
-        fmt::format("{}: has a header of {} bytes, of at most {}", what, size, kMostText));
-  }
-  std::string text(size, '\0');
-  stream.read(text.data(), text.size());
-  NpyHeader h = parse_npy_header(text, what);
-  h.size = begin.size() + static_cast<std::size_t>(length_size) + size;
+NpyHeader read_npy_header(std::string_view bytes, const std::string& what) {
+  const auto fail = [&](const std::string& why) {
+    throw std::runtime_error(fmt::format("{}: {}", what, why));
+  };
+  constexpr std::string_view kMagic = "\x93NUMPY";
+  constexpr std::size_t kBegin = 8;  // [bytes] with the version
+  if (!bytes.starts_with(kMagic) || bytes.size() < kBegin || bytes[6] < 1 || bytes[6] > 3)
+    fail("begins as no NumPy array of version 1 to 3 does");
+  const std::size_t length = bytes[6] == 1 ? 2 : 4;
+  if (bytes.size() < kBegin + length) fail("is cut off in its header");
+  std::size_t size = 0;
+  for (std::size_t i = length; i > 0; --i)
+    size = size << 8 | static_cast<unsigned char>(bytes[kBegin + i - 1]);
+  if (size > kMostText)
+    fail(fmt::format("has a header of {} bytes, of at most {}", size, kMostText));
+  if (bytes.size() < kBegin + length + size) fail("is cut off in its header");
+  NpyHeader h = parse_npy_header(bytes.substr(kBegin + length, size), what);
+  h.size = kBegin + length + size;
   return h;
 }
 

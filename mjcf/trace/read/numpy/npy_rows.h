@@ -3,20 +3,18 @@
 /// Recordings as NumPy saves them: .npy, .npz.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "mjcf/trace/read/numpy/npy_header.h"
 #include "mjcf/trace/read/row_source.h"
 
 namespace tauext {
 
-class ByteFile;
-class ArrayReader;
-
-/// The rows of a .npy or a .npz, whatever its name is. Any plain numbers are read, of either byte
-/// order, in C or in Fortran order.
+/// The rows of a .npy or a .npz, whatever its name is, which is read as a whole. Any plain numbers
+/// are read, of either byte order, in C or in Fortran order.
 ///
 /// The columns of a .npy are "1", "2", .. or, of a structured array, have the names of its fields;
 /// ('q', '<f8', (6,)) is q1 .. q6. Those of a .npz are its arrays side by side: t of shape (n,) is
@@ -25,26 +23,34 @@ class ArrayReader;
 class NpyRows : public RowSource {
  public:
   /// @throws std::runtime_error naming the path, the array and what is wrong: unreadable, neither a
-  /// .npy nor a .npz, cut off, Python objects, arrays that are not as long as t (or the first one,
-  /// where none is named t), a column that is there twice; or that zlib, which a .npz needs, was
-  /// missing at build
+  /// .npy nor a .npz, cut off or damaged, more than 2 GiB unpacked, Python objects, arrays that are
+  /// not as long as t (or the first one, where none is named t), a column that is there twice; or
+  /// that libarchive, which a .npz needs, was missing at build
   explicit NpyRows(const std::string& path);
-  ~NpyRows() override;
 
   const std::vector<std::string>& columns() const override { return columns_; }
-  /// @throws std::runtime_error naming path and array, also if its checksum is another one
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   long number() const override { return static_cast<long>(row_); }
 
  private:
-  void add_members();
-  void refuse_other_lengths();
-  void take_columns();
+  struct Cell {
+    NpyNumber number;
+    std::size_t at;      // [bytes] where that of the first row is
+    std::size_t stride;  // [bytes] to that of the next row
+  };
+  struct Array {
+    std::string name, bytes;
+    std::size_t rows = 0;
+    std::vector<Cell> cells;
+  };
 
-  std::unique_ptr<ByteFile> file_;
-  std::vector<std::unique_ptr<ArrayReader>> arrays_;
+  void add(const std::string& what, std::string name, std::string bytes);
+  void require_equal_lengths(const std::string& path);
+  void require_different_columns(const std::string& path) const;
+
+  std::vector<Array> arrays_;
   std::vector<std::string> columns_;
-  std::uint64_t rows_ = 0, row_ = 0;
+  std::size_t rows_ = 0, row_ = 0;
 };
 
 }  // namespace tauext

@@ -147,7 +147,7 @@ TEST_F(Npy, ErrorsNameWhatIsWrong) {
             none + ": begins as neither a .npy nor a .npz does");
   EXPECT_EQ(error_of([&] { NpyRows x(empty); }), empty + ": is empty");
   EXPECT_EQ(error_of([&] { NpyRows x(path("z")); }), path("z") + ": No such file or directory");
-  EXPECT_EQ(error_of([&] { NpyRows x(path("")); }), path("") + ": is no regular file");
+  EXPECT_EQ(error_of([&] { NpyRows x(path("")); }), path("") + ": Is a directory");
 }
 
 TEST_F(Npy, NothingIsAllocatedByWhatAHeaderClaims) {

@@ -147,6 +147,17 @@ class Gunzipper {
 
 }  // namespace detail
 
+#ifdef TAUEXT_ZLIB
+std::uint32_t crc32_of(std::uint32_t before, const void* bytes, std::size_t count) {
+  return static_cast<std::uint32_t>(::crc32_z(before, static_cast<const Bytef*>(bytes), count));
+}
+#else
+std::uint32_t crc32_of(std::uint32_t, const void*, std::size_t) {
+  throw std::runtime_error(
+      "checksums are left out of this build: install Debian's zlib1g-dev, and build again");
+}
+#endif
+
 std::string unpacked(std::string_view bytes, std::size_t size, const std::string& path) {
   detail::Unpacker from(path, &bytes);
   std::string all(size + 1, '\0');

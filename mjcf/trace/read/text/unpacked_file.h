@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -17,6 +18,10 @@ bool is_compressed(std::string_view begin);
 /// @param size [bytes] that they have then; no more are unpacked than one more
 /// @throws std::runtime_error naming the path of the file that they are from
 std::string unpacked(std::string_view bytes, std::size_t size, const std::string& path);
+
+/// The CRC-32 of ISO 3309, which ZIP, gzip and MCAP have; `before` is that of the bytes before.
+/// @throws std::runtime_error naming the package, if zlib was missing at build
+std::uint32_t crc32_of(std::uint32_t before, const void* bytes, std::size_t count);
 
 /// A file of text, by what its first bytes say, in constant memory. zlib unpacks gzip, and
 /// libarchive the others; both are optional at build. A checksum of lz4 or zstd that is not there
