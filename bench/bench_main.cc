@@ -15,7 +15,6 @@
 #include "bench/report/page.h"
 #include "bench/report/provenance.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/run/commands.h"
 #include "bench/run/recording_flags.h"
 #include "bench/run/scenario_file.h"
 #include "bench/run/study_flags.h"
@@ -37,7 +36,7 @@ struct Flags {
   SuiteOutputs outputs;
   bool list = false, list_metrics = false;
   std::string lock;
-  std::optional<std::string> scenarios, golden, commands, seeds;
+  std::optional<std::string> scenarios, golden, seeds;
 };
 
 int run_golden(const Flags& f, const std::string& filter) {
@@ -57,13 +56,13 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, const BenchmarkF
                            bool study) {
   const std::optional<std::string>& report = f.outputs.report;
   const bool listing = f.list || f.list_metrics;
-  const bool golden = f.golden.has_value(), commands = f.commands.has_value();
-  if (study + f.list + f.list_metrics + golden + commands > 1) {
+  const bool golden = f.golden.has_value();
+  if (study + f.list + f.list_metrics + golden > 1) {
     throw std::invalid_argument(
-        "one at a time: --list, --list-metrics, --golden, --commands, or a study (--seeds, "
-        "--reliability, --equal-bandwidth, --pareto)");
+        "one at a time: --list, --list-metrics, --golden, or a study (--seeds, "
+        "--equal-bandwidth, --pareto)");
   }
-  const bool suite = !study && !listing && !golden && !commands;
+  const bool suite = !study && !listing && !golden;
   require_mode(app, suite, "the suite alone", {"--paper", "--report", "--lcm", "--lcm-log"});
   if (report) report::require_page(*report, "--report");
   if (report && report == benchmark.out())
@@ -76,7 +75,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, const BenchmarkF
   const bool seeds = !f.studies.seeds.empty();
   const bool selects = suite || golden || f.list || seeds;
   require_mode(app, selects, "the suite, --seeds, --golden and --list", {"--detector"});
-  require_mode(app, selects || (tuned && !f.studies.reliability),
+  require_mode(app, selects || (tuned),
                "the suite, --seeds, --golden, --list, --equal-bandwidth and --pareto",
                {"--estimator"});
   require_mode(app, seeds, "--seeds", {"--against"});
@@ -118,10 +117,6 @@ int run(const CLI::App& app, Flags& flags, const BenchmarkFlags& benchmark) {
     return run_study(flags.studies, flags.suite);
   }
   if (flags.golden) return run_golden(flags, filter);
-  if (flags.commands) {
-    fmt::print("{}", record_and_replay(*flags.commands, flags.suite, flags.selection));
-    return kGood;
-  }
   if (flags.list) {
     for (const Entry& e : entries(flags.selection)) fmt::print("{}\n", e.name());
     fmt::print("\n{}", list_fields(flags.selection.robot));
@@ -159,7 +154,6 @@ void add_output_flags(CLI::App& app, Flags& flags) {
                  "study instead: means and intervals over these (--against mo2)")
       ->type_name("1-30");
   app.add_option("--against", flags.studies.against)->group("");
-  app.add_option("--commands", flags.commands)->group("");  // of an entry; tauext-gate explain
   app.add_option("--report", flags.outputs.report,
                  "a page for a browser, with traces; --wrench SITE adds forces")
       ->type_name("FILE.html");

@@ -6,7 +6,7 @@
 namespace tauext {
 
 /// Scores, then times every entry inside Google Benchmark, and prints tables; with
-/// --equal-bandwidth, --pareto or --reliability one of the studies instead. The flags are those of
+/// --equal-bandwidth or --pareto one of the studies instead. The flags are those of
 /// tauext-bench; after the word `detect`, those of tauext-detect (detect_main.h).
 /// @returns the exit code: 0 good, 1 an entry failed, 2 could not run
 int bench_main(int argc, char** argv);

@@ -17,7 +17,6 @@
 #include "bench/seeds/seeds.h"
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
-#include "bench/study/reliability.h"
 #include "mjcf/trace/atomic_file.h"
 
 namespace tauext {
@@ -35,24 +34,6 @@ const Robot& robot_of(const StudyFlags& f) {
 std::string for_file(const StudyFlags& f, const char* format, const std::string& run,
                      const std::string& table) {
   return f.out && format_of(f) == TableFormat::kJson ? result_file(format, run, table) : table;
-}
-
-// at the noise that was asked for, or at a good and at a poor encoder's
-std::string run_reliability(const StudyFlags& f, const Sensors& sensors) {
-  std::vector<study::Tried> all(sensors.ideal() ? 2 : 1);
-  for (study::Tried& tried : all) {
-    tried.trials.robot = f.robot.value_or("");
-    tried.trials.sensors = sensors;
-  }
-  if (sensors.ideal()) {
-    all[0].trials.sensors.velocity_noise = 1e-4;
-    all[1].trials.sensors.velocity_noise = 1e-3;
-  }
-  for (study::Tried& tried : all) {
-    Progress progress("trying");
-    tried.rows = study::reliability(tried.trials, progress.callback());
-  }
-  return study::format_reliability(all, format_of(f));
 }
 
 std::string run_equal_bandwidth(const StudyFlags& f) {
@@ -139,8 +120,6 @@ std::vector<std::uint64_t> seeds_of(const std::string& text, const char* flag) {
 }
 
 void add_study_flags(CLI::App& app, StudyFlags& f) {
-  app.add_flag("--reliability", f.reliability,
-               "study instead: 200 blows and an hour of a human's hand");
   app.add_option("--equal-bandwidth", f.equal_bandwidth,
                  "study instead: every estimator at so many rad/s, 1 to 200")
       ->type_name("W");
@@ -153,7 +132,7 @@ void add_study_flags(CLI::App& app, StudyFlags& f) {
 bool wants_study(const StudyFlags& f) {
   if (f.studies() == 0 && f.out) {
     throw std::invalid_argument(
-        "--out goes with --seeds, --reliability, --equal-bandwidth or --pareto; the suite has "
+        "--out goes with --seeds, --equal-bandwidth or --pareto; the suite has "
         "--benchmark_out=FILE and --report FILE.html");
   }
   if (format_of(f) != TableFormat::kText && f.studies() > 1) {
@@ -164,7 +143,7 @@ bool wants_study(const StudyFlags& f) {
 }
 
 int run_study(const StudyFlags& f, const SuiteOptions& suite) {
-  const bool others = f.reliability || f.equal_bandwidth || f.pareto;
+  const bool others = f.equal_bandwidth || f.pareto;
   if (others && !suite.model_error.none()) {
     throw std::invalid_argument("a study brings its own model errors, or none: no --model_error");
   }
@@ -180,7 +159,6 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
   }
   AtomicFile file(f.out.value_or("-"));  // an unwritable path should not cost a run
   if (!f.seeds.empty()) file.write(run_seeds(f, suite));
-  if (f.reliability) file.write(run_reliability(f, suite.sensors));
   if (f.equal_bandwidth) file.write(run_equal_bandwidth(f));
   if (f.pareto) file.write(run_pareto(f));
   file.commit();

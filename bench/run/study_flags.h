@@ -18,10 +18,10 @@ namespace tauext {
 
 /// What is studied, of which robot, and where it goes.
 struct StudyFlags {
-  std::vector<std::uint64_t> seeds;  ///< of the suite's scores over seeds; none: not asked for
-  std::string against = "mo2";       ///< with whom they are compared
-  bool reliability = false, pareto = false;  ///< whether that study is asked for
-  std::optional<double> equal_bandwidth;     ///< [rad/s]
+  std::vector<std::uint64_t> seeds;       ///< of the suite's scores over seeds; none: not asked for
+  std::string against = "mo2";            ///< with whom they are compared
+  bool pareto = false;                    ///< whether that study is asked for
+  std::optional<double> equal_bandwidth;  ///< [rad/s]
   /// By which robot() finds it; else the roster's first one that can be studied so.
   std::optional<std::string> robot;
   Selection selection;                ///< of seeds; its estimators also of the last two
@@ -30,9 +30,7 @@ struct StudyFlags {
   std::optional<std::string> out;     ///< file, else standard output
 
   /// How many are asked for.
-  int studies() const {
-    return reliability + pareto + equal_bandwidth.has_value() + !seeds.empty();
-  }
+  int studies() const { return pareto + equal_bandwidth.has_value() + !seeds.empty(); }
 };
 
 /// Numbers and ranges apart by commas, like 1-30,40.
@@ -40,7 +38,7 @@ struct StudyFlags {
 /// @throws std::invalid_argument for anything else, and for more than 10,000 of them
 std::vector<std::uint64_t> seeds_of(const std::string& text, const char* flag = "--seeds");
 
-/// Adds --reliability, --equal-bandwidth, --pareto and --out of these, and --format of all tables.
+/// Adds --equal-bandwidth, --pareto and --out of these, and --format of all tables.
 void add_study_flags(CLI::App& app, StudyFlags& flags);
 
 /// Whether a study was asked for.
@@ -49,8 +47,7 @@ void add_study_flags(CLI::App& app, StudyFlags& flags);
 bool wants_study(const StudyFlags& flags);
 
 /// Runs what was asked for, and writes it; the file appears whole or not at all.
-/// @param suite its sensors are those of --reliability; ideal ones stand for a good and a poor
-/// encoder
+/// @param suite of --seeds
 /// @returns an ExitCode
 /// @throws std::invalid_argument for sensors, a seed and model errors that a study would not use
 int run_study(const StudyFlags& flags, const SuiteOptions& suite);

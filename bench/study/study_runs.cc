@@ -17,7 +17,6 @@
 #include "mjcf/plant/model_error.h"
 #include "mjcf/record_plain.h"
 #include "mjcf/scenarios/generic.h"
-#include "mjcf/scenarios/testbed1.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext::study {
@@ -90,13 +89,6 @@ StudyRuns runs_of_wallmobot3() {
   return r;
 }
 
-StudyRuns runs_of_testbed1() {
-  StudyRuns r{.robot = "testbed1"};
-  r.blow = blow_on_testbed1;
-  r.manual = manual_of_testbed1;
-  return r;
-}
-
 // of any arm
 StudyRuns runs_of_any(const Robot& r) {
   StudyRuns runs{.robot = r.name()};
@@ -145,29 +137,6 @@ const StudyRuns& of_any(std::string_view name) {
                             : all.emplace(name, runs_of_any(robot(name))).first->second;
 }
 
-// the runs of a robot for which has(runs) holds; of the first one for ""
-const StudyRuns& find(const char* study, std::string_view name, bool (*has)(const StudyRuns&)) {
-  static const std::vector<StudyRuns> all = {runs_of_wallmobot3(), runs_of_testbed1()};
-  if (!name.empty()) robot(name);  // an unknown one is no robot without runs
-  std::vector<std::string> with;
-  const char* files = "";
-  bool own = name.empty();
-  for (const StudyRuns& r : all) {
-    own = own || r.robot == name;
-    if (!has(r)) continue;
-    if (name.empty() || r.robot == name) return r;
-    with.push_back(r.robot);
-  }
-  if (!own && has(of_any(name))) return of_any(name);
-  for (const std::string_view other : kRobotsByMjcf) {
-    if (!has(of_any(other))) continue;
-    with.emplace_back(other);
-    files = ", and for robots from files";
-  }
-  throw std::invalid_argument(fmt::format("the {} study has no runs for {}; it has them for {}{}",
-                                          study, name, fmt::join(with, ", "), files));
-}
-
 // what has the name of a known one; its keys are checked by building it
 template <class Build>
 std::vector<std::string> chosen(const char* what, const std::vector<std::string>& asked,
@@ -207,12 +176,15 @@ PlantKey plant_of(const Condition& c) {
   return {c.panel, c.degradation.model_error, c.degradation.drives, c.motions};
 }
 
-const StudyRuns& touched_runs(std::string_view robot) {
-  return find("detection", robot, [](const StudyRuns& r) { return bool(r.touched); });
-}
-
-const StudyRuns& drawn_runs(std::string_view robot) {
-  return find("reliability", robot, [](const StudyRuns& r) { return bool(r.blow); });
+const StudyRuns& touched_runs(std::string_view name) {
+  static const StudyRuns first = runs_of_wallmobot3();
+  if (name.empty() || name == first.robot) return first;
+  robot(name);  // an unknown one is no robot without runs
+  if (name != "testbed1") return of_any(name);
+  throw std::invalid_argument(
+      fmt::format("the detection study has no runs for {}; it has them for {}, {}, and for robots "
+                  "from files",
+                  name, first.robot, fmt::join(kRobotsByMjcf, ", ")));
 }
 
 const Condition& condition(const StudyRuns& runs, const std::string& name) {

@@ -75,20 +75,12 @@ struct StudyRuns {
   std::function<std::vector<Touch>(TouchKind, std::uint64_t seed)> touches;  ///< those in that run
   /// Where regions of a body touch it; made when it is first asked for, and may throw.
   std::function<const TouchPoints&()> points;
-
-  // of the reliability study
-  std::function<Scenario(std::uint64_t seed)> blow;    ///< a run with one blow
-  std::function<Scenario(std::uint64_t seed)> manual;  ///< a human's hand moves the arm
 };
 
 /// The runs of a robot for the detection study; "" stands for the first robot that has some.
 /// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those
 /// with
 const StudyRuns& touched_runs(std::string_view robot);
-
-/// The runs of a robot for the reliability study; "" stands for the first robot that has some.
-/// @throws std::invalid_argument as touched_runs does
-const StudyRuns& drawn_runs(std::string_view robot);
 
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Condition& condition(const StudyRuns& runs, const std::string& name);

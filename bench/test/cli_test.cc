@@ -57,7 +57,7 @@ TEST_F(Programs, UnknownNamesListTheKnownOnesAndExitWith2) {
 TEST_F(Programs, WrongFlagsExitWith2) {
   for (const std::string command :
        {"tauext-bench --nonsense", "tauext-calibrate", "tauext-bench --help > /dev/full",
-        "tauext-bench --reliability --benchmark_out=r.json", "tauext-bench --benchmark_nonsense=1",
+        "tauext-bench --pareto --benchmark_out=r.json", "tauext-bench --benchmark_nonsense=1",
         "tauext-record", "tauext-replay", "tauext-bench --benchmark_format=csv",
         "tauext-bench --benchmark_out_format=csv",
         "tauext-bench --benchmark_repetitions=0 --benchmark_filter=free/zero",
@@ -84,7 +84,6 @@ TEST_F(Programs, WhatAStudyOrALogCannotTakeIsRefused) {
   write("log.csv", "t,q1,q2,q3,qd1,qd2,qd3,tau1,tau2,tau3\n0,0,0,0,0,0,0,0,0,0\n");
   for (const char* command :
        {"tauext-bench --pareto --drives stiffness=200",
-        "tauext-bench --reliability --degrade light",
         "tauext-score --log log.csv --robot wallmobot3 --estimator mo1 --degrade hard",
         "tauext-tune --log log.csv --test_log log2.csv --robot wallmobot3 --estimator mo1 --tune "
         "bandwidth --kp 9"}) {
@@ -236,7 +235,6 @@ TEST_F(Programs, AFlagOfAnotherModeIsRefused) {
       {"tauext-bench --seeds 1-3,2", "one is there twice"},
       {"tauext-bench --seeds 5-1", "'5-1' ends before it begins; 1-5 has these seeds"},
       {"tauext-bench --against mo1", "--against goes with --seeds"},
-      {"tauext-bench --reliability --estimator ekf", "--estimator goes with"},
       {"tauext-bench --pareto --seed 3", "bring their own sensors"},
       {"tauext-detect --calibrate x.json --conditions known_0", "--conditions goes with a study"},
       {"tauext-detect --thresholds x.json --margin 2", "--margin goes with training"},
@@ -287,7 +285,7 @@ TEST_F(Programs, StudiesRefuseFlagsOfTheSuiteAndSayWhatARobotLacks) {
   EXPECT_TRUE(json.says("a study has --out and --format")) << json.text;
   for (const std::string flags :
        {"--format xml", "--out x.txt", "--pareto --format xml",
-        "--pareto --reliability --format json", "--pareto --out /nowhere/p.txt",
+        "--pareto --equal-bandwidth 30 --format json", "--pareto --out /nowhere/p.txt",
         "--pareto --model_error mass=1.1"}) {
     EXPECT_EQ(run("tauext-bench " + flags).code, 2) << flags;
   }

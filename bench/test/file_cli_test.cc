@@ -103,13 +103,6 @@ TEST_F(FilePrograms, RecordsAndReplaysIt) {
   const Outcome replay =
       run("tauext-replay x.csv --robot " + kArm6 + " --estimator truth,mo2,ekf --out e.csv");
   EXPECT_EQ(replay.code, 0) << replay.text;
-  const Outcome commands =
-      run("tauext-bench --commands arm7/contact/mo2+pan_tompkins --robot " + kArm7);
-  EXPECT_TRUE(commands.says("arm7.xml:lock=finger.*' --scenario contact")) << commands.text;
-  EXPECT_TRUE(commands.says("--stop mo2+pan_tompkins")) << commands.text;
-  const std::size_t begin = commands.text.find("tauext-record ");
-  ASSERT_NE(begin, std::string::npos) << commands.text;
-  EXPECT_EQ(run(commands.text.substr(begin, commands.text.find('\n', begin) - begin)).code, 0);
 }
 
 // whoever reads a recording multiplies its torques by torque_gain

@@ -119,31 +119,15 @@ std::string metrics_of(const Golden& head, const Golden& committed) {
   return table.format();
 }
 
-// the gate knows no scenario: what a run needs is said by the program that has it
-std::string commands_of(const std::string& bench, const std::string& entry, const Golden& head) {
-  const std::string seed = head.seeds.front().substr(head.seeds.front().rfind(' ') + 1);
-  std::string sensors = head.header.at("sensors");
-  std::replace(sensors.begin(), sensors.end(), ' ', ',');
-  std::vector<std::string> argv = {bench, "--commands", entry, "--seed", seed};
-  if (!sensors.empty()) argv.insert(argv.end(), {"--sensors", sensors});
-  std::string out = fmt::format("The metrics of one seed:\n  {}\nIts run, and its estimates:\n{}",
-                                score_command(bench, entry, seed), run_child(argv));
-  if (std::filesystem::path(bench).filename() != "tauext-bench") {
-    out +=
-        "tauext-record and tauext-replay know tauext's own estimators alone. For an estimator of "
-        "yours "
-        "use the first command.\n";
-  }
-  return out;
-}
-
 std::string explain_entry(const GateOptions& o, const std::string& entry) {
   const Golden head =
       parse_golden(run_bench(o.bench, exactly(entry)), "what " + o.bench + " wrote");
   const std::string path = golden_path(o.baselines);
   const Golden committed = std::filesystem::exists(path) ? read_golden(path) : Golden{};
-  return fmt::format("{}, sensors {}\n{}\n{}", entry, head.header.at("sensors"),
-                     metrics_of(head, committed), commands_of(o.bench, entry, head));
+  const std::string& first = head.seeds.front();
+  return fmt::format("{}, sensors {}\n{}\nThe metrics of one seed:\n  {}\n", entry,
+                     head.header.at("sensors"), metrics_of(head, committed),
+                     score_command(o.bench, entry, first.substr(first.rfind(' ') + 1)));
 }
 
 }  // namespace

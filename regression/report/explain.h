@@ -11,7 +11,7 @@ namespace tauext::gate {
 
 /// Of a kernel <robot>/<name>: its time, its instructions and the functions that execute them,
 /// beside base's if there is one. Of an entry <robot>/<scenario>/<estimator>: every metric and seed
-/// beside the committed ones, and the commands that make its run.
+/// beside the committed ones, and the command that scores it at one seed.
 /// @throws std::invalid_argument if nothing has that name
 std::string explain(const GateOptions& options, const std::string& subject);
 
