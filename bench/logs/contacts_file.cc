@@ -88,6 +88,10 @@ ContactsFile::ContactsFile(const std::string& path, const std::vector<std::strin
   constexpr std::size_t kMost = 1 << 26;  // [bytes]
   read(read_whole(path, kMost));
   for (OfLog& log : logs_) {
+    if (log.free > 0 && !log.contacts.empty())
+      fail(log.free, fmt::format("says that nothing touches the arm in '{}', and line {} has a "
+                                 "contact of it",
+                                 printable_name(log.name), log.contacts.front().line));
     require_apart(log);
     if (log.named) continue;
     throw std::invalid_argument(fmt::format(
@@ -135,12 +139,11 @@ void ContactsFile::read(const std::string& text) {
       return at[i] < std::ssize(fields) ? fields[static_cast<std::size_t>(at[i])] : std::string();
     };
     OfLog* const log = find(field(0), line);
-    if (log != nullptr) {
-      log->named = true;
-    } else if (std::find(others.begin(), others.end(), field(0)) == others.end()) {
+    if (log == nullptr && std::find(others.begin(), others.end(), field(0)) == others.end())
       others.push_back(field(0));
-    }
-    if (field(1).empty() && field(2).empty()) continue;
+    const bool is_free = field(1).empty() && field(2).empty();
+    if (log != nullptr) log->named = true, log->free = is_free ? line : log->free;
+    if (is_free) continue;
     LabelledContact c{.line = line};
     if (!is_number(field(1), c.from) || !is_number(field(2), c.to))
       fail(line, fmt::format("'{}' to '{}' are no times [s]", printable_name(field(1)),

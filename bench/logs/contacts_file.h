@@ -39,6 +39,7 @@ class ContactsFile {
     std::string log, canonical, name;  // its path as it was given, the only one, and its end
     std::vector<LabelledContact> contacts;
     bool named = false;
+    long free = 0;  // line that says that nothing touches the arm in it; 0: none does
   };
 
   [[noreturn]] void fail(long line, const std::string& what) const;

@@ -95,7 +95,7 @@ class UnitDoubt {
           : sum.alike() < kForeign
               ? fmt::format("q{} moves otherwise than qd{} says, as if that were another joint's",
                             j + 1, j + 1)
-              : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, sum.xy / sum.xx,
+              : fmt::format("q{} moves {:.3g} times as fast as qd{} says", j + 1, sum.yy / sum.xy,
                             j + 1);
       say(fmt::format("{}: {}: {}", path, what, remedy));
       break;
@@ -130,12 +130,16 @@ class UnitDoubt {
   bool is_wrong(std::size_t j) const {
     constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
     constexpr double kNudged = 0.02;  // [rad], more than it creeps in steps of its encoder
+    constexpr double kSame = 0.99, kMostSlip = 0.05;  // [1] of correlation, of the speed
     const Joint& sum = joints_[j];
     const auto at = static_cast<Eigen::Index>(j);
     const double range = most_[at] - least_[at];
     if (rests(sum)) return range > kMoved;
     if (std::max(range, sum.path) < kNudged) return false;
     if (range > kMoved && sum.alike() < kForeign) return true;
+    // another rate, or unit: what q says is exact beside what qd says
+    if (range > kMoved && sum.alike() > kSame && std::abs(sum.xy / sum.yy - 1) > kMostSlip)
+      return true;
     return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
 
@@ -280,7 +284,13 @@ bool LogReader::contradicts() const {
 bool LogReader::next(RecordedSample& s) {
   if (!impl_->source->next(s)) {
     impl_->doubt->finish();
-    if (impl_->labels) impl_->labels->finish();
+    if (!impl_->labels) return false;
+    impl_->labels->finish();
+    if (impl_->rows && impl_->rows->skipped().set_back > 0)
+      throw std::invalid_argument(fmt::format(
+          "{}: its clock was set back, so that a time in {} may be two in it: save what is before "
+          "and what is after as two logs",
+          impl_->path, impl_->labels_file->path()));
     return false;
   }
   impl_->label(s);
@@ -299,7 +309,9 @@ std::int64_t LogReader::skipped() const {
 
 void LogReader::report() const {
   const Impl& i = *impl_;
-  std::string remedy = "are t, q and qd in s, rad and rad/s, with the same sign?";
+  std::string remedy =
+      "are t, q and qd in s, rad and rad/s, with the same sign (and `rate` right, if t is "
+      "counted)?";
   if (i.rows) {
     report_skipped(i.rows->skipped(), i.path);
     if (i.mapped || regularity().gaps > 0) say(i.path + ": " + regularity().in_words());

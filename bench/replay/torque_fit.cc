@@ -30,6 +30,7 @@ constexpr double kLight = 0.6;        // [1] of the model's torque, less than a 
 constexpr std::size_t kMost = 512;    // windows, from all of the recording
 constexpr double kLongRecording = 5;  // [s] which is judged by itself
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 double mean_square(const VectorXd& y) {
@@ -229,16 +230,29 @@ std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
       listed(light), fmt::join(factors, ", "));
 }
 
-// of joints that carry nothing: rotors and friction that a file lacks make more torque, not less
-std::string TorqueFit::by_weak_drive() const {
+// of joints that carry nothing: rotors and friction that a file lacks make more torque, not less,
+// and no rotor feels in which pose the others are
+std::string TorqueFit::by_drive_unit() const {
+  constexpr double kStrong = 1.8, kMaxOfRotor = 0.05;  // [1] of the model, of what a rotor leaves
   const Windows windows = thinned(maker_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
     if (slow(j).size() >= kMinWindows) continue;
     const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
-                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; }),
+                   acceleration = each(windows, [j, this](const ArmWindow&w) {
+                     const Eigen::Index last = w.motion.cols() - 1;
+                     return (w.motion(1 + n_ + j, last) - w.motion(1 + n_ + j, 0)) /
+                            (w.motion(0, last) - w.motion(0, 0));
+                   });
     const double s = factor(windows, j, tau), residual = misfit(windows, j, tau - model);
-    if (s < 0.7 && s > 0 && residual > kMinMisfit * mean_square(model) &&
-        misfit(windows, j, tau / s - model) * s * s < kMaxRatio * residual)
+    if (!(s > 0) || (s > 0.7 && s < kStrong) || residual < kMinMisfit * misfit(windows, j, model))
+      continue;
+    MatrixXd others(tau.size(), 2);  // a rotor, and an offset
+    others << acceleration, VectorXd::Ones(tau.size());
+    const double by_factor = s * s * misfit(windows, j, tau / s - model),
+                 by_rotor = misfit(windows, j, tau - model, others);
+    if (by_factor < kMaxRatio * residual &&
+        (s < 1 || (by_factor < kMaxOfRotor * by_rotor && by_rotor > kMinVariation * residual)))
       return fmt::format(
           "tau of joint {} is {:.3g} times what its motion takes: is it in another unit? `unit` "
           "and "
@@ -246,6 +260,27 @@ std::string TorqueFit::by_weak_drive() const {
           j + 1, s);
   }
   return "";
+}
+
+// of a file in which nothing weighs anything
+std::string TorqueFit::by_gravity_of_file() const {
+  if (!arm_.gravity.isZero(0)) return "";
+  ArmTree heavy = arm_;
+  heavy.gravity = Vec<3>(0, 0, -kGravity);
+  const WindowMaker maker(heavy, false);
+  const Windows windows = thinned(maker_.windows(), kMost);
+  double without = 0, with = 0;
+  for (int j = 0; j < n_; ++j) {
+    without += misfit(windows, j,
+                      each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; }));
+    with += misfit(windows, j, each(windows, [j, &maker](const ArmWindow& w) {
+                     return w.tau[j] - maker.window(w.motion, w.tau).model[j];
+                   }));
+  }
+  if (!(with < kMaxRatio * without)) return "";
+  return "tau has gravity in it, which the robot's file switches off: take gravity=\"0 0 0\", or "
+         "the "
+         "flag, out of its <option>";
 }
 
 // two channels that are one
@@ -286,6 +321,7 @@ TorqueFit::Judgement TorqueFit::judge() const {
   if (!is_long_enough()) return {};
   if (std::string why = by_rest(); !why.empty()) return {why, true};
   if (std::string why = by_copies(); !why.empty()) return {why, true};
+  if (std::string why = by_gravity_of_file(); !why.empty()) return {why, true};
   if (gravity_added_)
     if (std::string why = by_added_gravity(); !why.empty())
       return {why + ". Or it carries a load", false};
@@ -299,7 +335,7 @@ TorqueFit::Judgement TorqueFit::judge() const {
   for (const std::string& why : {gravity.words, reading.words})
     if (!why.empty()) return {why + or_else, false};
   if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
-  for (std::string why : {by_another_arm(joints), by_weak_drive()})
+  for (std::string why : {by_another_arm(joints), by_drive_unit()})
     if (!why.empty()) return {why, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;

@@ -73,7 +73,8 @@ class TorqueFit {
   static std::string by_unit(const std::vector<SlowJoint>& joints);
   static std::string by_another_arm(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
-  std::string by_weak_drive() const;
+  std::string by_drive_unit() const;
+  std::string by_gravity_of_file() const;
   std::string by_copies() const;
   std::string by_rest() const;
 

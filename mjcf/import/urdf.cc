@@ -64,6 +64,11 @@ Vector3d vector(const XMLElement* e, const char* attribute, const Vector3d& othe
 // of <origin>: about the fixed axes x, y, z in turn
 Matrix3d rotation(const XMLElement* origin) {
   const Vector3d rpy = vector(origin, "rpy", Vector3d::Zero());
+  if (rpy.cwiseAbs().maxCoeff() > 4 * M_PI)
+    fail(*origin,
+         "rpy is {:g} {:g} {:g}, more than two turns: it is in rad, and these may be "
+         "degrees",
+         rpy[0], rpy[1], rpy[2]);
   return (Eigen::AngleAxisd(rpy[2], Vector3d::UnitZ()) *
           Eigen::AngleAxisd(rpy[1], Vector3d::UnitY()) *
           Eigen::AngleAxisd(rpy[0], Vector3d::UnitX()))
@@ -428,6 +433,13 @@ class Urdf {
         fail(*dynamics, "joint '{}': its {} is {:g}, and must be 0 or more", name, term, x);
       set(out, attribute, {x});
     };
+    problems_.attempt([&] {
+      if (const double k = number(dynamics, "spring_stiffness", 0); k != 0)
+        fail(*dynamics,
+             "joint '{}' has a spring (spring_stiffness {:g}), which is not known: take "
+             "it out of the file if the arm has none",
+             name, k);
+    });
     problems_.attempt([&] { copy("damping", "damping"); });
     problems_.attempt([&] { copy("friction", "frictionloss"); });
     problems_.attempt([&] { copy("armature", "armature"); });  // URDF itself has no word for it

@@ -24,6 +24,7 @@ struct SkippedRows {
   int not_a_number = 0;            ///< a field could not be read as a number
   int time_order = 0;              ///< t was not the next one
   int alone = 0;                   ///< no row to join was near enough in time
+  int set_back = 0;                ///< of the rows used, those where a clock was set back
   std::vector<std::string> first;  ///< "line 7: ...", of the first few
   std::vector<std::string> notes;  ///< the same of rows that were used, but not as they are
 
@@ -36,9 +37,10 @@ struct SkippedRows {
   }
 };
 
-/// Keeps the rows whose time is the next one, and those of a new clock. Where that was set back,
-/// time goes on a second later, since that of a trace increases. A row comes out when those behind
-/// it cannot change it any more.
+/// Keeps the rows whose time is the next one, and those of a new clock. Where that was set back by
+/// a second or more, time goes on a second later, since that of a trace increases; by less, rows
+/// have lost their order, or come twice, and those that are no later than the last are left out. A
+/// row comes out when those behind it cannot change it any more.
 class TimedRows {
  public:
   /// @param t the column of the time
@@ -82,6 +84,7 @@ class TimedRows {
  private:
   using Row = std::pair<std::vector<double>, long>;  // with its line
 
+  static constexpr double kDisorder = 1;     // [s]
   static constexpr std::size_t kUnsure = 3;  // the last two may be left out, beside the one before
 
   void skip(long line) {
@@ -115,6 +118,8 @@ class TimedRows {
       return;
     }
     const double last = kept_.back().first[t_], shift = last + 1 - begin;
+    if (last - shift_ - begin < kDisorder) return;
+    ++skipped_.set_back;
     skipped_.notes.push_back(fmt::format(
         "line {}: its clock was set back by {:g} s; {:g} s are added to the times from there on",
         waiting_.front().second, last - shift_ - begin, shift));

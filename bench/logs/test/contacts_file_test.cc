@@ -136,6 +136,8 @@ TEST_F(Contacts, ThatAreWrongAreErrorsOfTheirLine) {
             "line 4: 21.5 to 23 s overlaps line 2, 21 to 22 s");
   EXPECT_EQ(error("a.csv,21,22,\na.csv,21,22,\n"),
             "line 3: 21 to 22 s overlaps line 2, 21 to 22 s");
+  EXPECT_EQ(error("a.csv,21,22,\na.csv,,,\n"),
+            "line 3: says that nothing touches the arm in 'a.csv', and line 2 has a contact of it");
   EXPECT_EQ(error("a.csv,21,22 s,\n"), "line 2: '21' to '22 s' are no times [s]");
   EXPECT_EQ(error("a.csv,21,,\n"), "line 2: '21' to '' are no times [s]");
   EXPECT_EQ(error("a.csv,21,nan,\n"), "line 2: '21' to 'nan' are no times [s]");

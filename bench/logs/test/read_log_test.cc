@@ -48,6 +48,9 @@ TEST(ReadAnyLog, DoubtsUnitsThatCanHardlyBe) {
             std::string::npos);
   EXPECT_NE(said_of(1, kDegrees, 1).find("0.0175 times as fast"), std::string::npos);
   EXPECT_NE(said_of(1, 1, 1000).find("0.001 times as fast"), std::string::npos);
+  EXPECT_NE(said_of(1, 1, 1.2).find("q1 moves 0.833 times as fast as qd1 says"), std::string::npos);
+  EXPECT_NE(said_of(1, 1 / 1.1, 1).find("1.1 times as fast"), std::string::npos);
+  EXPECT_EQ(said_of(1, 1.02, 1), "");
   EXPECT_NE(said_of(1, 1e-3, 1000).find("the samples are 1 apart on average"), std::string::npos);
   EXPECT_NE(said_of(kDegrees, kDegrees, 1).find("q1 reaches 28.6, more than two turns"),
             std::string::npos);

@@ -245,6 +245,32 @@ TEST_F(TorqueFits, AFactorOfOneJointAloneIsNoLoads) {
   }
 }
 
+// the first joint carries nothing, and what turns with it is another thing in each pose
+TEST_F(TorqueFits, AFactorOfOneJointAloneIsNoRotor) {
+  const Robot robot = arm6();
+  for (const double factor : {2., 10.}) {
+    Trace log = robot.run("in_motion");
+    log.tau.row(0) *= factor;
+    expect(robot.words(log), fmt::format("tau of joint 1 is {:g}", factor).substr(0, 20));
+  }
+  Trace log = robot.run("in_motion", 0);  // with a rotor of 5 kg m^2 that the file lacks
+  for (int k = 0; k + 1 < log.size(); ++k)
+    log.tau(0, k) += 5 * (log.qd(0, k + 1) - log.qd(0, k)) / 1e-3;
+  EXPECT_EQ(robot.words(log), "");
+}
+
+TEST_F(TorqueFits, GravityThatTheFileSwitchesOffIsNamed) {
+  const Robot robot = arm6();
+  ArmTree without = robot.arm;
+  without.gravity.setZero();
+  const Trace log = robot.run("in_motion");
+  expect(Robot::fit_of(without, log).contradiction(), "which the robot's file switches off");
+  Trace free = log;
+  const auto gravity = gravity_of(robot.arm);
+  for (int k = 0; k < free.size(); ++k) free.tau.col(k) -= gravity(free.q.col(k));
+  EXPECT_EQ(Robot::words_of(without, free), "");
+}
+
 // whose windows have 5 to 10 steps, and recordings of other rates beside it
 TEST_F(TorqueFits, JitterAndOtherRatesAreNothing) {
   const Robot robot = arm6();

@@ -75,8 +75,11 @@ double radius_of(const Moving& part) {
 
 std::string doubts_about(const mjModel& m) {
   constexpr double kSmall = 0.25;  // [m] up to it a wheel may be larger than its arm
-  constexpr double kGold = 19300;  // [kg/m^3]
-  constexpr double kApart = 0.01;  // [m] wheels on a base, one beside the other, are no arm
+  constexpr double kDense = 2000;  // [kg/m^3] of a cube as wide as the arm reaches
+  constexpr double kFar = 3;  // [1] of the way through the joints, from a joint to a center of mass
+  constexpr double kLongest = 20;         // [m]
+  constexpr double kMostTurn = 8 * M_PI;  // [rad]
+  constexpr double kApart = 0.01;         // [m] wheels on a base, one beside the other, are no arm
   if (m.nv < 3) return "";
   const std::vector<Moving> parts = moving_parts(m);
   double mass = 0, reach = 0, way = 0;
@@ -89,11 +92,22 @@ std::string doubts_about(const mjModel& m) {
   std::vector<std::string> all;
   for (int b = 1; b < m.nbody; ++b) {
     const Moving& p = parts[static_cast<std::size_t>(b)];
+    if (const double far = (p.center() - p.anchor).norm();
+        p.mass > 0 && far > kFar * std::max(way, kSmall))
+      all.push_back(fmt::format("the center of mass of '{}' is {:.2g} m from its joint",
+                                element_name(m, mjOBJ_BODY, b), far));
     if (const double radius = radius_of(p); radius > std::max(reach, kSmall))
       all.push_back(fmt::format("'{}' of {:.3g} kg has the inertia of something {:.2g} m wide",
                                 element_name(m, mjOBJ_BODY, b), p.mass, 2 * radius));
   }
-  if (mass > kGold * reach * reach * reach) all.push_back(fmt::format("it weighs {:.3g} kg", mass));
+  if (mass > kDense * reach * reach * reach)
+    all.push_back(fmt::format("it weighs {:.3g} kg", mass));
+  if (reach > kLongest) all.emplace_back("that is long");
+  for (int j = 0; j < m.njnt; ++j)
+    if (const mjtNum* const range = m.jnt_range + 2 * j;
+        m.jnt_type[j] == mjJNT_HINGE && m.jnt_limited[j] != 0 && range[1] - range[0] > kMostTurn)
+      all.push_back(fmt::format("joint '{}' goes from {:.4g} to {:.4g} rad, or are these degrees",
+                                element_name(m, mjOBJ_JOINT, j), range[0], range[1]));
   if (all.empty()) return "";
   return one_line(fmt::format("doubtful, as the arm reaches {:.2g} m: {}; such numbers stand for "
                               "none, or are in g and mm: torques of motions will be wrong",

@@ -65,6 +65,11 @@ class MapReader {
       fail(all, "it has `parts`, and a `file` of a quantity: a recording has one or the other");
     if (map_.rate_ > 0 && map_.join_ > 0)
       fail(all, "it has a `rate`, and `join` is for rows with a time");
+    for (const char* const q : {"t", "q"})
+      if (!map_.wanted_.contains(q) && (map_.rate_ == 0 || *q == 'q'))
+        fail(all, fmt::format("nothing says which columns are [{}]: name them, or a `preset` above "
+                              "all tables that has what they do not name, like preset = \"tauext\"",
+                              q));
   }
 
   void read(const detail::ColumnPreset& p) {
@@ -184,7 +189,9 @@ class MapReader {
     written_.emplace(name);
     for (const auto& [key, value] : table) read_key(*known, key.str(), value, w);
     if (w.expression.empty() && w.names.empty() && w.numbers.empty())
-      fail(table, fmt::format("[{}] names no columns", name));
+      fail(table, fmt::format("[{}] names no columns, and no preset lends it any, as preset = "
+                              "\"joint_state\" above all tables does for a bag",
+                              name));
   }
 
   static bool is_torque(std::string_view name) {

@@ -55,6 +55,8 @@ constexpr UnsupportedFormat kUnsupported[] = {
      "in Python, f = h5py.File('{0}') and numpy.savez('run.npz', t=f['t'], q=f['q'], ..)"},
     {"PAR1", "Parquet", "in Python, pandas.read_parquet('{0}').to_csv('run.csv', index=False)"},
     {"%PDF", "a PDF", "export a table as CSV"},
+    {"\xFF\xFE", "text in UTF-16", "iconv -f UTF-16 -t UTF-8 {0} > run.csv"},
+    {"\xFE\xFF", "text in UTF-16", "iconv -f UTF-16 -t UTF-8 {0} > run.csv"},
     {"\xD0\xCF\x11\xE0", "a workbook of old Excel", "save the sheet as CSV"},
 };
 

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "mjcf/trace/read/bag/bag_messages.h"
-#include "mjcf/trace/read/byte_file.h"
+#include "mjcf/trace/read/text/byte_file.h"
 
 namespace tauext {
 

@@ -20,7 +20,7 @@
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/bag/mcap_messages.h"
 #include "mjcf/trace/read/bag/sqlite_messages.h"
-#include "mjcf/trace/read/byte_file.h"
+#include "mjcf/trace/read/text/byte_file.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {

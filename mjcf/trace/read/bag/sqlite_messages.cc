@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/byte_file.h"
+#include "mjcf/trace/read/text/byte_file.h"
 
 namespace tauext {
 

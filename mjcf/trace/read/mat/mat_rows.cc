@@ -23,8 +23,8 @@
 
 #include "mjcf/trace/child/confined.h"
 #include "mjcf/trace/printable.h"
-#include "mjcf/trace/read/byte_file.h"
 #include "mjcf/trace/read/numpy/npy_header.h"
+#include "mjcf/trace/read/text/byte_file.h"
 
 namespace tauext {
 

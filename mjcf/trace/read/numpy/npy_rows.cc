@@ -83,7 +83,7 @@ class Zip {
       const char* const text = archive_entry_pathname(entry);
       const std::string name = text == nullptr ? "" : text;
       if (!name.ends_with(kEnd))
-        refuse(path_, fmt::format("has '{}', which is no array: numpy.savez writes .npy alone",
+        refuse(path_, fmt::format("has '{}', which is no array of NumPy: unzip it first",
                                   printable_name(name)));
       const std::string array = name.substr(0, name.size() - kEnd.size());
       found(array, bytes_of(fmt::format("{}: array '{}'", path_, printable_name(array))));
@@ -164,10 +164,11 @@ void NpyRows::add(const std::string& what, std::string name, std::string bytes) 
   Array a{std::move(name), std::move(bytes), static_cast<std::size_t>(h.shape[0]), {}};
   const std::size_t along = h.fortran_order ? a.rows * h.item_size : h.item_size,
                     down = h.fortran_order ? h.item_size : width * h.item_size;
+  const bool is_time = a.name == "t" && width == 1;  // of shape (n, 1), too
   for (const NpyField& f : h.fields) {
     if (!f.is_number) continue;
     const std::string& begin = h.structured ? f.name : a.name;
-    const bool numbered = h.structured ? f.count > 1 : h.shape.size() == 2;
+    const bool numbered = h.structured ? f.count > 1 : h.shape.size() == 2 && !is_time;
     const std::size_t count = h.structured ? f.count : width;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t size = static_cast<std::size_t>(f.number.size);

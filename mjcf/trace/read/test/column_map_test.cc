@@ -220,6 +220,18 @@ TEST_F(Columns, MayHaveTheirNamesInQuotes) {
   EXPECT_EQ(t.tau(0, 1), 4);
 }
 
+TEST_F(Columns, HaveTheirNamesBelowComments) {
+  const std::string rows = "0,1,2,3\n1,3,2,4\n";
+  for (const std::string head :
+       {"# made by hand, today\n\n% twice\nt,q1,qd1,tau1\n", "# noted\n#t,q1,qd1,tau1\n",
+        "% t,q1,qd1,tau1\n", "sep=,\nt,q1,qd1,tau1\n"}) {
+    const Trace t = read(head + rows, "tauext");
+    ASSERT_EQ(t.size(), 2) << head;
+    EXPECT_EQ(t.tau(0, 1), 4) << head;
+    EXPECT_EQ(skipped_.total(), 0) << head;
+  }
+}
+
 TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
   const std::string log = "t,q1,qd1,tau1\n0,1,2,3\n1,1,2,3\n";
   read_by(log, "preset = 'tauext'\n[contact]\ncolumns = 'touched'\n");
@@ -237,6 +249,10 @@ TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("\n[velocity]\ncolumns='v'"), "line 2: unknown quantity 'velocity'");
   expect_says(error_of_map("[q]\ncolumns='('"), "line 2: columns '(': ");
   expect_says(error_of_map("[q]\nunit='deg'"), "line 1: [q] names no columns");
+  expect_says(error_of_map("rate = 100\n[tau]\ncolumns=[1]"), "nothing says which columns are [q]");
+  expect_says(error_of_map("[q]\ncolumns=[1]\n[tau]\ncolumns=[2]"),
+              "nothing says which columns are [t]");
+  expect_says(error_of_map(""), "like preset = \"tauext\"");
   expect_says(error_of_map("[q]\ncolumns='q'\nunit='ms'"),
               "line 3: [q] cannot be in 'ms'; it may be in: rad deg m mm");
   expect_says(error_of_map("[q]\ncolumns=[0]"), "line 2: columns must be a number from 1");

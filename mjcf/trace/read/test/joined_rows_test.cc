@@ -193,7 +193,7 @@ TEST_F(Joined, AStrayTimeIsLeftOutAndANewClockIsNotJoinedToTheOld) {
   for (int k = 0; k < 50; ++k) add(8 + 0.01 * k, k);
   csv += "1e9,7,0,\n";
   for (int k = 50; k < 100; ++k) add(8 + 0.01 * k, k);
-  for (int k = 0; k < 50; ++k) add(8.9 + 0.01 * k, 100 + k);  // set back by 0.1 s
+  for (int k = 0; k < 50; ++k) add(7.8 + 0.01 * k, 100 + k);  // set back by 1.2 s
   const Trace t = read(csv, 0.004);
   EXPECT_EQ(t.size(), 150);
   EXPECT_EQ(t.q, t.tau);

@@ -175,7 +175,7 @@ TEST_F(Npz, ErrorsNameTheArray) {
   EXPECT_EQ(error_of_reading(zip({t, stored("\x1b[2J", "no array")})),
             "array '?[2J': begins as no NumPy array of version 1 to 3 does");
   EXPECT_EQ(error_of_reading(zip({{"t.txt", "0", 0, 0, 1}})),
-            "has 't.txt', which is no array: numpy.savez writes .npy alone");
+            "has 't.txt', which is no array of NumPy: unzip it first");
 }
 
 TEST_F(Npz, WhatADirectoryClaimsIsNotBelieved) {

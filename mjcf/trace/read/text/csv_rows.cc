@@ -56,6 +56,20 @@ bool is_hole(std::string_view s) {
   return std::find(std::begin(kHoles), std::end(kHoles), s) != std::end(kHoles);
 }
 
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%');
+}
+
+// whether it is a number of those who write a comma in it
+bool has_decimal_comma(std::string_view field) {
+  std::string text(field);
+  const std::size_t comma = text.find(',');
+  double value = 0;
+  if (comma == text.npos) return false;
+  text[comma] = '.';
+  return number_of(text, value);
+}
+
 // the one that the line has, of those that are usual
 char separator_of(std::string_view line) {
   for (const char c : {',', ';', '\t'}) {
@@ -122,15 +136,41 @@ bool CsvRows::take_field(std::string_view& rest, std::string_view& field) const 
   return true;
 }
 
-void CsvRows::read_header() {
-  std::string_view line;
-  do {
-    if (!next_line(line)) throw std::runtime_error(path_ + ": is empty");
+// that says something; Excel's sep=; says what is between fields
+std::string_view CsvRows::first_line() {
+  for (std::string_view line;;) {
+    if (!next_line(line))
+      throw std::runtime_error(path_ + (number_ == 0 ? ": is empty" : ": has no rows"));
     if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-  } while (trimmed(line).empty());
-  if (format_.separator == 0) format_.separator = separator_of(line);
-  std::string_view rest = trimmed(line);
-  if (format_.has_header && rest.starts_with('#')) rest = trimmed(rest.substr(1));
+    if (line.starts_with("sep=") && line.size() == 5) {
+      if (format_.separator == 0) format_.separator = line[4];
+    } else if (!trimmed(line).empty()) {
+      return line;
+    }
+  }
+}
+
+void CsvRows::unread(std::string_view line) {
+  begin_ = static_cast<std::size_t>(line.data() - buffer_.data());
+  --number_;
+}
+
+void CsvRows::read_header() {
+  std::string_view line = first_line();
+  std::string names(trimmed(line));
+  while (format_.has_header && is_comment(names)) {  // the last one before numbers has the names
+    const std::string_view more = first_line();
+    double value = 0;
+    std::string_view begin = trimmed(more);
+    if (number_of(begin.substr(0, begin.find_first_of(",; \t")), value)) {
+      unread(more);
+      names.erase(0, 1);
+      break;
+    }
+    names = begin;
+  }
+  if (format_.separator == 0) format_.separator = separator_of(names);
+  std::string_view rest = trimmed(names);
   std::map<std::string, int> times;
   std::string_view field;
   for (bool more = true; more;) {
@@ -146,9 +186,7 @@ void CsvRows::read_header() {
         "{}: begins with numbers: the first line must name the columns, like t,q1,qd1,tau1",
         path_));
   }
-  if (format_.has_header) return;
-  begin_ = static_cast<std::size_t>(line.data() - buffer_.data());  // it is a row, too
-  --number_;
+  if (!format_.has_header) unread(line);  // it is a row, too
 }
 
 void CsvRows::read_only(const std::vector<int>& wanted) {
@@ -170,8 +208,9 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
     if (format_.holes && is_hole(field)) {
       value = std::numeric_limits<double>::quiet_NaN();
     } else if (!number_of(field, value) && wrong.empty()) {
-      wrong = fmt::format("column '{}' is '{}', not a number", printable_name(columns_[fields]),
-                          printable_name(std::string(field)));
+      wrong = fmt::format("column '{}' is '{}', not a number{}", printable_name(columns_[fields]),
+                          printable_name(std::string(field)),
+                          has_decimal_comma(field) ? ": numbers have a decimal point here" : "");
     }
     if (!std::isfinite(value)) all_finite = false;
   }

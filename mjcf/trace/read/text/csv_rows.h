@@ -38,6 +38,8 @@ class CsvRows final : public RowSource {
  private:
   bool next_line(std::string_view& line);
   bool refill();
+  std::string_view first_line();
+  void unread(std::string_view line);
   void read_header();
   std::string parse(std::string_view line, std::vector<double>& row, SkippedRows& skipped) const;
   bool take_field(std::string_view& rest, std::string_view& field) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mjcf/trace/read/byte_file.h"
+#include "mjcf/trace/read/text/byte_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
