@@ -38,6 +38,7 @@ void add_history(CLI::App& app, HistoryFlags& f) {
   add("history", f.file, "as append writes it", "FILE")->required();
   sub->add_flag("--all", f.all, "show kernels that never changed, too");
   add("--markdown", f.markdown, "the same for a page", "FILE");
+  add("--charts", f.charts, "its last commit for github-action-benchmark", "FILE.json");
 }
 
 ExitCode append(const HistoryFlags& f) {
@@ -64,6 +65,11 @@ ExitCode show_history(const HistoryFlags& f) {
   if (!f.markdown.empty()) {
     AtomicFile file(f.markdown);
     file.write(printable(format_drift(history, drift, f.all, true)));
+    file.commit();
+  }
+  if (!f.charts.empty()) {
+    AtomicFile file(f.charts);
+    file.write(format_for_charts(history.back()));
     file.commit();
   }
   if (!drift.any()) return kGood;

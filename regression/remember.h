@@ -14,7 +14,7 @@ namespace tauext::gate {
 
 /// What they are asked for.
 struct HistoryFlags {
-  std::string file, markdown;
+  std::string file, markdown, charts;
   MeasureOptions measure;
   bool all = false;
 };

@@ -12,14 +12,9 @@
 namespace tauext::gate {
 namespace {
 
-// a kernel's levels, and which record each is of
-struct Series {
+// a kernel's levels, as KernelDrift has them
+std::vector<double> levels_of(const std::vector<Record>& history, const std::string& kernel) {
   std::vector<double> level;
-  std::vector<std::size_t> record;
-};
-
-Series series_of(const std::vector<Record>& history, const std::string& kernel) {
-  Series s;
   std::map<std::string, double> of_commit;  // what is known of the commits that may be references
   std::string reference;
   double offset = 0;
@@ -30,14 +25,13 @@ Series series_of(const std::vector<Record>& history, const std::string& kernel) 
       const auto known = of_commit.find(history[i].reference);
       const bool chained = known != of_commit.end();
       offset = chained ? known->second : 0;
-      if (!chained) s = {}, of_commit.clear();  // nothing leads from the old one to this
+      if (!chained) level.clear(), of_commit.clear();  // nothing leads from the old one to this
       reference = history[i].reference;
     }
-    s.level.push_back(offset + std::log(it->second.ratio));
-    s.record.push_back(i);
-    of_commit[history[i].commit] = s.level.back();
+    level.push_back(offset + std::log(it->second.ratio));
+    of_commit[history[i].commit] = level.back();
   }
-  return s;
+  return level;
 }
 
 // by how much a finding may be larger than at the reference: what was accepted since, each once,
@@ -60,19 +54,11 @@ double accepted(const std::vector<Record>& history, const std::string& layer,
 KernelDrift kernel_drift(const std::vector<Record>& history, const std::string& kernel,
                          const DriftLimits& limits) {
   const Record& last = history.back();
-  const Series s = series_of(history, kernel);
-  KernelDrift d{.kernel = kernel, .level = s.level, .last = last.kernels.at(kernel)};
+  KernelDrift d{
+      .kernel = kernel, .level = levels_of(history, kernel), .last = last.kernels.at(kernel)};
   d.accepted = accepted(history, kTimeLayer, kernel);
   d.drifted = d.last.surely > limits.time + d.accepted;
   d.undecided = !d.drifted && d.last.ratio > 1 + limits.time + d.accepted;
-  const std::size_t begin = s.level.size() - std::min(s.level.size(), limits.window);
-  d.change = last_change({s.level.begin() + static_cast<std::ptrdiff_t>(begin), s.level.end()},
-                         limits.change, static_cast<int>(last.kernels.size()));
-  if (d.change.by == 0) return d;
-  d.change.at += begin;
-  const Record& changed = history[s.record[d.change.at]];
-  d.changed_at = changed.commit;
-  d.slower = changed.reference == last.reference && d.change.by > limits.change.least + d.accepted;
   return d;
 }
 
@@ -118,7 +104,7 @@ void compare_metrics(const std::vector<Record>& history, const DriftLimits& limi
 
 bool Drift::slower() const {
   return std::any_of(kernels.begin(), kernels.end(),
-                     [](const KernelDrift& k) { return k.drifted || k.slower; });
+                     [](const KernelDrift& k) { return k.drifted; });
 }
 
 Drift drift_of(const std::vector<Record>& history, const DriftLimits& limits) {

@@ -7,17 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "regression/history/changes.h"
 #include "regression/history/history.h"
 
 namespace tauext::gate {
 
 /// What may add up.
 struct DriftLimits {
-  double time = 0.02;       ///< [1] a step may surely be longer than the reference's by this share
-  double metric = 0.02;     ///< [1] a metric may be worse by this share
-  std::size_t window = 50;  ///< records in which a change of level is looked for
-  ChangeLimits change;      ///< of the logarithm of time
+  double time = 0.02;    ///< [1] a step may surely be longer than the reference's by this share
+  double metric = 0.02;  ///< [1] a metric may be worse by this share
 };
 
 /// One kernel of the last record.
@@ -30,10 +27,6 @@ struct KernelDrift {
   double accepted = 0;     ///< [1] by how much it may be slower than the reference, on purpose
   bool drifted = false;    ///< slower than the reference by more than that and the limit
   bool undecided = false;  ///< measured so, but not surely
-  LevelChange change;      ///< the last one of its level in the window; by = 0: none
-  std::string changed_at;  ///< commit, "" if the level did not change
-  bool slower = false;     ///< that change is one for the worse, since the reference, by more than
-                           ///< what is accepted
 };
 
 /// One metric that is worse than the reference's.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "mjcf/trace/table_writer.h"
 #include "regression/accuracy/accuracy.h"
@@ -18,25 +19,17 @@ std::string percent(double ratio) {
   return fmt::format("{:+.2f}", 100 * (ratio - 1));
 }
 
-const Record& record_of(const std::vector<Record>& history, const std::string& commit) {
-  return *std::find_if(history.begin(), history.end(),
-                       [&](const Record& r) { return r.commit == commit; });
-}
-
 std::vector<std::string> cells_of(const KernelDrift& k) {
-  const bool level = k.change.by != 0;
   return {k.kernel,
           k.last.ns ? fmt::format("{:.1f}", *k.last.ns) : "-",
           percent(k.last.ratio),
           fmt::format("{} to {}", percent(k.last.low), percent(k.last.high)),
           percent(k.last.instructions_ratio),
-          level ? percent(std::exp(k.change.by)) : "-",
-          level ? k.changed_at.substr(0, kOfACommit) : "-",
           sparkline(k.level, kBars),
-          k.drifted || k.slower ? "SLOWER"
-          : k.accepted > 0      ? "accepted"
-          : k.undecided         ? "undecided"
-                                : "ok"};
+          k.drifted        ? "SLOWER"
+          : k.accepted > 0 ? "accepted"
+          : k.undecided    ? "undecided"
+                           : "ok"};
 }
 
 bool ever_changed(const KernelDrift& k) {
@@ -45,7 +38,7 @@ bool ever_changed(const KernelDrift& k) {
 }
 
 // in words, what is worse
-std::string findings(const std::vector<Record>& history, const Drift& d) {
+std::string findings(const Drift& d) {
   std::string text;
   for (const KernelDrift& k : d.kernels) {
     const std::string meant =
@@ -53,11 +46,6 @@ std::string findings(const std::vector<Record>& history, const Drift& d) {
     if (k.drifted) {
       text += fmt::format("{}: {} % beside the reference, surely more than {:+.1f} %{}\n", k.kernel,
                           percent(k.last.ratio), 100 * k.last.surely, meant);
-    }
-    if (k.slower) {
-      text += fmt::format("{}: {} % since {} ({}){}\n", k.kernel, percent(std::exp(k.change.by)),
-                          k.changed_at.substr(0, kOfACommit),
-                          record_of(history, k.changed_at).title, meant);
     }
   }
   for (std::size_t i = 0; i < d.metrics.size(); ++i) {
@@ -98,8 +86,6 @@ std::string format_drift(const std::vector<Record>& history, const Drift& d, boo
                      {"beside reference", "%"},
                      {"interval", "%"},
                      {"instructions", "%"},
-                     {"last change", "%"},
-                     {"at", "commit", true},
                      {"time", "commit by commit", true},
                      {"", "", true}});
   int same = 0;
@@ -116,9 +102,19 @@ std::string format_drift(const std::vector<Record>& history, const Drift& d, boo
   if (same > 0) text += fmt::format("kernels that are as fast as the reference's: {}\n", same);
   if (d.metrics_moved > 0)
     text += fmt::format("metrics that differ from the reference's: {}\n", d.metrics_moved);
-  const std::string worse = findings(history, d);
+  const std::string worse = findings(d);
   if (worse.empty()) return text + "nothing is worse than the reference\n";
   return text + "\n" + (markdown ? "```\n" + worse + "```\n" : worse);
+}
+
+std::string format_for_charts(const Record& last) {
+  auto all = nlohmann::ordered_json::array();
+  for (const auto& [kernel, k] : last.kernels)
+    all.push_back({{"name", kernel},
+                   {"unit", "% of the time of " + last.reference.substr(0, kOfACommit)},
+                   {"value", 100 * k.ratio},
+                   {"range", fmt::format("{:.2f} to {:.2f}", 100 * k.low, 100 * k.high)}});
+  return all.dump(2) + "\n";
 }
 
 }  // namespace tauext::gate

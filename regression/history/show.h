@@ -21,4 +21,8 @@ std::string sparkline(const std::vector<double>& values, std::size_t most);
 std::string format_drift(const std::vector<Record>& history, const Drift& drift, bool all,
                          bool markdown);
 
+/// The kernels of a commit in the JSON that github-action-benchmark charts, as its tool
+/// customSmallerIsBetter: each the time of a step in % of the reference's.
+std::string format_for_charts(const Record& last);
+
 }  // namespace tauext::gate
