@@ -155,7 +155,11 @@ bool is_locked(const std::string& joint, const std::string& regex) {
   try {
     return std::regex_match(joint, compiled(regex));
   } catch (const std::regex_error& e) {
-    throw std::runtime_error(fmt::format("--lock '{}': {}", printable_name(regex), e.what()));
+    throw std::runtime_error(
+        fmt::format("--lock '{}': {}{}", printable_name(regex), e.what(),
+                    regex.starts_with('*') || regex.starts_with('?')
+                        ? ": it is a regular expression, in which .* stands for any letters"
+                        : ""));
   }
 }
 

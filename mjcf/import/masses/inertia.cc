@@ -48,8 +48,8 @@ std::string impossible(const std::string& body, int line, const Vector3d& moment
 
 std::string impossible_inertias(const std::vector<std::string>& bodies) {
   return fmt::format(
-      "{} principal moments of inertia [kg m^2] that no body has (each is above 0, and at most the "
-      "sum of the others; tauext-import --balance mends them): {}",
+      "{} principal moments of inertia [kg m^2] that no body has (each is above the mass times "
+      "(1e-6 m)^2, and at most the sum of the others; tauext-import --balance mends them): {}",
       bodies.size() == 1 ? "a link has" : fmt::format("{} links have", bodies.size()),
       fmt::join(bodies, ", "));
 }

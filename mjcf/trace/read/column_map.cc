@@ -75,6 +75,17 @@ bool of_joints(std::string_view quantity) {
       ->of_joints;
 }
 
+// one whose name is another but for its case, or a unit behind it; else ""
+std::string nearly(const std::string& expression, const std::vector<std::string>& columns) {
+  const std::regex wanted(expression, std::regex::ECMAScript | std::regex::icase);
+  for (const std::string& name : columns) {
+    const std::string word = name.substr(0, std::min(name.find_first_of(" [("), kLongestName));
+    if (std::regex_match(word, wanted))
+      return fmt::format(" (but '{}' is nearly so)", printable_name(name));
+  }
+  return "";
+}
+
 // those of one number are in the order of the file, which somebody has to have said
 void require_order(const std::vector<std::pair<int, int>>& numbered, std::string_view quantity,
                    const std::string& expression, const std::string& path) {
@@ -225,10 +236,11 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     MappedQuantity m{find_in_file(q.name, w, columns, path), {}};
     if (m.columns.empty() && (q.name == "t" || q.name == "q"))
       throw std::runtime_error(
-          fmt::format("{}: no column has the {}, [{}]: none is called '{}'; --columns says which "
+          fmt::format("{}: no column has the {}, [{}]: none is called '{}'{}; --columns says which "
                       "it is{}. There "
                       "are: {}",
                       path, q.help.substr(0, q.help.find(';')), q.name, w.expression,
+                      nearly(w.expression, columns),
                       q.name == "t" ? ", or with `rate` that rows have no time" : "",
                       printable_name(fmt::format("{}", fmt::join(columns, ", ")), 200)));
     if (m.columns.empty()) continue;

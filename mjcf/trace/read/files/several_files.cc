@@ -113,6 +113,16 @@ class Parts final : public RowSource {
  private:
   std::string path() const { return (fs::path(folder_) / parts_[part_].name).string(); }
 
+  std::string first_difference(const std::vector<std::string>& others) const {
+    const auto [ours, theirs] =
+        std::mismatch(columns_.begin(), columns_.end(), others.begin(), others.end());
+    const auto name = [](auto at, auto end) {
+      return at == end ? std::string("none") : "'" + printable_name(*at) + "'";
+    };
+    return fmt::format("column {} is {}, and there {}", ours - columns_.begin() + 1,
+                       name(theirs, others.end()), name(ours, columns_.end()));
+  }
+
   void keep(const std::vector<double>& row) {
     last_.clear();
     for (const int c : wanted_) last_.push_back(row[static_cast<std::size_t>(c)]);
@@ -136,8 +146,9 @@ class Parts final : public RowSource {
     begins_ = true;
     rows_ = open_(path());
     if (rows_->columns() != columns_)
-      throw std::runtime_error(fmt::format("{}: its columns are not those of '{}'", path(),
-                                           printable_name(parts_.front().name)));
+      throw std::runtime_error(fmt::format("{}: its columns are not those of '{}': {}", path(),
+                                           printable_name(parts_.front().name),
+                                           first_difference(rows_->columns())));
     rows_->read_only(wanted_);
   }
 

@@ -77,7 +77,9 @@ TEST_F(SeveralFiles, ThatAreNoPartsOfOneRecordingAreErrors) {
       folder_.string() + ": no file's whole name matches `parts = 'run_(.+).csv'` of the map");
   put(head_ + "0,0,0,0\n1,0,0,0\n", "run_1.csv");
   const std::string second = put("t,q1,tau1,qd1\n2,0,0,0\n", "run_2.csv");
-  EXPECT_EQ(error(folder_.string(), parts_), second + ": its columns are not those of 'run_1.csv'");
+  EXPECT_EQ(
+      error(folder_.string(), parts_),
+      second + ": its columns are not those of 'run_1.csv': column 3 is 'tau1', and there 'qd1'");
   std::filesystem::remove(second);
   put(head_ + "2,0,0,0\n", "run_01.csv");
   EXPECT_EQ(error(folder_.string(), parts_),
