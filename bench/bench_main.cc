@@ -75,7 +75,7 @@ void require_mode_of_flags(const CLI::App& app, const Flags& f, const BenchmarkF
   const bool seeds = !f.studies.seeds.empty();
   const bool selects = suite || golden || f.list || seeds;
   require_mode(app, selects, "the suite, --seeds, --golden and --list", {"--detector"});
-  require_mode(app, selects || (tuned),
+  require_mode(app, selects || tuned,
                "the suite, --seeds, --golden, --list, --equal-bandwidth and --pareto",
                {"--estimator"});
   require_mode(app, seeds, "--seeds", {"--against"});

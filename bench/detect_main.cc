@@ -137,7 +137,9 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   }
   if (recordings.empty())
     throw std::invalid_argument(
-        "no stretch of the recordings without contact is long enough; record motions without");
+        fmt::format("the recordings have no stretch of {:g} s without contact: record motions in "
+                    "which nothing touches the arm",
+                    2 * study::kScoreFrom));
   Progress progress("calibrating");
   std::vector<study::HeldOut> held_out;
   const Thresholds thresholds =

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "bench/program/program.h"
@@ -85,10 +84,6 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
   if (out != "-" && !out.ends_with(".xml") && !out.ends_with(".h"))
     throw std::invalid_argument(
         fmt::format("--out {}: MJCF goes to a name that ends in .xml, C++ to one in .h", out));
-  std::error_code none;
-  if (std::filesystem::equivalent(path, out, none))
-    throw std::invalid_argument(
-        fmt::format("--out {}: that is the file that is read: give the new one another name", out));
   const auto [file, options] = robot_file(path, how);
   const Model model = load_mjcf(file, options);
   const ArmTree arm = arm_of(model, file, options);

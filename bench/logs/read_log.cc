@@ -131,14 +131,16 @@ class UnitDoubt {
     constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
     constexpr double kNudged = 0.02;  // [rad], more than it creeps in steps of its encoder
     constexpr double kSame = 0.99, kMostSlip = 0.05;  // [1] of correlation, of the speed
+    constexpr double kFewest = 5 * 0.026;  // [s], as longest_: slower samples miss what is between
     const Joint& sum = joints_[j];
     const auto at = static_cast<Eigen::Index>(j);
     const double range = most_[at] - least_[at];
     if (rests(sum)) return range > kMoved;
     if (std::max(range, sum.path) < kNudged) return false;
     if (range > kMoved && sum.alike() < kForeign) return true;
-    // another rate, or unit: what q says is exact beside what qd says
-    if (range > kMoved && sum.alike() > kSame && std::abs(sum.xy / sum.yy - 1) > kMostSlip)
+    // q fixes the speed exactly: a slope other than 1 is another rate or unit
+    if (longest_ < kFewest && range > kMoved && sum.alike() > kSame &&
+        std::abs(sum.xy / sum.yy - 1) > kMostSlip)
       return true;
     return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
@@ -285,12 +287,13 @@ bool LogReader::next(RecordedSample& s) {
   if (!impl_->source->next(s)) {
     impl_->doubt->finish();
     if (!impl_->labels) return false;
+    if (impl_->rows && impl_->rows->skipped().set_back > 0 &&
+        !impl_->labels_file->of(impl_->path).empty())
+      throw std::invalid_argument(
+          fmt::format("{}: its clock was set back, so a time in {} can mean two samples: save the "
+                      "rows before and after that as two logs",
+                      impl_->path, impl_->labels_file->path()));
     impl_->labels->finish();
-    if (impl_->rows && impl_->rows->skipped().set_back > 0)
-      throw std::invalid_argument(fmt::format(
-          "{}: its clock was set back, so that a time in {} may be two in it: save what is before "
-          "and what is after as two logs",
-          impl_->path, impl_->labels_file->path()));
     return false;
   }
   impl_->label(s);

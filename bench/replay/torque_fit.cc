@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/replay/column_reading.h"
 #include "mjcf/trace/printable.h"
@@ -60,23 +61,26 @@ void TorqueFit::take(const Trace& log) {
          log.has_truth() ? VectorXd(log.tau_ext.col(k)) : VectorXd());
 }
 
-// those in which a joint carries something, and hardly more than that; none where most are at rest
-// and as the model has them but for dry friction, so that the others are what it does not know
-TorqueFit::Windows TorqueFit::slow(int j) const {
+// those in which a joint carries something, and hardly more than that
+TorqueFit::Poses TorqueFit::poses(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
   const double stiction = kStiction * arm_.joints[leader].dry;
-  Windows some;
-  std::size_t held = 0;
+  Poses all;
   for (const ArmWindow& w : maker_.windows()) {
     const double g = std::abs(w.gravity[j]);
     if (g < kMinTorqueShare * arm_.usual_torque[j] || std::abs(w.model[j] - w.gravity[j]) > 0.2 * g)
       continue;
-    if (std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction)
-      ++held;
-    else
-      some.push_back(&w);
+    const bool held =
+        std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction;
+    (held ? all.held : all.others).push_back(&w);
   }
-  return held > some.size() ? Windows() : some;
+  return all;
+}
+
+// none where dry friction alone explains most of them: the others are what the model does not know
+TorqueFit::Windows TorqueFit::slow(int j) const {
+  Poses all = poses(j);
+  return all.held.size() > all.others.size() ? Windows() : std::move(all.others);
 }
 
 // those that carry something, in slow poses
@@ -236,7 +240,8 @@ std::string TorqueFit::by_drive_unit() const {
   constexpr double kStrong = 1.8, kMaxOfRotor = 0.05;  // [1] of the model, of what a rotor leaves
   const Windows windows = thinned(maker_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
-    if (slow(j).size() >= kMinWindows) continue;
+    const Poses carries = poses(j);
+    if (carries.held.size() + carries.others.size() >= kMinWindows) continue;
     const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
                    model = each(windows, [j](const ArmWindow&w) { return w.model[j]; }),
                    acceleration = each(windows, [j, this](const ArmWindow&w) {
@@ -255,8 +260,7 @@ std::string TorqueFit::by_drive_unit() const {
         (s < 1 || (by_factor < kMaxOfRotor * by_rotor && by_rotor > kMinVariation * residual)))
       return fmt::format(
           "tau of joint {} is {:.3g} times what its motion takes: is it in another unit? `unit` "
-          "and "
-          "`gain` of [tau] in a map (--columns) say so",
+          "and `gain` of [tau] in a map (--columns) say so",
           j + 1, s);
   }
   return "";
@@ -269,18 +273,18 @@ std::string TorqueFit::by_gravity_of_file() const {
   heavy.gravity = Vec<3>(0, 0, -kGravity);
   const WindowMaker maker(heavy, false);
   const Windows windows = thinned(maker_.windows(), kMost);
+  ArmWindows with_gravity;
+  for (const ArmWindow* w : windows) with_gravity.push_back(maker.window(w->motion, w->tau));
+  const Windows others = thinned(with_gravity, kMost);
   double without = 0, with = 0;
   for (int j = 0; j < n_; ++j) {
-    without += misfit(windows, j,
-                      each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; }));
-    with += misfit(windows, j, each(windows, [j, &maker](const ArmWindow& w) {
-                     return w.tau[j] - maker.window(w.motion, w.tau).model[j];
-                   }));
+    const auto rest = [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; };
+    without += misfit(windows, j, each(windows, rest));
+    with += misfit(others, j, each(others, rest));
   }
   if (!(with < kMaxRatio * without)) return "";
-  return "tau has gravity in it, which the robot's file switches off: take gravity=\"0 0 0\", or "
-         "the "
-         "flag, out of its <option>";
+  return "tau contains gravity, which the robot's file switches off: remove gravity=\"0 0 0\", or "
+         "<flag gravity=\"disable\"/>, from its <option>";
 }
 
 // two channels that are one
@@ -335,8 +339,8 @@ TorqueFit::Judgement TorqueFit::judge() const {
   for (const std::string& why : {gravity.words, reading.words})
     if (!why.empty()) return {why + or_else, false};
   if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
-  for (std::string why : {by_another_arm(joints), by_drive_unit()})
-    if (!why.empty()) return {why, false};
+  if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
+  if (std::string why = by_drive_unit(); !why.empty()) return {why, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
   if (!(residual > power)) return {};

@@ -67,6 +67,10 @@ class TorqueFit {
     bool varied = false;  // no constant load explains it
   };
 
+  struct Poses {
+    Windows others, held;  // held: at rest, and within dry friction of the model
+  };
+  Poses poses(int joint) const;
   Windows slow(int joint) const;
   std::vector<SlowJoint> slow_joints() const;
   static Cause by_gravity(const std::vector<SlowJoint>& joints);

@@ -48,8 +48,7 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
       const RobotFile file = robot_file(path, options);
       why = why_no_arm(why, file.path, {}, file.options);
       if (options.lock != file.options.lock)
-        why += fmt::format("; {} has a \"lock\" of its own, in whose place that expression goes",
-                           path);
+        why += fmt::format("; {} has a \"lock\" of its own: replace that by this expression", path);
     }
     throw std::invalid_argument(fmt::format("{}: {}", path, why));
   }

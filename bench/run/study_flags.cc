@@ -148,7 +148,7 @@ int run_study(const StudyFlags& f, const SuiteOptions& suite) {
     throw std::invalid_argument("a study brings its own model errors, or none: no --model_error");
   }
   const bool seed = suite.sensors.seed != Sensors().seed;
-  if ((seed || !suite.sensors.ideal()) && (f.equal_bandwidth || f.pareto)) {
+  if ((seed || !suite.sensors.ideal()) && others) {
     throw std::invalid_argument(
         "--equal-bandwidth and --pareto bring their own sensors: they take no faults and no "
         "--seed");

@@ -178,7 +178,7 @@ void graft_sections(XMLElement& parent, XMLElement& child, XMLElement& bodies,
             std::string_view(name) == "asset" ? name_of(*e) == "mesh" : is_about(*e, names);
         if (!kept) continue;
         XMLElement& copy = *e->DeepClone(parent.GetDocument())->ToElement();
-        const bool may = std::string_view(name) != "contact";  // which have none
+        const bool may = std::string_view(name) != "contact";  // whose classes do not matter
         if (may && copy.Attribute("class") == nullptr) copy.SetAttribute("class", main.c_str());
         to.InsertEndChild(&copy);
         names.insert(text(*e, "name"));

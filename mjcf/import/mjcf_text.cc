@@ -22,6 +22,7 @@
 #include "mjcf/import/schema.h"
 #include "mjcf/import/urdf.h"
 #include "mjcf/import/xml.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -111,6 +112,7 @@ class Import {
     if (doc.Error() || doc.RootElement() == nullptr)
       throw std::runtime_error(one_line(
           fmt::format("{}line {}: no XML ({})", where, doc.ErrorLineNum(), detail::error_of(doc))));
+    claim_input(file.string());
     if (const XMLElement* const second = doc.RootElement()->NextSiblingElement())
       fail(*second, "{}a second <{}> behind the first", where, name_of(*second));
     refuse_controls(*doc.RootElement(), where);

@@ -39,8 +39,9 @@ struct SkippedRows {
 
 /// Keeps the rows whose time is the next one, and those of a new clock. Where that was set back by
 /// a second or more, time goes on a second later, since that of a trace increases; by less, rows
-/// have lost their order, or come twice, and those that are no later than the last are left out. A
-/// row comes out when those behind it cannot change it any more.
+/// have lost their order, or come twice, and those that are no later than the last are left out,
+/// unless they begin anew at the first row's time. A row comes out when those behind it cannot
+/// change it any more.
 class TimedRows {
  public:
   /// @param t the column of the time
@@ -103,6 +104,7 @@ class TimedRows {
         skip(r.second);
         continue;
       }
+      if (!any_) any_ = true, first_ = r.first[t_];
       kept_.push_back(std::move(r));
     }
     waiting_.clear();
@@ -118,7 +120,14 @@ class TimedRows {
       return;
     }
     const double last = kept_.back().first[t_], shift = last + 1 - begin;
-    if (last - shift_ - begin < kDisorder) return;
+    if (last - shift_ - begin < kDisorder && begin > first_) {
+      skipped_.notes.push_back(fmt::format(
+          "line {}: its time goes back by {:g} s; rows are left out until they are later than the "
+          "last one. If a clock was set back there, or another run begins, save what follows as a "
+          "log of its own",
+          waiting_.front().second, last - shift_ - begin));
+      return;
+    }
     ++skipped_.set_back;
     skipped_.notes.push_back(fmt::format(
         "line {}: its clock was set back by {:g} s; {:g} s are added to the times from there on",
@@ -133,7 +142,8 @@ class TimedRows {
   bool finished_ = false;
   std::vector<Row> waiting_;
   std::vector<std::vector<double>> spare_;
-  double shift_ = 0;  // [s]
+  double shift_ = 0, first_ = 0;  // [s] of all rows, of the first one
+  bool any_ = false;
 };
 
 }  // namespace tauext

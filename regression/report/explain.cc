@@ -14,7 +14,6 @@
 
 #include "mjcf/trace/table_writer.h"
 #include "regression/accuracy/accuracy_layer.h"
-#include "regression/host/child.h"
 #include "regression/report/findings.h"
 #include "regression/report/report.h"
 

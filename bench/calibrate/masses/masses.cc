@@ -348,13 +348,14 @@ class Search {
     if (!(square > 0)) return;
     m.scale = product / square;
     constexpr double kAlike = 0.5, kSeen = 5;  // [1] of gravity, and of its standard error
-    m.differs_by_scale = true;
+    bool seen = false, alike = true;
     for (std::size_t j = 0; j < gravity.size(); ++j) {
       const double all = (gravity[j].leftCols(n) * best_.theta.head(n)).norm(),
                    left = (gravity[j].leftCols(n) * (best_.theta.head(n) - m.scale * file)).norm();
-      if (all > kSeen * m.joints[j].gravity_error * std::sqrt(kPoses) && left > kAlike * all)
-        m.differs_by_scale = false;
+      if (!(all > kSeen * m.joints[j].gravity_error * std::sqrt(kPoses))) continue;
+      seen = true, alike = alike && left <= kAlike * all;
     }
+    m.differs_by_scale = seen && alike;
   }
 
   void judge_joints(const VectorXd& usual, IdentifiedMasses& m) {
@@ -367,16 +368,15 @@ class Search {
       if (j.gravity_error > kMostError * usually)
         m.doubts.push_back(fmt::format(
             "joint '{}': the torque that holds it is known to +- {:.3g} N m in other poses, and "
-            "its "
-            "usual torque is {:.3g} N m: record motions in which it and the joints around it go "
+            "its usual torque is {:.3g} N m: record motions in which it and the joints around it "
+            "go "
             "further, and raise the links against gravity",
             j.name, j.gravity_error, usually));
       if (kAcceleration * j.inertia_error > kMostError * usually)
         m.doubts.push_back(fmt::format(
             "joint '{}': its inertia is known to +- {:.3g} kg m^2, which makes {:.3g} N m at {:g} "
             "rad/s^2, and its usual torque is {:.3g} N m: record motions that accelerate it more, "
-            "in "
-            "several poses of the other joints",
+            "in several poses of the other joints",
             j.name, j.inertia_error, kAcceleration * j.inertia_error, kAcceleration, usually));
       if (j.held_out > j.torque / 2)
         m.doubts.push_back(fmt::format(
@@ -398,7 +398,7 @@ class Search {
     if (m.differs_by_scale && (m.scale > kMostScale || m.scale < kLeastScale))
       m.doubts.push_back(fmt::format(
           "the masses that were found hold {:.3g} times the torque of the file's, which must be "
-          "within {:g} and {:g}: are torques in N m, on the arm's side of the gears?",
+          "between {:g} and {:g}: are torques in N m, on the arm's side of the gears?",
           m.scale, kLeastScale, kMostScale));
   }
 

@@ -108,13 +108,14 @@ UsedWindows used_windows(const ArmTree& arm, const std::vector<Trace>& logs, con
     JointSums& joint = joints[static_cast<std::size_t>(i)];
     Windows faster = windows;
     std::vector<LogWindow> slow;  // stand for the others where these are too few
+    int left_out_of_slow = 0;
     for (const bool first : {true, false}) {
       joint.left_out = 0;
       std::vector<LogWindow> used;
       for (std::size_t l = 0; l < logs.size(); ++l)
         for (const Window& w : windows_of(logs[l], i, faster, joint.left_out))
           used.emplace_back(l, w);
-      if (used.size() < kNeeded && !first) used = slow;
+      if (used.size() < kNeeded && !first) used = slow, joint.left_out = left_out_of_slow;
       if (used.size() < kNeeded)
         throw std::invalid_argument(
             fmt::format("joint {} '{}': {}", i + 1, joint_name_in_file(arm, i),
@@ -123,7 +124,7 @@ UsedWindows used_windows(const ArmTree& arm, const std::vector<Trace>& logs, con
         for (const LogWindow& p : used) all[p].push_back(i);
         break;
       }
-      slow = used;
+      slow = used, left_out_of_slow = joint.left_out;
       for (const auto& [l, w] : used)
         joint.fastest = std::max(joint.fastest, fastest_in(logs[l], i, w));
       faster.min_speed =

@@ -99,6 +99,19 @@ TEST_F(Contacts, TakeThePlaceOfTheLogsOwnAndSaySoWhereTheyDiffer) {
       << messages_;
 }
 
+TEST_F(Contacts, OfALogWhoseClockWasSetBackCanMeanTwoSamples) {
+  std::string csv = "t,q1,qd1,tau1\n";
+  for (const double from : {0, 4})
+    for (int k = 0; k <= 1000; ++k) csv += fmt::format("{:.2f},0,0,0\n", from + 0.01 * k);
+  const std::string log = put("a.csv", csv);
+  const std::string error = error_of([&] { labels(log, "file,start,end\na.csv,5,6\n"); });
+  EXPECT_NE(error.find("a.csv: its clock was set back, so a time in " + path("labels.csv") +
+                       " can mean two samples"),
+            std::string::npos)
+      << error;
+  EXPECT_EQ(labels(log, "file,start,end\na.csv,,\n").size(), 2002u);
+}
+
 TEST_F(Contacts, AreFoundByNameOrByPath) {
   const std::string a = put_log("one/x.csv", 0), b = put_log("two/x.csv", 0),
                     c = put_log("c.csv", 0);

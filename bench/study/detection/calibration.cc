@@ -34,8 +34,9 @@ void require_free(const FreeRecording& r, const Robot& robot) {
   const auto contact =
       std::find_if(t.contact.begin(), t.contact.end(), [](auto c) { return c != 0; });
   if (contact != t.contact.end())
-    fail(fmt::format("something touches at {:g} s; thresholds come from recordings without",
-                     t.t[static_cast<std::size_t>(contact - t.contact.begin())]));
+    fail(fmt::format(
+        "something touches the arm at {:g} s; thresholds come from recordings without contact",
+        t.t[static_cast<std::size_t>(contact - t.contact.begin())]));
 }
 
 // from runs of these conditions, as sensors of these qualities see them

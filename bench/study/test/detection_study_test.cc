@@ -265,7 +265,7 @@ TEST(Calibration, OnRecordingsRefusesContactsAndWhatIsTooShort) {
   };
   const FreeRecording good = at_rest("a.csv", 1, 1);
   EXPECT_NE(error(good, [](Trace& t) { t.contact.assign(t.t.size(), 0), t.contact[500] = 1; })
-                .find("a.csv: something touches at 100.5 s"),
+                .find("a.csv: something touches the arm at 100.5 s"),
             std::string::npos);
   EXPECT_NE(error(good, [](Trace& t) { t.t.resize(3000); }).find("a.csv: 3 s long; 8 s are needed"),
             std::string::npos);

@@ -102,15 +102,17 @@ std::string doubts_about(const mjModel& m) {
   }
   if (mass > kDense * reach * reach * reach)
     all.push_back(fmt::format("it weighs {:.3g} kg", mass));
-  if (reach > kLongest) all.emplace_back("that is long");
+  if (reach > kLongest) all.push_back(fmt::format("it reaches more than {:g} m", kLongest));
   for (int j = 0; j < m.njnt; ++j)
     if (const mjtNum* const range = m.jnt_range + 2 * j;
         m.jnt_type[j] == mjJNT_HINGE && m.jnt_limited[j] != 0 && range[1] - range[0] > kMostTurn)
-      all.push_back(fmt::format("joint '{}' goes from {:.4g} to {:.4g} rad, or are these degrees",
-                                element_name(m, mjOBJ_JOINT, j), range[0], range[1]));
+      all.push_back(
+          fmt::format("joint '{}' has limits of {:.4g} and {:.4g} rad, which may be degrees",
+                      element_name(m, mjOBJ_JOINT, j), range[0], range[1]));
   if (all.empty()) return "";
-  return one_line(fmt::format("doubtful, as the arm reaches {:.2g} m: {}; such numbers stand for "
-                              "none, or are in g and mm: torques of motions will be wrong",
+  return one_line(fmt::format("doubtful, as the arm reaches {:.2g} m: {}; such numbers are often "
+                              "placeholders, or in other units (g, mm, degrees), and torques of "
+                              "motions will be wrong",
                               reach, fmt::join(all, ", ")),
                   8000);
 }

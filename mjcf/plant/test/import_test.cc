@@ -658,6 +658,20 @@ TEST_F(Import, DoubtsInertiasThatAreLargerThanTheArmAndMassesThatNoArmHas) {
   const std::string wheel =
       "<body><joint axis='0 1 0'/><inertial pos='0 0 0' mass='3' diaginertia='1 1 1'/></body>";
   EXPECT_EQ(doubts_about(*load_mjcf(body(wheel + wheel + wheel))), "");
+  // placeholders, and another unit; these limits are in degrees
+  const auto of_three = [&](double length, double center, double limit) {
+    return doubts_about(*load_mjcf(body(fmt::format(
+        "<body><joint axis='0 1 0'/>{0}<body pos='0 0 {1}'><joint axis='0 1 0'/>{0}<body "
+        "pos='0 0 {1}'><joint name='wrist' axis='0 0 1' limited='true' range='-{2} {2}'/><inertial "
+        "pos='0 0 {3}' "
+        "mass='1' diaginertia='.01 .01 .01'/></body></body></body>",
+        "<inertial pos='0 0 .1' mass='1' diaginertia='.01 .01 .01'/>", length, limit, center))));
+  };
+  EXPECT_EQ(of_three(.2, .1, 3), "");
+  EXPECT_NE(of_three(200, .1, 3).find("it reaches more than 20 m"), std::string::npos);
+  EXPECT_NE(of_three(.2, 5, 3).find("is 5 m from its joint"), std::string::npos);
+  EXPECT_NE(of_three(.2, .1, 9740.3).find("joint 'wrist' has limits of -170 and 170 rad"),
+            std::string::npos);
   // 2000 / 8 kg are 250
   EXPECT_EQ(doubts("240", "9"), "");
   EXPECT_NE(doubts("260", "9").find("it weighs 262 kg"), std::string::npos);

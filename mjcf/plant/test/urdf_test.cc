@@ -427,6 +427,7 @@ TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
            {"<limit", "<limits", "joint 'shoulder': this import knows no <limits>; did you mean"},
            {"<dynamics", "<dynamics/><dynamics", "joint 'shoulder': a second <dynamics>"},
            {"damping='.5'", "damping='-1'", "its damping is -1, and must be 0 or more"},
+           {"damping='.5'", "spring_stiffness='3'", "joint 'shoulder' has a spring"},
            {"value='4'", "value='2,6'", "mass> is '2,6', and must be a number, with a point"},
            {"value='4'", "value='-4'", "link 'upper': its mass is -4 kg"},
            {"ixx='.02'", "ixx='.09'",

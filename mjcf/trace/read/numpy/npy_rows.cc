@@ -79,8 +79,9 @@ class Zip {
     for (archive_entry* entry = nullptr;;) {
       const int code = archive_read_next_header(zip_.get(), &entry);
       if (code == ARCHIVE_EOF) return;
-      require(path_, code);
-      const char* const text = archive_entry_pathname(entry);
+      if (code != ARCHIVE_WARN) require(path_, code);  // of letters that the locale lacks
+      const char* text = archive_entry_pathname_utf8(entry);
+      if (text == nullptr) text = archive_entry_pathname(entry);
       const std::string name = text == nullptr ? "" : text;
       if (!name.ends_with(kEnd))
         refuse(path_, fmt::format("has '{}', which is no array of NumPy: unzip it first",
@@ -164,11 +165,12 @@ void NpyRows::add(const std::string& what, std::string name, std::string bytes) 
   Array a{std::move(name), std::move(bytes), static_cast<std::size_t>(h.shape[0]), {}};
   const std::size_t along = h.fortran_order ? a.rows * h.item_size : h.item_size,
                     down = h.fortran_order ? h.item_size : width * h.item_size;
-  const bool is_time = a.name == "t" && width == 1;  // of shape (n, 1), too
+  // of shape (n, 1), too
+  const bool is_one = width == 1 && (a.name == "t" || a.name == "contact");
   for (const NpyField& f : h.fields) {
     if (!f.is_number) continue;
     const std::string& begin = h.structured ? f.name : a.name;
-    const bool numbered = h.structured ? f.count > 1 : h.shape.size() == 2 && !is_time;
+    const bool numbered = h.structured ? f.count > 1 : h.shape.size() == 2 && !is_one;
     const std::size_t count = h.structured ? f.count : width;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t size = static_cast<std::size_t>(f.number.size);

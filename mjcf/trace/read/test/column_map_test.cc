@@ -232,6 +232,12 @@ TEST_F(Columns, HaveTheirNamesBelowComments) {
   }
 }
 
+TEST_F(Columns, HaveADecimalPoint) {
+  read("t;q1;qd1;tau1\n0;1;2;3\n0,5;1;2;3\n", "tauext");
+  EXPECT_EQ(skipped_.first.at(0),
+            "line 3: column 't' is '0,5', not a number: write decimals with a point");
+}
+
 TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
   const std::string log = "t,q1,qd1,tau1\n0,1,2,3\n1,1,2,3\n";
   read_by(log, "preset = 'tauext'\n[contact]\ncolumns = 'touched'\n");

@@ -184,9 +184,11 @@ TEST_F(Npz, WhatADirectoryClaimsIsNotBelieved) {
   const auto refuses = [&](const Member& m) {
     return error_of_reading(zip({m})).find("array 't': cannot be unpacked: ") == 0;
   };
-  EXPECT_TRUE(refuses({"t.npy", data, 1, 0, size}));        // encrypted
-  EXPECT_TRUE(refuses({"t.npy", data, 0, 12, size}));       // by bzip2
-  EXPECT_TRUE(refuses({"t.npy", data, 0, 8, 4000000000}));  // of 4 GB
+  EXPECT_TRUE(refuses({"t.npy", data, 1, 0, size}));   // encrypted
+  EXPECT_TRUE(refuses({"t.npy", data, 0, 12, size}));  // by bzip2
+  const std::string block =                            // as it is, and the last (RFC 1951)
+      bytes_of_hex("01") + low_first(data.size(), 2) + low_first(~data.size() & 0xffff, 2) + data;
+  EXPECT_TRUE(refuses({"t.npy", block, 0, 8, 4000000000}));  // of 4 GB
   // 07: a last block of a kind that is not there; 01 ..: one of 6 bytes as they are (RFC 1951)
   EXPECT_TRUE(refuses({"t.npy", bytes_of_hex("07"), 0, 8, 100}));
   EXPECT_TRUE(refuses({"t.npy", bytes_of_hex("01 06 00 f9 ff") + "\x93NUMPY", 0, 8, 100}));
@@ -195,6 +197,13 @@ TEST_F(Npz, WhatADirectoryClaimsIsNotBelieved) {
        {changed(kLocal + kQ + kEntry + kEnd, 0xe7 + 42, "\x01"),
         changed(kLocal + kQ + kEntry + kEnd, 0xe7 + 28, "\xff"), kLocal + kQ})
     EXPECT_NE(error_of_reading(damaged), "no error");
+}
+
+TEST_F(Npz, OneColumnOfATimeIsATime) {
+  NpyRows rows(put(zip({stored("t", npy("(3, 1)", 3)), stored("contact", npy("(3, 1)", 3)),
+                        stored("q", npy("(3, 1)", 3))}),
+                   "x.npz"));
+  EXPECT_EQ(rows.columns(), (Names{"t", "contact", "q1"}));
 }
 
 TEST_F(Npz, WritesAnArrayThatZipAndNumpyDescribe) {

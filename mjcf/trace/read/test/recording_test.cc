@@ -159,7 +159,10 @@ TEST_F(TraceFile, OneFalseTimeCostsOneRowAndANewClockNone) {
   SkippedRows again;  // rows that come twice, as in parts that overlap
   EXPECT_EQ(read({0, 0.2, 0.4, 0.6, 0.8, 0.4, 0.6, 0.8, 1.0, 1.2}, again).size(), 7u);
   EXPECT_EQ(again.time_order, 3);
-  EXPECT_TRUE(again.notes.empty());
+  EXPECT_EQ(again.notes.at(0).substr(0, 37), "line 7: its time goes back by 0.4 s; ");
+  SkippedRows anew;  // another run, whose clock begins as the first one's
+  EXPECT_EQ(read({0, 0.2, 0.4, 0.6, 0, 0.2, 0.4, 0.6, 0.8}, anew).size(), 9u);
+  EXPECT_EQ(anew.set_back, 1);
   EXPECT_EQ(read({0, 0.001, 5, 5.001, 5.002, 5.003}, gap).size(), 6u);
   EXPECT_EQ(gap.total(), 0);
   EXPECT_TRUE(gap.notes.empty());

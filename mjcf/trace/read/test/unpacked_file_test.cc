@@ -77,6 +77,7 @@ TEST_F(Unpacked, WhatIsNotReadIsNamedWithARemedy) {
            {"\x89HDF\r\n\x1a\n", "h5py"},
            {"PAR1\x15\x04", "pandas.read_parquet"},
            {"PK\x03\x04\x14\0\x06\0\x08\0\0\0!\0[Content_Types].xml"s, "a workbook of Excel"},
+           {"\xff\xfet\0,\0q\0"s, "text in UTF-16, which is not read: iconv "},
            {"\xd0\xcf\x11\xe0", "save the sheet as CSV"},
            {"\x7f"
             "ELF\2\1\1\0"s,

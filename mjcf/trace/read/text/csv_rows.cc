@@ -157,12 +157,14 @@ void CsvRows::unread(std::string_view line) {
 
 void CsvRows::read_header() {
   std::string_view line = first_line();
+  while (!format_.has_header && is_comment(trimmed(line))) line = first_line();
   std::string names(trimmed(line));
   while (format_.has_header && is_comment(names)) {  // the last one before numbers has the names
     const std::string_view more = first_line();
     double value = 0;
     std::string_view begin = trimmed(more);
-    if (number_of(begin.substr(0, begin.find_first_of(",; \t")), value)) {
+    if (number_of(begin.substr(0, begin.find_first_of(std::string(",; \t") + format_.separator)),
+                  value)) {
       unread(more);
       names.erase(0, 1);
       break;
@@ -210,7 +212,7 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
     } else if (!number_of(field, value) && wrong.empty()) {
       wrong = fmt::format("column '{}' is '{}', not a number{}", printable_name(columns_[fields]),
                           printable_name(std::string(field)),
-                          has_decimal_comma(field) ? ": numbers have a decimal point here" : "");
+                          has_decimal_comma(field) ? ": write decimals with a point" : "");
     }
     if (!std::isfinite(value)) all_finite = false;
   }
@@ -230,7 +232,7 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
 bool CsvRows::next(std::vector<double>& row, SkippedRows& skipped) {
   row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::string_view line; next_line(line);) {
-    if (line.empty() || line.front() == '#') continue;
+    if (line.empty() || is_comment(line)) continue;
     std::string reason = parse(line, row, skipped);
     if (reason.empty() && cut_off_) {  // the last number may be
       ++skipped.wrong_field_count;

@@ -23,8 +23,9 @@ struct CsvFormat {
 };
 
 /// The rows of such a file, which may be compressed. Lines may end in CR and LF, and have up to
-/// 64 kB; empty ones, and those that begin with #, are no rows. A column of a name that an earlier
-/// one has gets `#2` behind it.
+/// 64 kB; empty ones, and those that begin with # or %, are no rows. The names are in the first
+/// line that is no comment, or in the last comment above the numbers; Excel's sep=; may stand
+/// before. A column of a name that an earlier one has gets `#2` behind it.
 class CsvRows final : public RowSource {
  public:
   /// @throws std::runtime_error naming the path and the reason: unreadable, empty, no names
