@@ -15,10 +15,10 @@
 namespace tauext::test {
 namespace {
 
-// two seconds of a sine, with q, qd and t times factors, and what is said of them
+// two seconds of a sine, with q, qd and t times factors, and what read_any_log() prints of them
 struct Read {
   RecordedLog log;
-  std::string said;
+  std::string messages;
 };
 Read read_sine(double q, double qd, double t, double gap = 0) {
   const std::string path =
@@ -37,22 +37,24 @@ Read read_sine(double q, double qd, double t, double gap = 0) {
   std::filesystem::remove(path);
   return {std::move(log), testing::internal::GetCapturedStderr()};
 }
-std::string said_of(double q, double qd, double t) {
-  return read_sine(q, qd, t).said;
+std::string messages_of(double q, double qd, double t) {
+  return read_sine(q, qd, t).messages;
 }
 
 TEST(ReadAnyLog, DoubtsUnitsThatCanHardlyBe) {
   constexpr double kDegrees = 180 / M_PI;
-  EXPECT_EQ(said_of(1, 1, 1), "");
-  EXPECT_NE(said_of(kDegrees, 1, 1).find("q1 moves 57.3 times as fast as qd1 says: are t, q"),
+  EXPECT_EQ(messages_of(1, 1, 1), "");
+  EXPECT_NE(messages_of(kDegrees, 1, 1).find("q1 moves 57.3 times as fast as qd1 says: are t, q"),
             std::string::npos);
-  EXPECT_NE(said_of(1, kDegrees, 1).find("0.0175 times as fast"), std::string::npos);
-  EXPECT_NE(said_of(1, 1, 1000).find("0.001 times as fast"), std::string::npos);
-  EXPECT_NE(said_of(1, 1, 1.2).find("q1 moves 0.833 times as fast as qd1 says"), std::string::npos);
-  EXPECT_NE(said_of(1, 1 / 1.1, 1).find("1.1 times as fast"), std::string::npos);
-  EXPECT_EQ(said_of(1, 1.02, 1), "");
-  EXPECT_NE(said_of(1, 1e-3, 1000).find("the samples are 1 apart on average"), std::string::npos);
-  EXPECT_NE(said_of(kDegrees, kDegrees, 1).find("q1 reaches 28.6, more than two turns"),
+  EXPECT_NE(messages_of(1, kDegrees, 1).find("0.0175 times as fast"), std::string::npos);
+  EXPECT_NE(messages_of(1, 1, 1000).find("0.001 times as fast"), std::string::npos);
+  EXPECT_NE(messages_of(1, 1, 1.2).find("q1 moves 0.833 times as fast as qd1 says"),
+            std::string::npos);
+  EXPECT_NE(messages_of(1, 1 / 1.1, 1).find("1.1 times as fast"), std::string::npos);
+  EXPECT_EQ(messages_of(1, 1.02, 1), "");
+  EXPECT_NE(messages_of(1, 1e-3, 1000).find("the samples are 1 apart on average"),
+            std::string::npos);
+  EXPECT_NE(messages_of(kDegrees, kDegrees, 1).find("q1 reaches 28.6, more than two turns"),
             std::string::npos);
 }
 
@@ -63,7 +65,7 @@ TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
   EXPECT_THROW(degrees.require_consistent("a.csv"), std::invalid_argument);
   EXPECT_TRUE(read_sine(1, -1, 1).log.contradicts);
   EXPECT_TRUE(read_sine(1, 0, 1).log.contradicts);
-  EXPECT_NE(said_of(1, 0, 1).find("q1 moves, and qd1 says that it rests"), std::string::npos);
+  EXPECT_NE(messages_of(1, 0, 1).find("q1 moves, and qd1 says that it rests"), std::string::npos);
   EXPECT_FALSE(read_sine(1e-4, 0, 1).log.contradicts) << "a joint at rest trembles";
   EXPECT_FALSE(read_sine(1, 1, 1, 5000).log.contradicts) << "over a gap qd says nothing";
 }

@@ -93,7 +93,6 @@ class Parts final : public RowSource {
       const bool any = rows_->next(row, here);
       skipped.not_finite += here.not_finite, skipped.wrong_field_count += here.wrong_field_count;
       skipped.not_a_number += here.not_a_number, skipped.time_order += here.time_order;
-      skipped.alone += here.alone, skipped.set_back += here.set_back;
       add_words(skipped, here, parts_[part_].name);
       if (any) {
         if (repeats_last(row)) continue;
