@@ -25,6 +25,7 @@ constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, whi
 constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
 constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
+constexpr double kPoundFoot = 0.7375621;   // [lbf ft/(N m)]
 constexpr double kMinUnit = 1.1;           // [1] and whose factor is further from 1
 constexpr double kMaxRatioOfUnit = 0.01;   // [1] of mean squares, likewise
 constexpr double kLight = 0.6;        // [1] of the model's torque, less than a file's masses err
@@ -176,8 +177,10 @@ std::string TorqueFit::by_unit(const std::vector<SlowJoint>& joints) {
     factors.push_back(j.factor);
     power += j.power;
   }
-  if (factors.size() < 2 || !(power > all / 2)) return "";
+  if (factors.empty() || !(power > all / 2)) return "";
   const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+  // one joint says nothing of others, unless its factor is a unit's
+  if (factors.size() < 2 && std::abs(*least / kPoundFoot - 1) > kSame - 1) return "";
   if (*most > kSame * *least || std::max(*most, 1 / *least) < kMinUnit) return "";
   return fmt::format(
       "in slow poses all torques are {:.3g} times those of the model: is this another unit (lbf "

@@ -341,6 +341,12 @@ TEST_F(TorqueFits, FeetAndPoundsAreADoubt) {
     EXPECT_EQ(robot.contradiction(log), "") << factor;
     expect(robot.words(log), "another unit");
   }
+  const Robot pendulum("bench/examples/own_robot.xml");
+  Trace log = pendulum.run("in_motion");
+  log.tau *= 0.85;
+  EXPECT_EQ(pendulum.words(log), "") << "masses of one joint";
+  log.tau *= 0.7376 / 0.85;
+  expect(pendulum.words(log), "another unit");
 }
 
 TEST_F(TorqueFits, AnotherArmIsDoubted) {
