@@ -54,14 +54,14 @@ void register_estimator(Make make) {
       });
 }
 
-/// A detector for every robot of D::kDof joints, with its default parameters unless a specification
-/// sets them (D::Parameters::fields()). A name that is taken is refused likewise.
+/// A detector for every robot: D(joints), or with D::Parameters D(joints, parameters), which are the
+/// defaults unless a specification sets them (D::Parameters::fields()). A name that is taken is
+/// refused likewise.
 template <CollisionDetector D>
 void register_detector() {
   detail::require_unused();
   detail::say_if_unoptimised();
-  detail::registered_detectors<D::kDof>().push_back(
-      [](detail::RobotOf<D::kDof>& robot) { robot.template add_detector<D>(); });
+  detail::registered_detectors().push_back(detector_type<D>);
 }
 
 #if TAUEXT_FILE_JOINTS == 8
@@ -81,15 +81,6 @@ template <class Make>
 void register_file_estimator(Make make) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (register_estimator<AnyTree<I + 1>>(make), ...);
-  }
-  (std::make_index_sequence<kMaxFileJoints>());
-}
-
-/// A detector for robots of any number of joints, from files and known ones.
-template <template <int> class D>
-void register_detectors() {
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (register_detector<D<I + 1>>(), ...);
   }
   (std::make_index_sequence<kMaxFileJoints>());
 }

@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <string_view>
+#include <type_traits>
 
 #include "estimators/types.h"
 
@@ -95,40 +96,44 @@ concept TorqueEstimator = requires(E e, const Measurement<E::kDof>& y) {
   noexcept->std::same_as<Estimate<E::kDof>>;
 };
 
-/// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext alone or with the
-/// whole sample (speed, for example).
+/// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext [N m] alone, or
+/// with the speed and torque of the sample, too: update(t, qd, tau, tau_ext).
 template <class D>
 concept CollisionDetector = requires(D d) {
   { D::kName } -> std::convertible_to<std::string_view>;
-  { D::kDof } -> std::convertible_to<int>;
   { d.reset() }
   noexcept;
 }
 &&(
-    requires(D d, double t, const Vec<D::kDof>& tau_ext) {
-      { d.update(t, tau_ext) }
+    requires(D d, double t, const JointsView<>& x) {
+      { d.update(t, x) }
       noexcept->std::same_as<Detection>;
     } ||
-    requires(D d, const Measurement<D::kDof>& y, const Vec<D::kDof>& tau_ext) {
-      { d.update(y, tau_ext) }
+    requires(D d, double t, const JointsView<>& x) {
+      { d.update(t, x, x, x) }
       noexcept->std::same_as<Detection>;
     });
 
-/// One step of either kind of detector.
-template <CollisionDetector D>
-Detection detect(D& d, const Measurement<D::kDof>& y, const Vec<D::kDof>& tau_ext) noexcept {
-  if constexpr (requires { d.update(y, tau_ext); }) {
-    return d.update(y, tau_ext);
+/// One step of either kind of detector; of several runs, if it is one of Packs.
+/// @param t [s] of the sample, with its qd [rad/s] and tau [N m]; of several runs finite numbers
+/// @param tau_ext [N m] its estimate, which is used(); of as many joints
+template <class Scalar = double, class D>
+[[gnu::always_inline]] inline auto detect(
+    D& d, double t, const std::type_identity_t<JointsView<Scalar>>& qd,
+    const std::type_identity_t<JointsView<Scalar>>& tau,
+    const std::type_identity_t<JointsView<Scalar>>& tau_ext) noexcept {
+  if constexpr (requires { d.update(t, qd, tau, tau_ext); }) {
+    return d.update(t, qd, tau, tau_ext);
   } else {
-    return d.update(y.t, tau_ext);
+    return d.update(t, tau_ext);
   }
 }
 
 /// One step behind an estimator: silent where a sample was left out, from the start where the
 /// estimate diverged.
-template <CollisionDetector D>
-Detection detect(D& d, const Measurement<D::kDof>& y, const Estimate<D::kDof>& e) noexcept {
-  if (used(e.status)) return detect(d, y, e.tau_ext);
+template <CollisionDetector D, int N>
+Detection detect(D& d, const Measurement<N>& y, const Estimate<N>& e) noexcept {
+  if (used(e.status)) return detect(d, y.t, y.qd, y.tau, e.tau_ext);
   if (e.status == Status::kDiverged) d.reset();
   return {};
 }
@@ -140,9 +145,24 @@ concept CalibratableDetector = CollisionDetector<D> &&
     requires(const D& d, typename D::Parameters p) {
   { D::kDegree } -> std::convertible_to<int>;
   { d.statistic() }
-  noexcept->std::convertible_to<Vec<D::kDof>>;
-  { p.threshold } -> std::convertible_to<Vec<D::kDof>>;
-  D(p);
+  noexcept->std::convertible_to<Joints<>>;
+  { p.threshold } -> std::convertible_to<Joints<>>;
+  D(3, p);
+};
+
+template <int W>
+class Pack;
+
+/// A detector that can do several runs of one clock at once, one in each SIMD lane: it computes with
+/// a Scalar, which then is a Pack (estimators/math/pack.h), names that class `For`, and has
+/// parameters(), of which one is made. All samples of all runs are used; only scores differ from
+/// run to run, and what depends on time alone stays one number.
+template <class D>
+concept DetectsRuns = CollisionDetector<D> && requires(const D& d) {
+  { d.parameters() } -> std::convertible_to<typename D::Parameters>;
+  typename D::template For<Pack<4>>;
+  // no class that derives from one, and would be that one
+  requires std::same_as<typename D::template For<double>, D>;
 };
 
 }  // namespace tauext

@@ -105,6 +105,14 @@ void check_field(const Field<P, T>& f, const P& p, const char* of) {
 template <class P, class Inner>
 void check_field(const Nested<P, Inner>&, const P&, const char*) {}  // its own class checks it
 
+[[noreturn]] inline void fail_joints(const char* key, const char* of, Eigen::Index values,
+                                     int joints) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%s of %s has %d values for %d joints: give one, or one each",
+                key, of, static_cast<int>(values), joints);
+  throw std::invalid_argument(text);
+}
+
 }  // namespace detail
 
 /// @param of the name of the estimator or detector, for the error
@@ -114,6 +122,26 @@ void check_field(const Nested<P, Inner>&, const P&, const char*) {}  // its own 
 template <ListsFields P>
 const P& check_parameters(const P& p, const char* of) {
   for_each_field<P>([&](const auto& f) { detail::check_field(f, p, of); });
+  return p;
+}
+
+/// Parameters of a detector of so many joints: checked, and with a value for each where one stands
+/// for all.
+/// @throws std::invalid_argument as check_parameters does, and for another number of values
+template <ListsFields P>
+P for_joints(P p, int joints, const char* of) {
+  if (joints < 1 || joints > kMaxJoints)
+    detail::fail_limit("joints", "1", of, joints, 1, kMaxJoints);
+  check_parameters(p, of);
+  for_each_field<P>([&](const auto& f) {
+    auto& x = p.*f.at;
+    if constexpr (!requires { f.unit; }) {
+      x = for_joints(x, joints, of);
+    } else if constexpr (std::is_same_v<decltype(x), Joints<>&>) {
+      if (x.size() == 1) x = Joints<>::Constant(joints, x[0]);
+      if (x.size() != joints) detail::fail_joints(f.key, of, x.size(), joints);
+    }
+  });
   return p;
 }
 

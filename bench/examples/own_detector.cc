@@ -5,14 +5,12 @@
 #include "bench/registry.h"
 #include "estimators/detectors/marking.h"
 
-template <int N>
 struct Jump {
   static constexpr const char* kName = "jump";
-  static constexpr int kDof = N;
 
   void reset() noexcept { *this = Jump(); }
 
-  tauext::Detection update(double t, const tauext::Vec<N>& tau_ext) noexcept {
+  tauext::Detection update(double t, const tauext::JointsView<>& tau_ext) noexcept {
     if (!marking.accept(t)) return marking.held();
     if (marking.silent(t)) before = last = tau_ext;                // the first sample
     const double jump = (tau_ext - before).cwiseAbs().maxCoeff();  // [N m]
@@ -22,10 +20,10 @@ struct Jump {
   }
 
   tauext::Marking marking{0.2, 0};
-  tauext::Vec<N> last = tauext::Vec<N>::Zero(), before = last;
+  tauext::Joints<> last, before;
 };
 
 int main(int argc, char** argv) {
-  tauext::register_detectors<Jump>();
+  tauext::register_detector<Jump>();
   return tauext::bench_main(argc, argv);
 }

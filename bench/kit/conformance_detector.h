@@ -15,7 +15,8 @@
 
 #include "bench/kit/allocations.h"
 #include "estimators/concepts.h"
-#include "estimators/runs/detecting.h"
+#include "estimators/detectors/marking.h"
+#include "estimators/math/pack.h"
 
 namespace tauext::conformance {
 
@@ -24,11 +25,10 @@ template <class Make>
 class DetectorClaims {
  public:
   using D = std::decay_t<std::invoke_result_t<Make>>;  ///< the detector
-  static_assert(CollisionDetector<D>, "a detector has kName, kDof, reset() and update(), noexcept");
-  static constexpr int N = D::kDof;  ///< joints
+  static_assert(CollisionDetector<D>, "a detector has kName, reset() and update(), noexcept");
 
-  /// On what make() builds.
-  explicit DetectorClaims(Make make) : make_(make) {}
+  /// On what make() builds, for so many joints.
+  DetectorClaims(Make make, int joints) : make_(make), joints_(joints) {}
 
   /// A steady load of 1 N m is no reason for a mark.
   void leaves_rest_in_peace() const {
@@ -82,30 +82,29 @@ class DetectorClaims {
   void bears_company() const requires DetectsRuns<D> {
     SCOPED_TRACE("bears company");
     using Lanes = Pack<kRuns>;
-    typename D::template For<Lanes> all(made().parameters());
+    using OfRuns = typename D::template For<Lanes>;
+    OfRuns all(joints_, made().parameters());
     std::vector<D> alone;
     for (int i = 0; i < kRuns; ++i) alone.push_back(made());
     int marks = 0;
     for (int k = 0; k < kSamples; ++k) {
       if (k > 4000 && k < 4080) continue;             // a gap
       const double t = (k == 4500 ? 3000 : k) * kTs;  // a time that is not the next one
-      Measurement<N, Lanes> y;
-      Vec<N, Lanes> tau_ext;
+      const Joints<Lanes> none = Joints<Lanes>::Zero(joints_);
+      Joints<Lanes> speeds = none, loads = none;
       std::array<Detection, kRuns> said;
-      y.t = t;
       for (int i = 0; i < kRuns; ++i) {
-        Measurement<N> mine;
-        Vec<N> load;
-        mine.t = t;
-        for (int j = 0; j < N; ++j) {
-          mine.qd[j] = 0.1 * i - 0.2 * j;
+        Joints<> qd = zero(), load = zero();
+        for (int j = 0; j < joints_; ++j) {
+          qd[j] = 0.1 * i - 0.2 * j;
           load[j] = (0.3 + 0.4 * i) * touch(t, t > 2.5) / (1 + j) + std::sin(t * (20 + i + j));
-          y.qd[j].set(i, mine.qd[j]);
-          tau_ext[j].set(i, load[j]);
+          speeds[j].set(i, qd[j]);
+          loads[j].set(i, load[j]);
         }
-        said[static_cast<std::size_t>(i)] = detect(alone[static_cast<std::size_t>(i)], mine, load);
+        said[static_cast<std::size_t>(i)] =
+            detect(alone[static_cast<std::size_t>(i)], t, qd, zero(), load);
       }
-      const RunsDetection<Lanes> at_once = detect_runs(all, y, tau_ext);
+      const RunsDetection<Lanes> at_once = detect<Lanes>(all, t, speeds, none, loads);
       for (int i = 0; i < kRuns; ++i) {
         const Detection& x = said[static_cast<std::size_t>(i)];
         ASSERT_EQ(at_once.mark[i], x.mark) << "run " << i << ", sample " << k;
@@ -113,8 +112,8 @@ class DetectorClaims {
         ASSERT_NEAR(at_once.score[i], x.score, 1e-12 * (1 + x.score)) << i << ", " << k;
         marks += x.mark;
         if constexpr (CalibratableDetector<D>) {
-          for (int j = 0; j < N; ++j) {
-            const double own = Vec<N>(alone[static_cast<std::size_t>(i)].statistic())[j];
+          for (int j = 0; j < joints_; ++j) {
+            const double own = Joints<>(alone[static_cast<std::size_t>(i)].statistic())[j];
             ASSERT_NEAR(all.statistic()[j][i], own, 1e-12 * (1 + own)) << i << ", " << k;
           }
         }
@@ -133,9 +132,7 @@ class DetectorClaims {
       const Detection x = step(d, k, load(k * kTs));
       ASSERT_EQ(x.mark, first[k].mark) << k;
       for (const double t : {std::numeric_limits<double>::quiet_NaN(), (k - 1) * kTs, -1e300}) {
-        Measurement<N> y;
-        y.t = t;
-        ASSERT_FALSE(step(d, y, 1000).mark) << "t = " << t;
+        ASSERT_FALSE(step(d, t, zero(), 1000).mark) << "t = " << t;
       }
     }
   }
@@ -143,17 +140,15 @@ class DetectorClaims {
   /// A speed that is no number is nobody's collision, and does not hide the one that follows.
   void bears_a_speed_that_is_no_number() const {
     SCOPED_TRACE("bears a speed that is no number");
-    for (int j = 0; j < N; ++j) {
+    for (int j = 0; j < joints_; ++j) {
       D d = made();
       int marks = 0;
       for (int k = 0; k < kSamples; ++k) {
         const double t = k * kTs;
-        Measurement<N> y;
-        y.t = t;
-        y.qd = Vec<N>::Constant(kSpeed);
-        if (k == 1005 || k == 3100) y.qd[j] = std::numeric_limits<double>::quiet_NaN();
+        Joints<> qd = Joints<>::Constant(joints_, kSpeed);
+        if (k == 1005 || k == 3100) qd[j] = std::numeric_limits<double>::quiet_NaN();
         const double load = touch(t, t > 2.5);
-        const Detection x = step(d, y, load);
+        const Detection x = step(d, t, qd, load);
         ASSERT_TRUE(std::isfinite(x.score)) << k;
         marks += x.mark;
       }
@@ -170,9 +165,9 @@ class DetectorClaims {
       const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
       step(one, k, x);
       step(two, k, 2 * x);
-      const Vec<N> least = std::pow(2, D::kDegree) * Vec<N>(one.statistic());
-      for (int j = 0; j < N; ++j) {
-        ASSERT_GE(Vec<N>(two.statistic())[j], least[j] * (1 - 1e-9)) << "sample " << k;
+      const Joints<> least = std::pow(2, D::kDegree) * Joints<>(one.statistic());
+      for (int j = 0; j < joints_; ++j) {
+        ASSERT_GE(Joints<>(two.statistic())[j], least[j] * (1 - 1e-9)) << "sample " << k;
       }
     }
   }
@@ -185,10 +180,10 @@ class DetectorClaims {
       const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
       step(d, k, x);
       step(mirrored, k, -x);
-      ASSERT_EQ(Vec<N>(mirrored.statistic()), Vec<N>(d.statistic())) << "sample " << k;
+      ASSERT_EQ(Joints<>(mirrored.statistic()), Joints<>(d.statistic())) << "sample " << k;
     }
     d.reset();
-    EXPECT_EQ(Vec<N>(d.statistic()), Vec<N>(Vec<N>::Zero()));
+    EXPECT_EQ(Joints<>(d.statistic()), zero());
   }
 
   /// No heap allocation in reset() and update(); not seen under sanitizers.
@@ -233,16 +228,16 @@ class DetectorClaims {
 
   // not inlined: a copy in each claim would take long to compile
   [[gnu::noinline]] D made() const { return make_(); }
-  [[gnu::noinline]] static Detection step(D& d, const Measurement<N>& y, double load) {
-    return detect(d, y, Vec<N>(Vec<N>::Constant(load)));
+  [[gnu::noinline]] Detection step(D& d, double t, const Joints<>& qd, double load) const {
+    const Joints<> tau_ext = Joints<>::Constant(joints_, load);
+    return detect(d, t, qd, zero(), tau_ext);
   }
 
-  static Detection step(D& d, int k, double load, double shift = 0) {
-    Measurement<N> y;
-    y.t = k * kTs + shift;
-    y.qd = Vec<N>::Constant(kSpeed);
-    return step(d, y, load);
+  Detection step(D& d, int k, double load, double shift = 0) const {
+    return step(d, k * kTs + shift, Joints<>::Constant(joints_, kSpeed), load);
   }
+
+  Joints<> zero() const { return Joints<>::Zero(joints_); }
 
   template <class Load>
   std::vector<Detection> run(Load&& load, double shift = 0) const {
@@ -261,12 +256,13 @@ class DetectorClaims {
   }
 
   Make make_;
+  int joints_;
 };
 
-/// Makes every claim on the detectors that make() builds.
+/// Makes every claim on the detectors that make() builds for so many joints.
 template <class Make>
-void check_detector(Make make) {
-  DetectorClaims<Make>(make).check();
+void check_detector(Make make, int joints) {
+  DetectorClaims<Make>(make, joints).check();
 }
 
 }  // namespace tauext::conformance

@@ -225,13 +225,14 @@ class Kernels {
         [](E& e, const Sample<M>& s) { detail::keep(e.update(s.y)); });
   }
 
-  /// A detector for that arm, as `ROBOT/kName`.
+  /// A detector of as many joints for that arm, as `ROBOT/kName`.
   template <RobotModel M, CollisionDetector D>
   void add_detector(const std::string& robot, const M& arm, D detector) {
-    static_assert(D::kDof == M::kDof, "detector and arm have different numbers of joints");
     add(
         robot + "/" + D::kName, arm, std::move(detector), [](D& d) { d.reset(); },
-        [](D& d, const Sample<M>& s) { detail::keep(detect(d, s.y, s.tau_ext)); });
+        [](D& d, const Sample<M>& s) {
+          detail::keep(detect(d, s.y.t, s.y.qd, s.y.tau, s.tau_ext));
+        });
   }
 
   /// The terms of the arm's model, as `ROBOT/model.TERM`.

@@ -20,19 +20,9 @@ std::shared_ptr<void>& registered_of(const std::type_info& functions) {
   return all[functions];
 }
 
-void fail_taken(const char* what, const std::string& taken, const std::string& robot) {
-  throw std::invalid_argument(fmt::format(
-      "{} '{}' of {}: the name is taken; other parameters of it are a specification, {}:key=value",
-      what, taken, robot, name_of_specification(taken)));
-}
-
 void fail_truth(const std::string& estimator) {
   throw std::invalid_argument(
       fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", estimator));
-}
-
-void refuse_keys(const Specification& s) {
-  if (!s.keys.empty()) fail_unknown_key(s.keys.front().first);
 }
 
 std::optional<double> take_bandwidth(Specification& s) {
@@ -42,19 +32,6 @@ std::optional<double> take_bandwidth(Specification& s) {
   const double w = number_of("bandwidth", key->second, kLeastBandwidth, kMostBandwidth);
   s.keys.erase(key);
   return w;
-}
-
-std::vector<std::string> specifications_of(const std::vector<TrainedPart>& parts,
-                                           const Specification& whole) {
-  std::vector<std::string> all;
-  for (const TrainedPart& part : parts) {
-    all.push_back(part.name);
-    for (const auto& [key, value] : whole.keys) {
-      if (key.starts_with(part.prefix))
-        all.back() += fmt::format(":{}={}", key.substr(part.prefix.size()), value);
-    }
-  }
-  return all;
 }
 
 FieldHelp bandwidth_help() {

@@ -20,6 +20,7 @@
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/scenarios/scenario.h"
+#include "mjcf/trace/known.h"
 
 namespace tauext {
 namespace {
@@ -63,11 +64,14 @@ bool is_robot_file(std::string_view name) {
          path.ends_with(".json");
 }
 
-Robot::Robot(std::string name, int dof, const Model& file) : name_(std::move(name)), dof_(dof) {
+Robot::Robot(std::string name, int dof, const Model& file)
+    : name_(std::move(name)), dof_(dof), torques_(Joints<>::Ones(dof)) {
   if (!file) return;
   file_ = simulated(file);
   unfit_ = too_stiff(file_);
   usual_torque_ = scale_of(file_).usual_torque;
+  constexpr double kUsualTorque = 1200;  // [N m] that detectors' defaults fit
+  torques_ = usual_torque_ / kUsualTorque;
   const ArmTree arm = tree_of(file_);
   fingerprint_ = fingerprint_of(arm);
   for (int i = 0; i < dof; ++i) slides_ = slides_ || arm.slides(i);
@@ -182,6 +186,76 @@ void register_scenario_of(const Robot& r, const Scenario& s) {
   refuse_taken(generic_scenarios(r.load_for(quiet())));
   refuse_taken(registered_for(r.name()));
   registered_for(r.name()).push_back(s);
+}
+
+std::vector<std::string> Robot::detectors() const {
+  std::vector<std::string> all;
+  for (const DetectorType& d : detectors_) all.push_back(d.name);
+  return all;
+}
+
+std::vector<std::string> Robot::calibratable() const {
+  std::vector<std::string> all;
+  for (const DetectorType& d : detectors_)
+    if (d.calibration) all.push_back(d.name);
+  return all;
+}
+
+void Robot::add_detector(const DetectorType& type) {
+  for (const DetectorType& d : detectors_)
+    if (d.name == type.name) detail::fail_taken("detector", type.name, name_);
+  detectors_.push_back(type);
+}
+
+const DetectorType& Robot::detector_type(std::string_view specification) const {
+  return find_known(detectors_, "detector", name_of_specification(specification),
+                    [](const DetectorType& d) { return d.name; });
+}
+
+// itself, those that it is made of, or none; with the keys that are theirs
+std::vector<std::string> Robot::trained_parts(std::string_view detector) const {
+  const Specification whole = parse_specification(detector);
+  std::vector<std::string> all;
+  for (const detail::TrainedPart& part : detector_type(detector).trained_parts) {
+    all.push_back(part.name);
+    for (const auto& [key, value] : whole.keys) {
+      if (key.starts_with(part.prefix))
+        all.back() += fmt::format(":{}={}", key.substr(part.prefix.size()), value);
+    }
+  }
+  return all;
+}
+
+const std::vector<FieldHelp>& Robot::detector_fields(std::string_view name) const {
+  return detector_type(name).fields;
+}
+
+const Calibration& Robot::calibration(std::string_view detector) const {
+  const DetectorType& d = detector_type(detector);
+  if (d.calibration) return *d.calibration;
+  throw unknown("calibratable detector", detector, calibratable());
+}
+
+std::unique_ptr<DetectorStage<>> Robot::detector_of(std::string_view specification,
+                                                    const DetectorSettings& settings) const {
+  if (specification.empty()) return nullptr;
+  const DetectorType& d = detector_type(specification);
+  return detail::made(specification, d.fields,
+                      [&](const Specification& s) { return d.make(s, settings, torques_); });
+}
+
+std::vector<Detection> Robot::detect(std::string_view detector, const Trace& trace,
+                                     const Output& estimates,
+                                     const DetectorSettings& settings) const {
+  require_joints(trace.dof());
+  const std::unique_ptr<DetectorStage<>> stage = detector_of(detector, settings);
+  std::vector<Detection> all(trace.t.size());
+  for (int k = 0; k < trace.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Joints<> qd = trace.qd.col(k), tau = trace.tau.col(k), tau_ext = estimates.tau_ext.col(k);
+    stage->run({trace.t[at], qd, tau, tau_ext, estimates.status[at]}, {&all[at], 1});
+  }
+  return all;
 }
 
 void Robot::check(std::string_view estimator, std::string_view detector) const {

@@ -31,13 +31,6 @@ inline constexpr std::string_view kLock = ":lock=";
 /// Whether a robot of that name is a file, by its path, [:lock=REGEX] or not.
 bool is_robot_file(std::string_view name);
 
-/// What calibrating a detector needs to know.
-struct Calibration {
-  int degree = 1;             ///< power of tau_ext that its statistic grows with
-  Eigen::VectorXd threshold;  ///< its default, in the unit of its statistic
-  bool has_metric = false;    ///< whether it weighs the joints by a metric, too
-};
-
 /// A robot with the estimators and detectors that run on it. Wherever an estimator or a detector is
 /// asked for, a specification (bench/roster/specification.h) is understood. Every call throws
 /// std::invalid_argument for an unknown name or key, listing the known ones, and for a trace of
@@ -107,18 +100,16 @@ class Robot {
                                       const Recording& recording) const = 0;
 
   virtual std::vector<std::string> estimators() const = 0;  ///< by name
-  virtual std::vector<std::string> detectors() const = 0;   ///< by name
+  std::vector<std::string> detectors() const;               ///< by name
   virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
-  virtual std::vector<std::string> calibratable()
-      const = 0;  ///< detectors with thresholds from data
+  std::vector<std::string> calibratable() const;            ///< detectors with thresholds from data
   /// The specifications of the detectors whose thresholds one takes: itself, those that it is made
   /// of, or none.
-  virtual std::vector<std::string> trained_parts(std::string_view detector) const = 0;
+  std::vector<std::string> trained_parts(std::string_view detector) const;
 
   /// What can be set in an estimator or a detector.
   virtual std::vector<FieldHelp> estimator_fields(std::string_view name) const = 0;
-  virtual std::vector<FieldHelp> detector_fields(
-      std::string_view name) const = 0;  ///< of a detector
+  const std::vector<FieldHelp>& detector_fields(std::string_view name) const;  ///< of a detector
 
   /// Binds an estimator, and a detector unless it is "", to a trace's samples.
   /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not
@@ -151,12 +142,13 @@ class Robot {
   virtual int runs_at_once() const = 0;
 
   /// What a detector says of estimates that an estimator made of the trace, sample by sample.
-  virtual std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                        const Output& estimates,
-                                        const DetectorSettings& settings) const = 0;
+  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
+                                const Output& estimates, const DetectorSettings& settings) const;
 
   /// How a calibratable detector's thresholds are set.
-  virtual const Calibration& calibration(std::string_view detector) const = 0;
+  const Calibration& calibration(std::string_view detector) const;
+  /// The type that a detector's specification names.
+  const DetectorType& detector_type(std::string_view specification) const;
 
  protected:
   /// For whoever derives.
@@ -164,8 +156,13 @@ class Robot {
   /// @throws std::invalid_argument if that cannot be simulated, saying why not
   Robot(std::string name, int dof, const Model& file = nullptr);
 
-  /// ArmScale::usual_torque [N m] of a file's robot; else empty.
-  const Eigen::VectorXd& usual_torque() const { return usual_torque_; }
+  /// [1] times what the torques in detectors' defaults are right for this arm.
+  const Joints<>& torques() const { return torques_; }
+  /// @throws std::invalid_argument if its name is taken
+  void add_detector(const DetectorType& type);
+  /// Null for "".
+  std::unique_ptr<DetectorStage<>> detector_of(std::string_view specification,
+                                               const DetectorSettings& settings) const;
 
  private:
   void require_fit() const;
@@ -176,7 +173,9 @@ class Robot {
   std::string unfit_;  // why it cannot be
   std::string fingerprint_;
   bool slides_ = false;
-  Eigen::VectorXd usual_torque_;
+  Eigen::VectorXd usual_torque_;  // ArmScale::usual_torque [N m] of a file's robot; else empty
+  Joints<> torques_;
+  std::vector<DetectorType> detectors_;
   mutable std::once_flag listed_;
   mutable std::vector<Scenario> scenarios_;  // of a file's robot
 };

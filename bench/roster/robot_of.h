@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "bench/roster/kernels/detectors.h"
 #include "bench/roster/making.h"
 #include "bench/roster/session/session_of.h"
-#include "estimators/runs/detecting.h"
 #include "estimators/runs/runs.h"
 #include "mjcf/record_plain.h"
 #include "mjcf/trace/known.h"
@@ -34,9 +34,8 @@ template <RobotModel M>
 auto& registered_estimators() {
   return registered<void(const M&, RobotOf<M::kDof>&)>();
 }
-template <int N>
-auto& registered_detectors() {
-  return registered<void(RobotOf<N>&)>();
+inline auto& registered_detectors() {
+  return registered<DetectorType(const Joints<>& torques)>();
 }
 
 // a robot of N joints: its factories, by name
@@ -44,15 +43,15 @@ template <int N>
 class RobotOf final : public Robot {
  public:
   template <RobotModel M>
-  RobotOf(const std::string& name, const M& model, const Model& file)
-      : Robot(name, N, file), torques_(torques_of<N>(usual_torque())) {
+  RobotOf(const std::string& name, const M& model, const Model& file) : Robot(name, N, file) {
+    static_assert(N <= kMaxJoints);
     for_each_estimator(model, [&](auto make) {
       add_estimator(model, make);
       if constexpr (std::is_same_v<M, WallMoBot3> || kLarge) add_runs(model, make);
     });
-    add_roster_detectors();
+    for (const DetectorType& d : roster_detectors<kRuns>(torques())) add_detector(d);
     for (const auto& add : registered_estimators<M>()) add(model, *this);
-    for (const auto& add : registered_detectors<N>()) add(*this);
+    for (const auto& type : registered_detectors()) add_detector(type(torques()));
     for (const auto& [robot, text] : registered_specifications()) {
       if (robot == name) add_specification(text);
     }
@@ -64,7 +63,8 @@ class RobotOf final : public Robot {
   void add_estimator(const M& model, Make make) {
     using E = std::decay_t<decltype(make(std::declval<const Trace&>()))>;
     using Stage = EstimatorStageOf<E>;
-    refuse_taken(estimators_, "estimator", E::kName);
+    for (const auto& e : estimators_)
+      if (e.name == E::kName) fail_taken("estimator", E::kName, name());
     EstimatorEntry<N> entry{.name = E::kName};
     entry.make = [make](const MadeFor<N>& of, const Specification& s) -> EstimatorPtr {
       refuse_keys(s);
@@ -80,22 +80,6 @@ class RobotOf final : public Robot {
     }
     estimators_.push_back(std::move(entry));
   }
-
-  /// @throws std::invalid_argument if the name is taken
-  template <CollisionDetector D>
-  void add_detector() {
-    refuse_taken(detectors_, "detector", D::kName);
-    DetectorEntry<N> entry{.name = D::kName,
-                           .fields = fields_of_detector<D>(torques_),
-                           .trained_parts = trained_parts_of<D>(),
-                           .calibration = calibration_of<D>(torques_)};
-    entry.make = [torques = torques_](const DetectorSettings& s, const Specification& spec) {
-      return std::make_unique<DetectorStageOf<D>>(make_detector<D>(s, spec, torques));
-    };
-    detectors_.push_back(std::move(entry));
-  }
-
-  void add_roster_detectors();
 
   /// Lists a specification among the estimators.
   /// @throws std::invalid_argument if it means nothing here, or is listed already
@@ -113,28 +97,15 @@ class RobotOf final : public Robot {
   }
 
   std::vector<std::string> estimators() const override {
-    std::vector<std::string> all = names(estimators_, [](const auto&) { return true; });
+    std::vector<std::string> all = names([](const auto&) { return true; });
     all.insert(all.end(), specifications_.begin(), specifications_.end());
     return all;
   }
-  std::vector<std::string> detectors() const override {
-    return names(detectors_, [](const auto&) { return true; });
-  }
   std::vector<std::string> tunable() const override {
-    return names(estimators_, [](const auto& e) { return e.tunable; });
-  }
-  std::vector<std::string> calibratable() const override {
-    return names(detectors_, [](const auto& d) { return d.calibration.has_value(); });
-  }
-  std::vector<std::string> trained_parts(std::string_view detector) const override {
-    const Specification s = parse_specification(detector);
-    return specifications_of(find(detectors_, "detector", s.name).trained_parts, s);
+    return names([](const auto& e) { return e.tunable; });
   }
   std::vector<FieldHelp> estimator_fields(std::string_view name) const override {
-    return find(estimators_, "estimator", name).fields;
-  }
-  std::vector<FieldHelp> detector_fields(std::string_view name) const override {
-    return find(detectors_, "detector", name).fields;
+    return find(name).fields;
   }
 
   std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
@@ -161,70 +132,48 @@ class RobotOf final : public Robot {
     make.estimator_of_runs = [this](std::string_view e, const MadeFor<N>& of) {
       return estimator_of_runs(e, of);
     };
-    make.detector_of_runs = [this](const Asked& d) { return detector_of_runs(d); };
+    make.detector_of_runs = [this](const Asked& d) { return runs_detector(d); };
     return std::make_unique<SessionOf<N>>(traces, std::move(make));
   }
   int runs_at_once() const override { return kRuns; }
-
-  std::vector<Detection> detect(std::string_view detector, const Trace& trace,
-                                const Output& estimates, const DetectorSettings& s) const override {
-    require_joints(trace.dof());
-    return said_by(*detector_of(detector, s), trace, estimates);
-  }
-
-  const Calibration& calibration(std::string_view detector) const override {
-    const auto& d = find(detectors_, "detector", detector);
-    if (d.calibration) return *d.calibration;
-    throw unknown("calibratable detector", detector, calibratable());
-  }
 
  private:
   // arms for whose algebra lanes are worth their compiling; Eigen's of 8 joints branches by numbers
   static constexpr bool kLarge = N == 6 || N == 7;
   using Lanes = Pack<kRuns>;
   using EstimatorPtr = std::unique_ptr<EstimatorStage<N>>;
-  using DetectorPtr = std::unique_ptr<DetectorStage<N>>;
 
-  template <class List>
-  static const auto& find(const List& list, const char* what, std::string_view specification) {
-    return find_known(list, what, name_of_specification(specification),
+  const EstimatorEntry<N>& find(std::string_view specification) const {
+    return find_known(estimators_, "estimator", name_of_specification(specification),
                       [](const auto& e) { return e.name; });
   }
 
-  template <class List, class Wanted>
-  static std::vector<std::string> names(const List& list, Wanted&& wanted) {
+  template <class Wanted>
+  std::vector<std::string> names(const Wanted& wanted) const {
     std::vector<std::string> all;
-    for (const auto& e : list) {
+    for (const auto& e : estimators_) {
       if (wanted(e)) all.push_back(e.name);
     }
     return all;
   }
 
-  template <class List>
-  void refuse_taken(const List& list, const char* what, const std::string& taken) const {
-    for (const auto& e : list) {
-      if (e.name == taken) fail_taken(what, taken, name());
-    }
-  }
-
-  DetectorPtr detector_of(std::string_view text, const DetectorSettings& s) const {
-    if (text.empty()) return nullptr;
-    const auto& d = find(detectors_, "detector", text);
-    return made(d.make, d, text, s);
-  }
-  auto detector_of_runs(const Asked& asked) const {
-    const auto& d = find(detectors_, "detector", asked.detector);
-    return made(d.make_runs, d, asked.detector, asked.settings);
+  std::unique_ptr<DetectorStage<Lanes>> runs_detector(const Asked& asked) const {
+    return made(asked.detector, detector_fields(asked.detector), [&](const Specification& s) {
+      return detector_of_runs<kRuns>(s, asked.settings, torques());
+    });
   }
 
   EstimatorPtr estimator_of(std::string_view text, const MadeFor<N>& of) const {
-    const auto& e = find(estimators_, "estimator", text);
+    const EstimatorEntry<N>& e = find(text);
     if (needs_truth(text) && !of.trace.has_truth()) fail_truth(e.name);
-    return made(e.make, e, at_instants(e.fields, text, of.trace), of);
+    return made(at_instants(e.fields, text, of.trace), e.fields,
+                [&](const Specification& s) { return e.make(of, s); });
   }
+  // null for one that cannot
   auto estimator_of_runs(std::string_view text, const MadeFor<N>& of) const {
-    const auto& e = find(estimators_, "estimator", text);
-    return made(e.make_runs, e, at_instants(e.fields, text, of.trace), of);
+    const EstimatorEntry<N>& e = find(text);
+    return made(at_instants(e.fields, text, of.trace), e.fields,
+                [&](const Specification& s) { return e.make_runs ? e.make_runs(of, s) : nullptr; });
   }
 
   // lets the estimator that was added last do several runs at once, if it can
@@ -246,27 +195,9 @@ class RobotOf final : public Robot {
     }
   }
 
-  Vec<N> torques_;  // of torques_of()
   std::vector<EstimatorEntry<N>> estimators_;
-  std::vector<DetectorEntry<N>> detectors_;
   std::vector<std::string> specifications_;  // that are listed beside the estimators
 };
-
-template <int N>
-void RobotOf<N>::add_roster_detectors() {
-  for_each_detector<N>([&](auto make) {
-    using D = decltype(make());
-    add_detector<D>();
-    if constexpr (DetectsRuns<D>) {
-      using OfRuns = typename D::template For<Lanes>;
-      detectors_.back().make_runs = [torques = torques_](const DetectorSettings& s,
-                                                         const Specification& spec) {
-        const D one = make_detector<D>(s, spec, torques);
-        return std::make_unique<DetectorStageOf<OfRuns, Lanes>>(OfRuns(one.parameters()));
-      };
-    }
-  });
-}
 
 // compiled in the library, by the sources of kernels/
 extern template class RobotOf<1>;

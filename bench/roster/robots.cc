@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bench/roster/detector_list.h"
 #include "bench/roster/file_robot.h"
 #include "bench/roster/kernels/kernels.h"
 #include "bench/roster/robot_of.h"
@@ -173,7 +174,8 @@ std::string level() {
 bool study_only(std::string_view detector) {
   const std::string_view name = name_of_specification(detector);
   bool found = false;
-  for_each_study_detector<1>([&](auto make) { found = found || decltype(make())::kName == name; });
+  for_each_study_detector(
+      [&]<class D>(std::type_identity<D>) { found = found || D::kName == name; });
   return found;
 }
 

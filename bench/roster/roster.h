@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// THE list: what the suite runs. One line here adds an estimator, a detector or a robot to the
-/// benchmark, to tauext-replay and to the conformance tests. (Scenarios:
+/// THE list: what the suite runs. One line here adds an estimator or a robot to the benchmark, to
+/// tauext-replay and to the conformance tests. (Detectors: detector_list.h; scenarios:
 /// mjcf/scenarios/wallmobot3.cc and its like.)
 #pragma once
 
@@ -11,16 +11,6 @@
 
 #include "bench/roster/baselines.h"
 #include "estimators/active_observer.h"
-#include "estimators/detectors/band_pass.h"
-#include "estimators/detectors/clamping.h"
-#include "estimators/detectors/contact_classifier.h"
-#include "estimators/detectors/cusum.h"
-#include "estimators/detectors/dynamic_threshold.h"
-#include "estimators/detectors/energy.h"
-#include "estimators/detectors/glr.h"
-#include "estimators/detectors/high_pass.h"
-#include "estimators/detectors/pan_tompkins.h"
-#include "estimators/detectors/threshold.h"
 #include "estimators/disturbance_kalman_filter.h"
 #include "estimators/ekf.h"
 #include "estimators/extended_state_observer.h"
@@ -161,35 +151,6 @@ void for_each_estimator(const Testbed1& arm, Visit&& visit) {
   visit(with<EkfRawSign>(raw_sign, EkfRawSign::Parameters::paper()));
   visit(with<Ndob<M>>(arm, testbed1_ndob()));
   visit(with<NdobRawSign>(raw_sign, testbed1_ndob()));
-}
-
-/// Calls visit(make) for the detectors that the suite runs behind every estimator; make() builds
-/// one.
-template <int N, class Visit>
-void for_each_suite_detector(Visit&& visit) {
-  visit([] { return PanTompkins<N>(); });
-  visit([] { return ContactClassifier<N>(); });
-}
-
-/// Calls visit(make) for those that stand in the studies alone: with all of them the suite's tables
-/// would not end.
-template <int N, class Visit>
-void for_each_study_detector(Visit&& visit) {
-  visit([] { return Clamping<N>(); });
-  visit([] { return Threshold<N>(); });
-  visit([] { return DynamicThreshold<N>(); });
-  visit([] { return HighPass<N>(); });
-  visit([] { return BandPass<N>(); });
-  visit([] { return Cusum<N>(); });
-  visit([] { return Glr<N>(); });
-  visit([] { return Energy<N>(); });
-}
-
-/// Calls visit(make) for every detector of N joints; make() builds one.
-template <int N, class Visit>
-void for_each_detector(Visit&& visit) {
-  for_each_suite_detector<N>(visit);
-  for_each_study_detector<N>(visit);
 }
 
 /// Calls visit(name, model) for every robot; the MJCF of that name is its truth.

@@ -123,5 +123,15 @@ void fail_choice(const std::string& key, const std::string& value,
       fmt::format("{}={}: it must be {}", key, value, fmt::join(known, " or ")));
 }
 
+void refuse_keys(const Specification& s) {
+  if (!s.keys.empty()) fail_unknown_key(s.keys.front().first);
+}
+
+void fail_taken(const char* what, const std::string& taken, const std::string& robot) {
+  throw std::invalid_argument(fmt::format(
+      "{} '{}' of {}: the name is taken; other parameters of it are a specification, {}:key=value",
+      what, taken, robot, name_of_specification(taken)));
+}
+
 }  // namespace detail
 }  // namespace tauext

@@ -6,7 +6,6 @@
 /// (estimators/parameters.h), and `bandwidth` [rad/s] of every estimator that can be set to one.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -157,31 +156,6 @@ std::vector<FieldHelp> field_help(const P* p = nullptr) {
   return out;
 }
 
-/// Times factor, joint by joint, for every parameter in N m: squared for one in (N m)^2. Where a
-/// metric mixes the joints, it makes them comparable, and its threshold is that of as many.
-template <class P, int N>
-void scale_torques(P& p, const Vec<N>& factor) {
-  if constexpr (ListsFields<P>) {
-    for_each_field<P>([&]<class F>(const F& f) {
-      using T = std::remove_reference_t<decltype(p.*f.at)>;
-      if constexpr (!requires { f.unit; }) {
-        scale_torques(p.*f.at, factor);
-      } else if constexpr (std::is_same_v<T, Vec<N>>) {
-        const std::string_view unit = f.unit;
-        if (unit.starts_with("N m")) p.*f.at = (p.*f.at).cwiseProduct(factor);
-        if (unit.starts_with("(N m")) p.*f.at = (p.*f.at).cwiseProduct(factor.cwiseAbs2());
-      }
-    });
-  }
-  if constexpr (requires { p.metric; }) {
-    if (factor == Vec<N>::Ones()) return;
-    const double largest = factor.maxCoeff();
-    const Vec<N> even = largest * factor.cwiseInverse();
-    p.metric = even.asDiagonal() * p.metric * even.asDiagonal();
-    p.threshold = p.threshold.cwiseProduct(even) * std::sqrt(N / 3.);
-  }
-}
-
 /// Sets the keys in p, in their order.
 /// @throws std::invalid_argument for an unknown key or a value out of range
 template <class P>
@@ -209,4 +183,20 @@ auto explaining_keys(std::string_view owner, const std::vector<FieldHelp>& known
   }
 }
 
+namespace detail {
+
+// what make(specification) makes of the text
+template <class Make>
+auto made(std::string_view text, const std::vector<FieldHelp>& fields, const Make& make) {
+  const Specification s = parse_specification(text);
+  if (s.keys.empty()) return make(s);
+  return explaining_keys(text, fields, [&] { return make(s); });
+}
+
+// the keys that nothing knows
+void refuse_keys(const Specification& s);
+// a name of a robot that two would have
+[[noreturn]] void fail_taken(const char* what, const std::string& taken, const std::string& robot);
+
+}  // namespace detail
 }  // namespace tauext

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Estimators and detectors behind one virtual call for a batch of samples, never for one sample.
+/// Estimators behind one virtual call for a batch of samples, and detectors behind them.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "bench/roster/detectors.h"
 #include "estimators/concepts.h"
-#include "estimators/detectors/marking.h"
 #include "estimators/math/pack.h"
 #include "estimators/samples/status_counts.h"
 #include "estimators/tree/run_terms.h"
@@ -53,24 +53,6 @@ class EstimatorStage {
                    std::span<Estimates> out) = 0;  ///< an estimate for each sample
 };
 
-/// A detector of N joints, type-erased; with a Pack for Scalar, of several runs of one clock, of
-/// whose estimates all are used().
-template <int N, class Scalar = double>
-class DetectorStage {
- public:
-  using Estimates = typename detail::EstimateOf<N, Scalar>::type;  ///< of a sample
-
-  virtual ~DetectorStage() = default;
-  virtual void reset() = 0;  ///< forgets all samples
-  /// What is detected at each sample.
-  virtual void run(std::span<const Measurement<N, Scalar>> at, std::span<const Estimates> in,
-                   std::span<DetectionOf<Scalar>> out) = 0;
-  /// Of the last sample; zero for a detector that cannot be calibrated.
-  virtual Vec<N, Scalar> statistic() const = 0;
-  /// What its metric weighs; zero for a detector without one.
-  virtual Vec<N, Scalar> change() const = 0;
-};
-
 /// The stage of this estimator; of Runs of one, with their Scalar.
 template <class E, class Scalar = double>
 class EstimatorStageOf final : public EstimatorStage<E::kDof, Scalar> {
@@ -86,44 +68,6 @@ class EstimatorStageOf final : public EstimatorStage<E::kDof, Scalar> {
 
  private:
   E e_;
-};
-
-/// The stage of this detector, which computes with Scalar.
-template <class D, class Scalar = double>
-class DetectorStageOf final : public DetectorStage<D::kDof, Scalar> {
- public:
-  using typename DetectorStage<D::kDof, Scalar>::Estimates;
-
-  explicit DetectorStageOf(D d) : d_(std::move(d)) {}  ///< takes it over
-  void reset() override { d_.reset(); }
-  /// As DetectorStage says.
-  void run(std::span<const Measurement<D::kDof, Scalar>> at, std::span<const Estimates> in,
-           std::span<DetectionOf<Scalar>> out) override {
-    for (std::size_t k = 0; k < in.size(); ++k) {
-      if constexpr (std::is_same_v<Scalar, double>) {
-        out[k] = detect(d_, at[k], in[k]);
-      } else {
-        out[k] = detect_runs(d_, at[k], in[k].tau_ext);
-      }
-    }
-  }
-  Vec<D::kDof, Scalar> statistic() const override {
-    if constexpr (requires { d_.statistic(); }) {
-      return d_.statistic();
-    } else {
-      return Vec<D::kDof, Scalar>::Zero();
-    }
-  }
-  Vec<D::kDof, Scalar> change() const override {
-    if constexpr (requires { d_.change(); }) {
-      return d_.change();
-    } else {
-      return Vec<D::kDof, Scalar>::Zero();
-    }
-  }
-
- private:
-  D d_;
 };
 
 /// What a run over a whole trace gives; one column or element per sample.
@@ -176,7 +120,7 @@ template <int N>
 class StepperOf final : public Stepper {
  public:
   /// The second may be null.
-  StepperOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<N>> d)
+  StepperOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<>> d)
       : estimator_(std::move(e)), detector_(std::move(d)) {}
 
   void reset() noexcept override {
@@ -190,8 +134,10 @@ class StepperOf final : public Stepper {
     const Measurement<N> y{t, Values(q), Values(qd), Values(tau)};
     Estimate<N> estimate;
     Stepped out;
-    estimator_->run({&y, 1}, {&estimate, 1});
-    if (detector_) detector_->run({&y, 1}, {&estimate, 1}, {&out.detection, 1});
+    const std::span<const Measurement<N>> at(&y, 1);
+    estimator_->run(at, {&estimate, 1});
+    if (detector_)
+      detector_->run({at, std::span<const Estimate<N>>(&estimate, 1)}, {&out.detection, 1});
     Vec<N>::Map(tau_ext) = estimate.tau_ext;
     out.status = estimate.status;
     out.joints = estimate.joints;
@@ -200,7 +146,7 @@ class StepperOf final : public Stepper {
 
  private:
   std::unique_ptr<EstimatorStage<N>> estimator_;
-  std::unique_ptr<DetectorStage<N>> detector_;
+  std::unique_ptr<DetectorStage<>> detector_;
 };
 
 /// Of these stages.
@@ -208,7 +154,7 @@ template <int N>
 class RunnerOf final : public Runner {
  public:
   /// The second may be null.
-  RunnerOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<N>> d,
+  RunnerOf(std::unique_ptr<EstimatorStage<N>> e, std::unique_ptr<DetectorStage<>> d,
            const Trace& trace)
       : estimator_(std::move(e)), detector_(std::move(d)) {
     samples_.reserve(trace.size());
@@ -243,13 +189,15 @@ class RunnerOf final : public Runner {
     const std::size_t n = std::min<std::size_t>(kBatch, samples_.size() - next_);
     const std::span<const Measurement<N>> in(&samples_[next_], n);
     estimator_->run(in, {estimates_.data(), n});
-    if (detector_) detector_->run(in, {estimates_.data(), n}, {detections_.data(), n});
+    if (detector_)
+      detector_->run({in, std::span<const Estimate<N>>(estimates_.data(), n)},
+                     {detections_.data(), n});
     next_ = next_ + n == samples_.size() ? 0 : next_ + n;
     return n;
   }
 
   std::unique_ptr<EstimatorStage<N>> estimator_;
-  std::unique_ptr<DetectorStage<N>> detector_;
+  std::unique_ptr<DetectorStage<>> detector_;
   std::vector<Measurement<N>> samples_;
   std::vector<Estimate<N>> estimates_ = std::vector<Estimate<N>>(kBatch);
   std::vector<Detection> detections_ = std::vector<Detection>(kBatch);

@@ -4,6 +4,7 @@
 #include <concepts>
 
 #include "bench/kit/kernels.h"
+#include "bench/roster/detector_list.h"
 #include "bench/roster/roster.h"
 #include "estimators/tree/tree_model.h"
 
@@ -47,7 +48,9 @@ TAUEXT_PLUGIN(kernels) {
   using namespace tauext;
   for_each_robot([&]<class M>(const std::string& robot, const M& arm) {
     add_model_and_estimators(kernels, robot, arm);
-    for_each_detector<M::kDof>([&](auto make) { kernels.add_detector(robot, arm, make()); });
+    for_each_detector([&]<class D>(std::type_identity<D>) {  //
+      kernels.add_detector(robot, arm, D(M::kDof));
+    });
   });
   add_model_and_estimators(kernels, "tree7", tree7());
 }

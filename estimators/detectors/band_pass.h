@@ -14,11 +14,10 @@
 namespace tauext {
 
 /// What can be chosen of a BandPass.
-template <int N>
 struct BandPassParameters {
   /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the
   /// origin
-  Vec<N> threshold = Vec<N>::Constant(45);
+  Joints<> threshold = Joints<>::Constant(1, 45);
   double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
   double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -36,23 +35,23 @@ struct BandPassParameters {
   }
 };
 
-/// Band-pass and limit over N joints.
-template <int N, class Scalar = double>
-class BandPass {
+/// Band-pass and limit; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicBandPass {
  public:
   static constexpr const char* kName = "band_pass";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = BandPassParameters<N>;  ///< what can be set
+  using Parameters = BandPassParameters;  ///< what can be set
   template <class Other>
-  using For = BandPass<N, Other>;  ///< the same, computed with another number
+  using For = BasicBandPass<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit BandPass(const Parameters& p = {})
-      : p_(check_parameters(p, kName)),
-        slow_(p.w_low),
-        quick_(p.w_high),
-        marking_(p.refractory, p.start_up) {
+  explicit BasicBandPass(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        slow_(joints, p.w_low),
+        quick_(joints, p.w_high),
+        marking_(p.refractory, p.start_up),
+        statistic_(Joints<Scalar>::Zero(joints)) {
     require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
   }
 
@@ -63,32 +62,33 @@ class BandPass {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       slow_.start(t, tau_ext);
-      quick_.start(t, Vec<N, Scalar>::Zero());
+      quick_.start(t, Joints<Scalar>::Zero(tau_ext.size()).eval());
     } else {
-      const Vec<N, Scalar> high = tau_ext - slow_(t, tau_ext);
+      const Joints<Scalar> high = tau_ext - slow_(t, tau_ext);
       statistic_ = quick_(t, high).cwiseAbs();  // (i)
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |z|.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
 
   Parameters p_;
-  LowPass<N, Scalar> slow_, quick_;
+  LowPass<Scalar> slow_, quick_;
   BasicMarking<Scalar> marking_;
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<BandPass<3>>);
+/// Of one run.
+using BandPass = BasicBandPass<>;
+static_assert(CalibratableDetector<BandPass>);
 
 }  // namespace tauext

@@ -16,6 +16,7 @@
 /// to it.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,17 +26,20 @@
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
 #include "estimators/detectors/marking.h"
-#include "estimators/math/ldlt.h"
 
 namespace tauext {
 
+/// A value for each two joints of an arm of up to kMaxJoints, without a heap.
+template <class Scalar = double>
+using JointsMatrix =
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
+
 /// What can be chosen of a Clamping.
-template <int N>
 struct ClampingParameters {
   /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger
   /// misses more and alarms less; by default beyond a push of 100 N at 1.5 m
-  Vec<N> threshold = Vec<N>::Constant(150);
-  Mat<N> metric = Mat<N>::Identity();  ///< [1] of (ii), symmetric positive definite
+  Joints<> threshold = Joints<>::Constant(1, 150);
+  JointsMatrix<> metric{};  ///< [1] of (ii), symmetric positive definite; empty: identity
   /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a
   /// clamping that rises slowly
   double w_baseline = 0.5;
@@ -59,28 +63,35 @@ struct ClampingParameters {
   }
 };
 
-/// Limit on slow, lasting changes over N joints.
-template <int N, class Scalar = double>
-class Clamping {
+/// Limit on slow, lasting changes; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicClamping {
  public:
   static constexpr const char* kName = "clamping";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = ClampingParameters<N>;  ///< what can be set
+  using Parameters = ClampingParameters;  ///< what can be set
   template <class Other>
-  using For = Clamping<N, Other>;  ///< the same, computed with another number
+  using For = BasicClamping<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Clamping(const Parameters& p = {})
-      : p_(check_parameters(p, kName)),
-        baseline_(p.w_baseline),
-        smooth_(p.w_smooth),
-        metric_(p.metric.template cast<Scalar>()),
+  explicit BasicClamping(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        baseline_(joints, p.w_baseline),
+        smooth_(joints, p.w_smooth),
+        metric_(JointsMatrix<Scalar>::Identity(joints, joints)),
         marking_(p.refractory, p.start_up),
-        least_threshold_(p.threshold.minCoeff()) {
+        least_threshold_(p.threshold.minCoeff()),
+        z_(Joints<Scalar>::Zero(joints)),
+        statistic_(z_) {
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
-    require(p.metric.isApprox(p.metric.transpose()) && Ldlt<N>(p.metric).ok(),
-            "metric of clamping must be symmetric and positive definite");
+    if (p.metric.size() > 0) {
+      require(p.metric.rows() == joints && p.metric.cols() == joints,
+              "metric of clamping must have a row and a column for each joint");
+      require(p.metric.isApprox(p.metric.transpose()) &&
+                  Eigen::LLT<JointsMatrix<>>(p.metric).info() == Eigen::Success,
+              "metric of clamping must be symmetric and positive definite");
+      metric_ = p.metric.template cast<Scalar>();
+    }
     reset();
   }
 
@@ -91,16 +102,16 @@ class Clamping {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       baseline_.start(t, tau_ext);
-      smooth_.start(t, Vec<N, Scalar>::Zero());
+      smooth_.start(t, Joints<Scalar>::Zero(tau_ext.size()).eval());
       block_began_ = t;
     } else {
       using std::sqrt;
-      const Vec<N, Scalar> changed = tau_ext - baseline_(t, tau_ext);
+      const Joints<Scalar> changed = tau_ext - baseline_(t, tau_ext);
       z_ = smooth_(t, changed);                        // (i)
       keep(t, sqrt(z_.dot(metric_.lazyProduct(z_))));  // (ii)
     }
@@ -108,10 +119,10 @@ class Clamping {
   }
 
   /// [N m] `lasting`, the same for every joint.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
   /// [N m] z of (i): how far tau_ext is from its baseline.
-  const Vec<N, Scalar>& change() const noexcept { return z_; }
+  const Joints<Scalar>& change() const noexcept { return z_; }
 
  private:
   void forget() noexcept {
@@ -139,17 +150,19 @@ class Clamping {
   }
 
   Parameters p_;
-  LowPass<N, Scalar> baseline_, smooth_;
-  Mat<N, Scalar> metric_;
+  LowPass<Scalar> baseline_, smooth_;
+  JointsMatrix<Scalar> metric_;
   BasicMarking<Scalar> marking_;
   double least_threshold_;              // [N m]
   std::array<Scalar, kBlocks> blocks_;  // [N m]
   Scalar older_ = 0;                    // [N m] least of all but the newest
   int newest_ = 0;
   double block_began_ = 0;  // [s]
-  Vec<N, Scalar> z_ = Vec<N, Scalar>::Zero(), statistic_ = z_;
+  Joints<Scalar> z_, statistic_;
 };
 
-static_assert(CalibratableDetector<Clamping<3>>);
+/// Of one run.
+using Clamping = BasicClamping<>;
+static_assert(CalibratableDetector<Clamping>);
 
 }  // namespace tauext

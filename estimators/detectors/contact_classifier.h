@@ -22,13 +22,12 @@
 namespace tauext {
 
 /// What can be chosen of a ContactClassifier.
-template <int N>
 struct ContactClassifierParameters {
-  typename PanTompkins<N>::Parameters collision{};  ///< of what finds a blow
-  typename Clamping<N>::Parameters clamping{};      ///< of what finds a clamping
+  PanTompkinsParameters collision{};  ///< of what finds a blow
+  ClampingParameters clamping{};      ///< of what finds a clamping
   /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
   /// default 15 N at 1 m
-  Vec<N> intentional = Vec<N>::Constant(15);
+  Joints<> intentional = Joints<>::Constant(1, 15);
   double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
 
   static constexpr auto fields() {
@@ -40,19 +39,20 @@ struct ContactClassifierParameters {
   }
 };
 
-/// Classifier over N joints.
-template <int N, class Scalar = double>
-class ContactClassifier {
+/// The classifier; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicContactClassifier {
  public:
   static constexpr const char* kName = "contact_classifier";
-  static constexpr int kDof = N;
-  using Parameters = ContactClassifierParameters<N>;  ///< what can be set
+  using Parameters = ContactClassifierParameters;  ///< what can be set
   template <class Other>
-  using For = ContactClassifier<N, Other>;  ///< the same, computed with another number
+  using For = BasicContactClassifier<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit ContactClassifier(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), collision_(p.collision), clamping_(p.clamping) {}
+  explicit BasicContactClassifier(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        collision_(joints, p.collision),
+        clamping_(joints, p.clamping) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -63,7 +63,7 @@ class ContactClassifier {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     const Status status = clock_.accept(t);
     if (!used(status)) return {no<Scalar>(), last_.score, last_.contact};
     if (status == Status::kStarted) forget();
@@ -78,7 +78,7 @@ class ContactClassifier {
     last_ = {no<Scalar>(), 0, contact_as<Scalar>(Contact::kNone)};
   }
 
-  DetectionOf<Scalar> classified(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> classified(double t, const JointsView<Scalar>& tau_ext) noexcept {
     using std::max;
     const DetectionOf<Scalar> hit = collision_.update(t, tau_ext);
     const DetectionOf<Scalar> clamp = clamping_.update(t, tau_ext);
@@ -89,10 +89,8 @@ class ContactClassifier {
     const MaskOf<Scalar> clamp_mark = clamped & !clamped_ & rested;
     clamped_ = clamped;
     clamp_marked_at_ = select(clamp_mark, Scalar(t), clamp_marked_at_);
-    const MaskOf<Scalar> touched = clamping_.change()
-                                       .cwiseAbs()
-                                       .cwiseQuotient(p_.intentional.template cast<Scalar>())
-                                       .maxCoeff() >= 1;
+    const Joints<Scalar> change = clamping_.change().cwiseAbs();
+    const MaskOf<Scalar> touched = largest_ratio(change, p_.intentional) >= 1;
     const MaskOf<Scalar> mark = (hit.mark & collides) | clamp_mark;
     const auto as = [](Contact c) { return contact_as<Scalar>(c); };
     return {mark, max(hit.score, clamp.score),
@@ -102,14 +100,16 @@ class ContactClassifier {
   }
 
   Parameters p_;
-  PanTompkins<N, Scalar> collision_;
-  Clamping<N, Scalar> clamping_;
+  BasicPanTompkins<Scalar> collision_;
+  BasicClamping<Scalar> clamping_;
   Clock clock_{Marking::kMaxGap};                      // says what those of both stages say
   Scalar hit_at_ = kNever, clamp_marked_at_ = kNever;  // [s]
   MaskOf<Scalar> clamped_ = no<Scalar>();
   DetectionOf<Scalar> last_ = {no<Scalar>(), 0, contact_as<Scalar>(Contact::kNone)};
 };
 
-static_assert(CollisionDetector<ContactClassifier<3>>);
+/// Of one run.
+using ContactClassifier = BasicContactClassifier<>;
+static_assert(CollisionDetector<ContactClassifier>);
 
 }  // namespace tauext

@@ -19,15 +19,14 @@
 namespace tauext {
 
 /// What can be chosen of a Cusum.
-template <int N>
 struct CusumParameters {
   /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
   /// of 100 N and 10 ms at 1.2 m
-  Vec<N> threshold = Vec<N>::Constant(0.4);
+  Joints<> threshold = Joints<>::Constant(1, 0.4);
   /// [N m] per joint, what z may have for ever: larger forgets quicker; by default above what a
   /// push of 80 N in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s,
   /// over w)
-  Vec<N> drift = Vec<N>::Constant(12);
+  Joints<> drift = Joints<>::Constant(1, 12);
   double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
   double most_score = 2;    ///< [1] where a sum stops: larger comes down later when a contact ends
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -46,20 +45,24 @@ struct CusumParameters {
   }
 };
 
-/// CUSUM over N joints.
-template <int N, class Scalar = double>
-class Cusum {
+/// CUSUM; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicCusum {
  public:
   static constexpr const char* kName = "cusum";
-  static constexpr int kDof = N;
-  static constexpr int kDegree = 1;       ///< at least: the drift does not grow
-  using Parameters = CusumParameters<N>;  ///< what can be set
+  static constexpr int kDegree = 1;    ///< at least: the drift does not grow
+  using Parameters = CusumParameters;  ///< what can be set
   template <class Other>
-  using For = Cusum<N, Other>;  ///< the same, computed with another number
+  using For = BasicCusum<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Cusum(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), mean_(p.w), marking_(p.refractory, p.start_up) {}
+  explicit BasicCusum(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        mean_(joints, p.w),
+        marking_(p.refractory, p.start_up),
+        up_(Joints<Scalar>::Zero(joints)),
+        down_(up_),
+        statistic_(up_) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -68,27 +71,26 @@ class Cusum {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
       const Scalar h = t - t_;
-      const Vec<N, Scalar> drift = p_.drift.template cast<Scalar>();
-      const Vec<N, Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
-      const Vec<N, Scalar> z = tau_ext - mean_(t, tau_ext);
+      const Joints<Scalar> drift = p_.drift.template cast<Scalar>();
+      const Joints<Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
+      const Joints<Scalar> z = tau_ext - mean_(t, tau_ext);
       up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
       down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
       statistic_ = up_.cwiseMax(down_);
     }
     t_ = t;
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m s] the larger sum.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept {
@@ -100,13 +102,14 @@ class Cusum {
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   Parameters p_;
-  LowPass<N, Scalar> mean_;
+  LowPass<Scalar> mean_;
   BasicMarking<Scalar> marking_;
   double t_ = 0;
-  Vec<N, Scalar> up_ = Vec<N, Scalar>::Zero(), down_ = up_;
-  Vec<N, Scalar> statistic_ = up_;
+  Joints<Scalar> up_, down_, statistic_;
 };
 
-static_assert(CalibratableDetector<Cusum<3>>);
+/// Of one run.
+using Cusum = BasicCusum<>;
+static_assert(CalibratableDetector<Cusum>);
 
 }  // namespace tauext

@@ -17,11 +17,10 @@
 namespace tauext {
 
 /// What can be chosen of a DynamicThreshold.
-template <int N>
 struct DynamicThresholdParameters {
   /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at
   /// 1.2 m
-  Vec<N> threshold = Vec<N>::Constant(100);
+  Joints<> threshold = Joints<>::Constant(1, 100);
   double speed = 0.5;       ///< [rad/s] at which the limit has doubled: smaller trusts motion less
   double share = 0;         ///< [1] of tau that may be wrong: larger trusts model and sensor less
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -37,20 +36,21 @@ struct DynamicThresholdParameters {
   }
 };
 
-/// Speed-dependent threshold over N joints.
-template <int N, class Scalar = double>
-class DynamicThreshold {
+/// Speed-dependent threshold; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicDynamicThreshold {
  public:
   static constexpr const char* kName = "dynamic_threshold";
-  static constexpr int kDof = N;
-  static constexpr int kDegree = 1;                  ///< at least: the share does not grow
-  using Parameters = DynamicThresholdParameters<N>;  ///< what can be set
+  static constexpr int kDegree = 1;               ///< at least: the share does not grow
+  using Parameters = DynamicThresholdParameters;  ///< what can be set
   template <class Other>
-  using For = DynamicThreshold<N, Other>;  ///< the same, computed with another number
+  using For = BasicDynamicThreshold<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit DynamicThreshold(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
+  explicit BasicDynamicThreshold(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        marking_(p.refractory, p.start_up),
+        statistic_(Joints<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -59,33 +59,27 @@ class DynamicThreshold {
     statistic_.setZero();
   }
 
-  DetectionOf<Scalar> update(
-      const Measurement<N, Scalar>& y,
-      const Vec<N, Scalar>& tau_ext) noexcept requires std::is_same_v<Scalar, double> {
-    if (!within(y.qd, kMeasurementLimit) || !within(y.tau, kMeasurementLimit))
-      return marking_.held();
-    return update(y.t, y.qd, y.tau, tau_ext);
-  }
-  /// The same of qd [rad/s] and tau [N m] at t [s] that are measured.
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd, const Vec<N, Scalar>& tau,
-                             const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& qd, const JointsView<Scalar>& tau,
+                             const JointsView<Scalar>& tau_ext) noexcept {
+    if (!measured(qd) || !measured(tau)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
-    const Vec<N, Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
-    const Vec<N, Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
+    const Joints<Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
+    const Joints<Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
     statistic_ = beyond.cwiseMax(Scalar(0)).cwiseQuotient(growth);
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |tau_ext| as it would count at rest and without a torque.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
   BasicMarking<Scalar> marking_;
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<DynamicThreshold<3>>);
+/// Of one run.
+using DynamicThreshold = BasicDynamicThreshold<>;
+static_assert(CalibratableDetector<DynamicThreshold>);
 
 }  // namespace tauext

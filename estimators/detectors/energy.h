@@ -21,11 +21,10 @@
 namespace tauext {
 
 /// What can be chosen of an Energy.
-template <int N>
 struct EnergyParameters {
   /// [W] per joint, of which the least counts: larger misses more and alarms less; by default 80 N
   /// at 0.25 m/s
-  Vec<N> threshold = Vec<N>::Constant(20);
+  Joints<> threshold = Joints<>::Constant(1, 20);
   double w = 60;            ///< [rad/s] of the low-pass: larger is quicker, and noisier
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -39,20 +38,22 @@ struct EnergyParameters {
   }
 };
 
-/// Energy observer of N joints.
-template <int N, class Scalar = double>
-class Energy {
+/// Energy observer; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicEnergy {
  public:
   static constexpr const char* kName = "energy";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = EnergyParameters<N>;  ///< what can be set
+  using Parameters = EnergyParameters;  ///< what can be set
   template <class Other>
-  using For = Energy<N, Other>;  ///< the same, computed with another number
+  using For = BasicEnergy<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Energy(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), power_(p.w), marking_(p.refractory, p.start_up) {}
+  explicit BasicEnergy(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        power_(1, p.w),
+        marking_(p.refractory, p.start_up),
+        statistic_(Joints<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -61,40 +62,35 @@ class Energy {
     forget();
   }
 
-  DetectionOf<Scalar> update(
-      const Measurement<N, Scalar>& y,
-      const Vec<N, Scalar>& tau_ext) noexcept requires std::is_same_v<Scalar, double> {
-    if (!within(y.qd, kMeasurementLimit)) return marking_.held();
-    return update(y.t, y.qd, tau_ext);
-  }
-  /// The same of qd [rad/s] at t [s] that is measured.
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& qd,
-                             const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& qd, const JointsView<Scalar>&,
+                             const JointsView<Scalar>& tau_ext) noexcept {
+    if (!measured(qd)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
-    const Vec<1, Scalar> power(qd.dot(tau_ext));
+    const Joints<Scalar> power = Joints<Scalar>::Constant(1, qd.dot(tau_ext));
     if (marking_.silent(t)) {
       power_.start(t, power);
     } else {
       using std::abs;
       statistic_.setConstant(abs(power_(t, power)[0]));  // (i)
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [W] |r|, the same for each joint.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
 
   Parameters p_;
-  LowPass<1, Scalar> power_;
+  LowPass<Scalar> power_;
   BasicMarking<Scalar> marking_;
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<Energy<3>>);
+/// Of one run.
+using Energy = BasicEnergy<>;
+static_assert(CalibratableDetector<Energy>);
 
 }  // namespace tauext

@@ -13,24 +13,26 @@
 
 namespace tauext {
 
-/// Low-pass of N signals, or with a Pack for Scalar of several runs; the high-pass is what it
-/// leaves.
-template <int N, class Scalar = double>
+/// Low-pass of a signal for each joint, or with a Pack for Scalar of several runs; the high-pass is
+/// what it leaves.
+template <class Scalar = double>
 class LowPass {
  public:
   /// @param w [rad/s] cut-off
   /// @throws std::invalid_argument unless it is positive
-  explicit LowPass(double w) : w_(w) { require(w > 0, "w [rad/s] of a filter must be positive"); }
+  LowPass(int joints, double w) : w_(w), x_(Joints<Scalar>::Zero(joints)), low_(x_) {
+    require(w > 0, "w [rad/s] of a filter must be positive");
+  }
 
   /// As if x had been there for ever.
-  void start(double t, const Vec<N, Scalar>& x) noexcept {
+  void start(double t, const JointsView<Scalar>& x) noexcept {
     t_ = t;
     x_ = low_ = x;
   }
 
   /// (i) at t [s], which is later than the last one.
-  [[gnu::always_inline]] const Vec<N, Scalar>& operator()(double t,
-                                                          const Vec<N, Scalar>& x) noexcept {
+  [[gnu::always_inline]] const Joints<Scalar>& operator()(double t,
+                                                          const JointsView<Scalar>& x) noexcept {
     const double h = t - t_;
     if (new_step_(h)) decay_ = std::exp(-w_ * h);
     low_ = x_ + Scalar(decay_) * (low_ - x_);
@@ -44,7 +46,7 @@ class LowPass {
   StepChange<> new_step_;
   double decay_ = 0;
   double t_ = 0;
-  Vec<N, Scalar> x_ = Vec<N, Scalar>::Zero(), low_ = x_;
+  Joints<Scalar> x_, low_;
 };
 
 }  // namespace tauext

@@ -24,11 +24,10 @@
 namespace tauext {
 
 /// What can be chosen of a Glr.
-template <int N>
 struct GlrParameters {
   /// [N m s^0.5] per joint: larger misses more and alarms less; by default half of what a blow of
   /// 100 N and 10 ms at 1.2 m has
-  Vec<N> threshold = Vec<N>::Constant(4);
+  Joints<> threshold = Joints<>::Constant(1, 4);
   double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
   double span = 0.1;        ///< [s] of the longest change; it holds 128 samples at most
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -45,20 +44,23 @@ struct GlrParameters {
   }
 };
 
-/// GLR over N joints.
-template <int N, class Scalar = double>
-class Glr {
+/// GLR; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicGlr {
  public:
   static constexpr const char* kName = "glr";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = GlrParameters<N>;  ///< what can be set
+  using Parameters = GlrParameters;  ///< what can be set
   template <class Other>
-  using For = Glr<N, Other>;  ///< the same, computed with another number
+  using For = BasicGlr<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Glr(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), mean_(p.w), marking_(p.refractory, p.start_up) {}
+  explicit BasicGlr(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        mean_(joints, p.w),
+        marking_(p.refractory, p.start_up),
+        sum_(Sums::Zero(joints, kSums)),
+        statistic_(Joints<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -67,7 +69,7 @@ class Glr {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_[last_] > kGap) {
@@ -77,15 +79,15 @@ class Glr {
       add(t, tau_ext - mean_(t, tau_ext));
       look_back();
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m s^0.5] g.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
-  static constexpr int kSums = 256;     // that are kept, a power of two
+  static constexpr int kSums = 256;  // that are kept, a power of two
+  using Sums = Eigen::Matrix<Scalar, Eigen::Dynamic, kSums, Eigen::ColMajor, kMaxJoints, kSums>;
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   void forget() noexcept {
@@ -99,7 +101,7 @@ class Glr {
     t_[0] = t;
     sum_.col(0).setZero();
   }
-  [[gnu::always_inline]] void add(double t, const Vec<N, Scalar>& z) noexcept {
+  [[gnu::always_inline]] void add(double t, const Joints<Scalar>& z) noexcept {
     const int next = (last_ + 1) % kSums;
     sum_.col(next) = sum_.col(last_) + Scalar(t - t_[last_]) * z;
     t_[next] = t;
@@ -119,14 +121,16 @@ class Glr {
   }
 
   Parameters p_;
-  LowPass<N, Scalar> mean_;
+  LowPass<Scalar> mean_;
   BasicMarking<Scalar> marking_;
   int last_ = 0, count_ = 1;  // of the sums
   std::array<double, kSums> t_{};
-  Eigen::Matrix<Scalar, N, kSums> sum_ = Eigen::Matrix<Scalar, N, kSums>::Zero();  // [N m s]
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Sums sum_;  // [N m s]
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<Glr<3>>);
+/// Of one run.
+using Glr = BasicGlr<>;
+static_assert(CalibratableDetector<Glr>);
 
 }  // namespace tauext

@@ -16,11 +16,10 @@
 namespace tauext {
 
 /// What can be chosen of a HighPass.
-template <int N>
 struct HighPassParameters {
   /// [N m] per joint: larger misses more and alarms less; by default twice what a push of 80 N in
   /// 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
-  Vec<N> threshold = Vec<N>::Constant(45);
+  Joints<> threshold = Joints<>::Constant(1, 45);
   double w = 10;            ///< [rad/s] cut-off: larger lets less of a push pass, and of a blow
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -34,20 +33,22 @@ struct HighPassParameters {
   }
 };
 
-/// High-pass and limit over N joints.
-template <int N, class Scalar = double>
-class HighPass {
+/// High-pass and limit; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicHighPass {
  public:
   static constexpr const char* kName = "high_pass";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = HighPassParameters<N>;  ///< what can be set
+  using Parameters = HighPassParameters;  ///< what can be set
   template <class Other>
-  using For = HighPass<N, Other>;  ///< the same, computed with another number
+  using For = BasicHighPass<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit HighPass(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), low_(p.w), marking_(p.refractory, p.start_up) {}
+  explicit BasicHighPass(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        low_(joints, p.w),
+        marking_(p.refractory, p.start_up),
+        statistic_(Joints<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -56,7 +57,7 @@ class HighPass {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
@@ -64,22 +65,23 @@ class HighPass {
     } else {
       statistic_ = (tau_ext - low_(t, tau_ext)).cwiseAbs();  // (i)
     }
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |z|.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
 
   Parameters p_;
-  LowPass<N, Scalar> low_;
+  LowPass<Scalar> low_;
   BasicMarking<Scalar> marking_;
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<HighPass<3>>);
+/// Of one run.
+using HighPass = BasicHighPass<>;
+static_assert(CalibratableDetector<HighPass>);
 
 }  // namespace tauext

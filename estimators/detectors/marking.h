@@ -8,6 +8,7 @@
 /// does all of this.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <tuple>
 #include <type_traits>
@@ -39,6 +40,17 @@ template <class Scalar>
 using DetectionOf =
     std::conditional_t<std::is_same_v<Scalar, double>, Detection, RunsDetection<Scalar>>;
 
+/// [1] the score of a detector that compares each joint's statistic with a threshold of its own.
+template <class Scalar>
+[[gnu::always_inline]] inline Scalar largest_ratio(const Joints<Scalar>& statistic,
+                                                   const Joints<>& threshold) noexcept {
+  using std::max;
+  Scalar most = statistic[0] / Scalar(threshold[0]);
+  for (Eigen::Index i = 1; i < statistic.size(); ++i)
+    most = max(most, statistic[i] / Scalar(threshold[i]));
+  return most;
+}
+
 /// A contact as DetectionOf<Scalar> says it, of all runs.
 template <class Scalar>
 auto contact_as(Contact c) noexcept {
@@ -61,6 +73,15 @@ constexpr auto marking_fields() {
 template <class P>
 constexpr auto threshold_field(const char* unit) {
   return Field{"threshold", &P::threshold, unit, 1e-12, 1e15, "larger misses more, alarms less"};
+}
+
+/// Whether a detector may compute with what was measured; of several runs somebody has looked before.
+template <class Scalar>
+bool measured(const JointsView<Scalar>& x) noexcept {
+  if constexpr (std::is_same_v<Scalar, double>)
+    return within(x, kMeasurementLimit);
+  else
+    return true;
 }
 
 /// [s] the time of what has never been.

@@ -23,7 +23,6 @@
 namespace tauext {
 
 /// What can be chosen of a PanTompkins.
-template <int N>
 struct PanTompkinsParameters {
   static constexpr int kMaxStride = 16;  ///< samples between the two that a difference takes
 
@@ -31,7 +30,7 @@ struct PanTompkinsParameters {
   int stride = 5;
   /// [(N m/s)^2] of (iii) per joint; the default is 40 times the squared slope of a human's
   /// minimum-jerk push of 50 N m in 1 s (94 N m/s), and belongs to stride 5 at 1 kHz
-  Vec<N> threshold = Vec<N>::Constant(3.6e5);
+  Joints<> threshold = Joints<>::Constant(1, 3.6e5);
   double hold = 0.02;       ///< [s] how long an energy is kept
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -47,22 +46,23 @@ struct PanTompkinsParameters {
   }
 };
 
-/// The paper's detector over N joints.
-template <int N, class Scalar = double>
-class PanTompkins {
+/// The paper's detector; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicPanTompkins {
  public:
   static constexpr const char* kName = "pan_tompkins";
-  static constexpr int kDof = N;
-  static constexpr int kDegree = 2;             ///< the energy is a square
-  using Parameters = PanTompkinsParameters<N>;  ///< what can be set
+  static constexpr int kDegree = 2;          ///< the energy is a square
+  using Parameters = PanTompkinsParameters;  ///< what can be set
   template <class Other>
-  using For = PanTompkins<N, Other>;  ///< the same, computed with another number
+  using For = BasicPanTompkins<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit PanTompkins(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {
-    tau_ext_.fill(Vec<N, Scalar>::Zero());
-  }
+  explicit BasicPanTompkins(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        marking_(p.refractory, p.start_up),
+        tau_ext_(History::Zero(joints, kHistory)),
+        held_(Joints<Scalar>::Zero(joints)),
+        held_at_(held_) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -71,16 +71,16 @@ class PanTompkins {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
     t_[newest_] = t;
-    tau_ext_[newest_] = tau_ext;
+    tau_ext_.col(newest_) = tau_ext;
     if (++count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
-    const Vec<N, Scalar> energy = slope(newest_).cwiseAbs2();
-    for (int i = 0; i < N; ++i) {  // (ii)
+    const Joints<Scalar> energy = slope(newest_).cwiseAbs2();
+    for (Eigen::Index i = 0; i < energy.size(); ++i) {  // (ii)
       const MaskOf<Scalar> is_higher = energy[i] >= held_[i], is_over = t - held_at_[i] > p_.hold;
       const MaskOf<Scalar> is_new = is_higher | is_over;
       if constexpr (std::is_same_v<Scalar, double>) {
@@ -89,15 +89,17 @@ class PanTompkins {
       held_[i] = select(is_new, energy[i], held_[i]);
       held_at_[i] = select(is_new, Scalar(t), held_at_[i]);
     }
-    return marking_(t, held_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
+    return marking_(t, largest_ratio(held_, p_.threshold),
                     Contact::kCollision);  // (iii)
   }
 
   /// [(N m/s)^2] held energy of each joint.
-  const Vec<N, Scalar>& statistic() const noexcept { return held_; }
+  const Joints<Scalar>& statistic() const noexcept { return held_; }
 
  private:
   static constexpr int kHistory = 4 * Parameters::kMaxStride + 1;
+  using History =
+      Eigen::Matrix<Scalar, Eigen::Dynamic, kHistory, Eigen::ColMajor, kMaxJoints, kHistory>;
 
   void forget() noexcept {
     count_ = 0;
@@ -106,7 +108,7 @@ class PanTompkins {
   }
 
   // (i), [N m/s]
-  Vec<N, Scalar> slope(int newest) const noexcept {
+  Joints<Scalar> slope(int newest) const noexcept {
     std::array<int, 5> at;
     double sum_t = 0;
     for (int& place : at) {
@@ -116,11 +118,11 @@ class PanTompkins {
       if (newest < 0) newest += kHistory;
     }
     const double mean_t = 0.2 * sum_t;
-    Vec<N, Scalar> numerator = Vec<N, Scalar>::Zero();
+    Joints<Scalar> numerator = Joints<Scalar>::Zero(held_.size());
     double denominator = 0;
     for (const int j : at) {
       const double from_mean = t_[j] - mean_t;
-      numerator += Scalar(from_mean) * tau_ext_[j];
+      numerator += Scalar(from_mean) * tau_ext_.col(j);
       denominator += from_mean * from_mean;
     }
     return numerator * Scalar(1 / denominator);
@@ -129,12 +131,14 @@ class PanTompkins {
   Parameters p_;
   BasicMarking<Scalar> marking_;
   std::array<double, kHistory> t_{};
-  std::array<Vec<N, Scalar>, kHistory> tau_ext_;
+  History tau_ext_;  // [N m]
   long count_ = 0;
   int newest_ = 0;  // of the history
-  Vec<N, Scalar> held_ = Vec<N, Scalar>::Zero(), held_at_ = held_;
+  Joints<Scalar> held_, held_at_;
 };
 
-static_assert(CalibratableDetector<PanTompkins<3>>);
+/// Of one run.
+using PanTompkins = BasicPanTompkins<>;
+static_assert(CalibratableDetector<PanTompkins>);
 
 }  // namespace tauext

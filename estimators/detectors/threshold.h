@@ -15,11 +15,10 @@
 namespace tauext {
 
 /// What can be chosen of a Threshold.
-template <int N>
 struct ThresholdParameters {
   /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at
   /// 1.2 m
-  Vec<N> threshold = Vec<N>::Constant(120);
+  Joints<> threshold = Joints<>::Constant(1, 120);
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
 
@@ -29,20 +28,21 @@ struct ThresholdParameters {
   }
 };
 
-/// Static threshold over N joints.
-template <int N, class Scalar = double>
-class Threshold {
+/// Static threshold; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class BasicThreshold {
  public:
   static constexpr const char* kName = "threshold";
-  static constexpr int kDof = N;
   static constexpr int kDegree = 1;
-  using Parameters = ThresholdParameters<N>;  ///< what can be set
+  using Parameters = ThresholdParameters;  ///< what can be set
   template <class Other>
-  using For = Threshold<N, Other>;  ///< the same, computed with another number
+  using For = BasicThreshold<Other>;  ///< the same, computed with another number
 
   /// @throws std::invalid_argument for parameters out of range
-  explicit Threshold(const Parameters& p = {})
-      : p_(check_parameters(p, kName)), marking_(p.refractory, p.start_up) {}
+  explicit BasicThreshold(int joints, const Parameters& p = {})
+      : p_(for_joints(p, joints, kName)),
+        marking_(p.refractory, p.start_up),
+        statistic_(Joints<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -51,22 +51,23 @@ class Threshold {
     statistic_.setZero();
   }
 
-  DetectionOf<Scalar> update(double t, const Vec<N, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     statistic_ = tau_ext.cwiseAbs();
-    return marking_(t, statistic_.cwiseQuotient(p_.threshold.template cast<Scalar>()).maxCoeff(),
-                    Contact::kCollision);
+    return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |tau_ext|.
-  const Vec<N, Scalar>& statistic() const noexcept { return statistic_; }
+  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
   BasicMarking<Scalar> marking_;
-  Vec<N, Scalar> statistic_ = Vec<N, Scalar>::Zero();
+  Joints<Scalar> statistic_;
 };
 
-static_assert(CalibratableDetector<Threshold<3>>);
+/// Of one run.
+using Threshold = BasicThreshold<>;
+static_assert(CalibratableDetector<Threshold>);
 
 }  // namespace tauext

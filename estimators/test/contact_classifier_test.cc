@@ -22,11 +22,11 @@ struct Verdict {
 
 // a touch at 6 s; the estimator has found the payload after 3 s, in which the detectors are silent
 Verdict verdict(const Load& touch, double w, double swing = 60) {
-  ContactClassifier<3>::Parameters p;
+  ContactClassifier::Parameters p;
   p.collision.start_up = p.clamping.start_up = 3;
   // the swing leaves 54 N m behind the baseline, a push of 60 adds as much, a clamping of 250 more
   p.clamping.threshold = Vec<3>::Constant(140);
-  ContactClassifier<3> d(p);
+  ContactClassifier d(3, p);
   Verdict v;
   double estimate = 0;
   for (int k = 0; k < 10000; ++k) {
@@ -98,7 +98,7 @@ TEST(ContactClassifier, CallsABlowThatEndsInAClampingBothInTurn) {
 
 TEST(ContactClassifier, MarksNoSecondClampingWithinItsRefractoryTime) {
   // a load that wanders around the limit every 0.3 s
-  ContactClassifier<3> d;
+  ContactClassifier d(3);
   double last = -1;
   for (int k = 0; k < 6000; ++k) {
     const double t = k * 1e-3;
@@ -113,9 +113,9 @@ TEST(ContactClassifier, MarksNoSecondClampingWithinItsRefractoryTime) {
 }
 
 TEST(ContactClassifier, RefusesALevelOfZero) {
-  ContactClassifier<3>::Parameters p;
+  ContactClassifier::Parameters p;
   p.intentional.setZero();
-  EXPECT_THROW(ContactClassifier<3>{p}, std::invalid_argument);
+  EXPECT_THROW(ContactClassifier(3, p), std::invalid_argument);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 TEST(LowPass, AnswersAStepByOneMinusExpAtAnySpacing) {
   std::mt19937_64 generator(3);
   for (const double h : {1e-3, 3e-3, 0.}) {  // 0: uneven
-    LowPass<1> low(20);
+    LowPass low(1, 20);
     low.start(0, Vec<1>(0));
     low(1e-9, Vec<1>(1));  // held from here on
     for (double t = 1e-9; t < 0.3;) {
@@ -25,13 +25,13 @@ TEST(LowPass, AnswersAStepByOneMinusExpAtAnySpacing) {
 }
 
 TEST(LowPass, StartsAsIfItsInputHadBeenThereForEver) {
-  LowPass<2> low(5);
+  LowPass low(2, 5);
   low.start(1, Vec<2>(3, -4));
   EXPECT_EQ(low(1.5, Vec<2>(3, -4)), Vec<2>(3, -4));
 }
 
 TEST(LowPass, RefusesACutOffOfZero) {
-  EXPECT_THROW(LowPass<1>(0), std::invalid_argument);
+  EXPECT_THROW(LowPass(1, 0), std::invalid_argument);
 }
 
 TEST(Marking, MarksARiseThroughOneAndNotTheStay) {

@@ -10,10 +10,9 @@
 namespace tauext::test {
 namespace {
 
-using Detector = PanTompkins<1>;
-
 // times of the marks on a signal at 1 kHz
-std::vector<double> marks(Detector d, double seconds, const std::function<double(double)>& signal) {
+std::vector<double> marks(PanTompkins d, double seconds,
+                          const std::function<double(double)>& signal) {
   std::vector<double> at;
   for (int k = 0; k < std::lround(seconds * 1000); ++k) {
     const double t = k * 1e-3;
@@ -23,7 +22,7 @@ std::vector<double> marks(Detector d, double seconds, const std::function<double
 }
 
 TEST(PanTompkins, ScoreOfARampIsItsSquaredSlopeOverTheThreshold) {
-  Detector d({.threshold = Vec<1>(400)});
+  PanTompkins d(1, {.threshold = Vec<1>(400)});
   Detection last;
   for (int k = 0; k < 100; ++k) {
     // uneven steps of 0.7 to 1.3 ms: a least-squares slope does not mind
@@ -37,7 +36,7 @@ TEST(PanTompkins, TheStrideSpacesThePointsOfTheDerivative) {
   // an alternating +-1 has slope (2 -1 0 +1 -2) . (1 -1 1 -1 1) / 10 T = 0 at odd strides and at
   // even ones too, but a single spike of height a enters by its largest weight 2 / (10 T)
   for (const int stride : {1, 5}) {
-    Detector d({.stride = stride, .threshold = Vec<1>(1)});
+    PanTompkins d(1, {.stride = stride, .threshold = Vec<1>(1)});
     double highest = 0;
     for (int k = 0; k < 200; ++k) {
       highest = std::max(highest, d.update(k * 1e-3, Vec<1>(k == 100 ? 1. : 0.)).score);
@@ -48,7 +47,7 @@ TEST(PanTompkins, TheStrideSpacesThePointsOfTheDerivative) {
 }
 
 TEST(PanTompkins, MarksAJumpOnceAndWithin20Milliseconds) {
-  const auto at = marks(Detector(), 2, [](double t) { return t < 1 ? 0 : 50; });
+  const auto at = marks(PanTompkins(1), 2, [](double t) { return t < 1 ? 0 : 50; });
   ASSERT_EQ(at.size(), 1u);
   EXPECT_GE(at[0], 1);
   EXPECT_LE(at[0], 1.02);
@@ -57,7 +56,7 @@ TEST(PanTompkins, MarksAJumpOnceAndWithin20Milliseconds) {
 TEST(PanTompkins, LeavesAHumanPushInPeaceWhateverTheLoadBeneath) {
   // 50 N m in 1 s along a minimum-jerk path, on loads of any size
   for (const double load : {0., 2000., -2000.}) {
-    const auto at = marks(Detector(), 3, [=](double t) {
+    const auto at = marks(PanTompkins(1), 3, [=](double t) {
       const double s = std::clamp(t - 1, 0., 1.);
       return load + 50 * s * s * s * (10 - 15 * s + 6 * s * s);
     });
@@ -69,14 +68,14 @@ TEST(PanTompkins, HoldsAndThenRefusesToMarkAgainTooSoon) {
   const auto pulses = [](double period) {
     return [=](double t) { return std::fmod(t, period) < 0.005 && t > 0.5 ? 50. : 0.; };
   };
-  EXPECT_EQ(marks(Detector(), 2.05, pulses(0.5)).size(), 4u);
+  EXPECT_EQ(marks(PanTompkins(1), 2.05, pulses(0.5)).size(), 4u);
   // pulses 0.1 s apart: a mark at the earliest every 0.2 s
-  const auto at = marks(Detector(), 2, pulses(0.1));
+  const auto at = marks(PanTompkins(1), 2, pulses(0.1));
   for (std::size_t i = 1; i < at.size(); ++i) EXPECT_GE(at[i] - at[i - 1], 0.2 - 1e-9);
 }
 
 TEST(PanTompkins, ResetForgetsEverything) {
-  Detector d;
+  PanTompkins d(1);
   std::vector<double> first, second;
   for (auto* scores : {&first, &second}) {
     d.reset();

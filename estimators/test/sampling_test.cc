@@ -199,7 +199,7 @@ TEST(Parameters, OutOfRangeAreRefusedWhenAnEstimatorIsBuilt) {
   EXPECT_THROW(ArmEkf(arm, p), std::invalid_argument);
   EXPECT_THROW(InverseDynamics<WallMoBot3>(arm, {.bandwidth = kNaN}), std::invalid_argument);
   EXPECT_THROW(InverseDynamics<WallMoBot3>(arm, {.max_gap = 0}), std::invalid_argument);
-  EXPECT_THROW(PanTompkins<3>({.stride = 0}), std::invalid_argument);
+  EXPECT_THROW(PanTompkins(3, {.stride = 0}), std::invalid_argument);
 }
 
 }  // namespace

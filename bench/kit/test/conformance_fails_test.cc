@@ -114,9 +114,8 @@ static_assert(TorqueEstimator<Forgetful> && !ForRuns<Forgetful>);
 // marks every tenth of a second, whatever happens
 struct Nervous {
   static constexpr const char* kName = "nervous";
-  static constexpr int kDof = 3;
   void reset() noexcept {}
-  Detection update(double t, const Vec<3>&) noexcept {
+  Detection update(double t, const JointsView<>&) noexcept {
     const bool mark = std::fmod(t, 0.1) < 1e-3;
     return {mark, mark ? 0.5 : 0, Contact::kCollision};
   }
@@ -126,36 +125,35 @@ struct Nervous {
 template <class Scalar = double>
 struct LooksAtOneRun {
   static constexpr const char* kName = "looks_at_one_run";
-  static constexpr int kDof = 3;
-  using Parameters = ThresholdParameters<3>;
+  using Parameters = ThresholdParameters;
   template <class Other>
   using For = LooksAtOneRun<Other>;
-  explicit LooksAtOneRun(const Parameters& p = {}) : one_(p) {}
+  explicit LooksAtOneRun(int joints, const Parameters& p = {}) : one_(joints, p) {}
   const Parameters& parameters() const noexcept { return one_.parameters(); }
   void reset() noexcept { one_.reset(); }
-  DetectionOf<Scalar> update(double t, const Vec<3, Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
     if constexpr (std::is_same_v<Scalar, double>) {
       return one_.update(t, tau_ext);
     } else {
-      const Vec<3, Scalar> first = tau_ext.unaryExpr([](const Scalar& x) { return Scalar(x[0]); });
+      const Joints<Scalar> first = tau_ext.unaryExpr([](const Scalar& x) { return Scalar(x[0]); });
       return one_.update(t, first);
     }
   }
-  Threshold<3, Scalar> one_;
+  BasicThreshold<Scalar> one_;
 };
 
 TEST(Conformance, FindsADetectorThatMixesItsRuns) {
-  const auto right = [] { return Threshold<3>(); };
-  const auto wrong = [] { return LooksAtOneRun<>(); };
+  const auto right = [] { return Threshold(3); };
+  const auto wrong = [] { return LooksAtOneRun<>(3); };
   using Right = conformance::DetectorClaims<decltype(right)>;
   using Wrong = conformance::DetectorClaims<decltype(wrong)>;
-  EXPECT_EQ(failures([&] { Right(right).bears_company(); }), 0);
-  EXPECT_GT(failures([&] { Wrong(wrong).bears_company(); }), 0);
+  EXPECT_EQ(failures([&] { Right(right, 3).bears_company(); }), 0);
+  EXPECT_GT(failures([&] { Wrong(wrong, 3).bears_company(); }), 0);
 }
 
 TEST(Conformance, FindsWhatIsWrongWithADetector) {
   const auto make = [] { return Nervous(); };
-  const conformance::DetectorClaims<decltype(make)> claims(make);
+  const conformance::DetectorClaims<decltype(make)> claims(make, 3);
   EXPECT_GT(failures([&] { claims.leaves_rest_in_peace(); }), 0);
   EXPECT_GT(failures([&] { claims.marks_where_its_score_reaches_one(); }), 0);
   EXPECT_GT(failures([&] { claims.ignores_bad_time_stamps(); }), 0);

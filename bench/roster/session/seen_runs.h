@@ -34,7 +34,7 @@ class SeenRuns {
  public:
   using Sample = Measurement<N, Scalar>;
   using Estimates = typename EstimateOf<N, Scalar>::type;
-  using Detectors = std::vector<std::unique_ptr<DetectorStage<N, Scalar>>>;
+  using Detectors = std::vector<std::unique_ptr<DetectorStage<Scalar>>>;
 
   explicit SeenRuns(int samples)
       : samples_(static_cast<std::size_t>(samples)), estimates_(samples_.size()) {}
@@ -95,14 +95,14 @@ class SeenRuns {
 
   // calls look(detector) after every sample with t >= from
   template <class Look>
-  void watch(DetectorStage<N, Scalar>& d, double from, const Look& look) const {
+  void watch(DetectorStage<Scalar>& d, double from, const Look& look) const {
     DetectionOf<Scalar> said;
     auto silent = left_out_.begin();
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       if (silent != left_out_.end() && *silent == k)
         ++silent;
       else
-        d.run({&samples_[k], 1}, {&estimates_[k], 1}, {&said, 1});
+        d.run(input(k, 1), {&said, 1});
       if (of_run(samples_[k].t, 0) >= from) look(d);
     }
   }
@@ -113,17 +113,20 @@ class SeenRuns {
 
   // calls look(t, answer) for the samples of the block from k on
   template <class Look>
-  void run(DetectorStage<N, Scalar>& d, std::size_t k, const Look& look) const {
+  void run(DetectorStage<Scalar>& d, std::size_t k, const Look& look) const {
     std::array<DetectionOf<Scalar>, kBlock> said;
     const std::size_t end = std::min(k + kBlock, samples_.size());
     auto silent = std::lower_bound(left_out_.begin(), left_out_.end(), k);
     for (std::size_t from = k, to; from < end; from = to + 1) {
       to = silent == left_out_.end() ? end : std::min(*silent++, end);
-      d.run({&samples_[from], to - from}, {&estimates_[from], to - from},
-            {&said[from - k], to - from});
+      d.run(input(from, to - from), {&said[from - k], to - from});
       if (to < end) said[to - k] = nothing();
     }
     for (std::size_t i = k; i < end; ++i) look(of_run(samples_[i].t, 0), said[i - k]);
+  }
+
+  DetectorInput<Scalar> input(std::size_t from, std::size_t n) const {
+    return {std::span(samples_).subspan(from, n), std::span(estimates_).subspan(from, n)};
   }
 
   // what detect() says of an estimate that is none

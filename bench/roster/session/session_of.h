@@ -35,10 +35,10 @@ struct Makers {
   using With = std::function<std::unique_ptr<Stage>(const Asked&)>;
 
   Of<EstimatorStage<N>> estimator;
-  With<DetectorStage<N>> detector;
+  With<DetectorStage<>> detector;
   // the same of several runs; null for one that cannot
   Of<EstimatorStage<N, Lanes>> estimator_of_runs;
-  With<DetectorStage<N, Lanes>> detector_of_runs;
+  With<DetectorStage<Lanes>> detector_of_runs;
 };
 
 // of an arm with N joints; W runs at once (in its name: code with other flags has another W)
@@ -173,7 +173,7 @@ class SessionOf final : public Session {
   }
 
   // null unless it can go on at once
-  std::unique_ptr<DetectorStage<N, Lanes>> of_runs(const Asked& detector) const {
+  std::unique_ptr<DetectorStage<Lanes>> of_runs(const Asked& detector) const {
     return at_once_ ? make_.detector_of_runs(detector) : nullptr;
   }
 

@@ -14,6 +14,7 @@
 #include "bench/program/program.h"
 #include "bench/roster/baselines.h"
 #include "bench/roster/robots.h"
+#include "estimators/detectors/threshold.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
@@ -26,7 +27,7 @@ struct Own : Mo1 {
   using Mo1::Mo1;
 };
 
-struct OwnDetector : Threshold<1> {
+struct OwnDetector : Threshold {
   static constexpr const char* kName = "own_detector";
   using Threshold::Threshold;
 };
@@ -36,7 +37,7 @@ class Registry : public testing::Test {
  protected:
   ~Registry() override {
     detail::registered_estimators<Testbed1>().clear();
-    detail::registered_detectors<1>().clear();
+    detail::registered_detectors().clear();
     detail::registered_specifications().clear();
   }
   static std::unique_ptr<const Robot> made() { return make_robot("testbed1", Testbed1()); }
@@ -77,7 +78,7 @@ TEST_F(Registry, RefusesOneNameAtThreeBandwidths) {
 }
 
 TEST_F(Registry, RefusesADetectorOfATakenName) {
-  register_detector<Threshold<1>>();
+  register_detector<Threshold>();
   EXPECT_NE(why_not().find("detector 'threshold' of testbed1: the name is taken"),
             std::string::npos);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/roster/detector_list.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/roster.h"
 #include "mjcf/test/error_of.h"
@@ -188,7 +189,8 @@ template <class D>
 Verdicts said_by(D d) {
   Verdicts all;
   for (int k = 0; k < trace().size(); ++k) {
-    const Detection x = detect(d, trace().measurement<3>(k), Vec<3>(estimates().tau_ext.col(k)));
+    const Measurement<3> y = trace().measurement<3>(k);
+    const Detection x = detect(d, y.t, y.qd, y.tau, Vec<3>(estimates().tau_ext.col(k)));
     all.emplace_back(x.score, x.mark);
   }
   return all;
@@ -203,22 +205,22 @@ DetectorSettings trained() {
 
 TEST(Specification, OfADetectorHasTheLastWordAfterTraining) {
   EXPECT_EQ(said("high_pass:w=60", trained()),
-            said_by(HighPass<3>({.threshold = Vec<3>(5, 6, 7), .w = 60})));
+            said_by(HighPass(3, {.threshold = Vec<3>(5, 6, 7), .w = 60})));
   EXPECT_EQ(said("high_pass:w=60:threshold=8", trained()),
-            said_by(HighPass<3>({.threshold = Vec<3>::Constant(8), .w = 60})));
+            said_by(HighPass(3, {.threshold = Vec<3>::Constant(8), .w = 60})));
   EXPECT_NE(said("high_pass:w=60", trained()), said("high_pass", trained()));
-  EXPECT_EQ(said("pan_tompkins:stride=3"), said_by(PanTompkins<3>({.stride = 3})));
+  EXPECT_EQ(said("pan_tompkins:stride=3"), said_by(PanTompkins(3, {.stride = 3})));
 }
 
 TEST(Specification, ReachesTheDetectorsWithinADetector) {
-  ContactClassifier<3>::Parameters p;
+  ContactClassifier::Parameters p;
   p.collision.threshold = Vec<3>(1e3, 2e3, 3e3);
   p.clamping.duration = 0.05;
   p.hold = 0.1;
   EXPECT_EQ(said("contact_classifier:collision.threshold=1e3/2e3/3e3:clamping.duration=0.05"
                  ":hold=0.1",
                  trained()),
-            said_by(ContactClassifier<3>(p)));
+            said_by(ContactClassifier(3, p)));
   EXPECT_NE(said("contact_classifier:collision.threshold=1e3"), said("contact_classifier"));
 }
 

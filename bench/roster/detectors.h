@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Detectors behind one virtual call for a batch of samples, of arms of any number of joints, and
+/// how a specification becomes one. The list of them is detector_list.h.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "bench/roster/specification.h"
+#include "bench/roster/thresholds.h"
+#include "estimators/concepts.h"
+#include "estimators/detectors/marking.h"
+
+namespace tauext {
+
+/// What a detector sees, where it lies; with a Pack for Scalar, of several runs.
+template <class Scalar = double>
+class DetectorInput {
+ public:
+  /// The samples of an arm and their estimates, as many, which must outlive it.
+  template <int N, class Estimates>
+  DetectorInput(std::span<const Measurement<N, Scalar>> at, std::span<const Estimates> in)
+      : size_(at.size()), joints_(N), sample_(sizeof at[0]), estimate_(sizeof in[0]) {
+    if (size_ == 0) return;
+    t_ = &at[0].t;
+    qd_ = at[0].qd.data();
+    tau_ = at[0].tau.data();
+    tau_ext_ = in[0].tau_ext.data();
+    if constexpr (std::is_same_v<Scalar, double>) status_ = &in[0].status;
+  }
+
+  /// One sample.
+  DetectorInput(const Scalar& t, const JointsView<Scalar>& qd, const JointsView<Scalar>& tau,
+                const JointsView<Scalar>& tau_ext, const Status& status)
+      : size_(1),
+        joints_(static_cast<int>(qd.size())),
+        sample_(0),
+        estimate_(0),
+        t_(&t),
+        qd_(qd.data()),
+        tau_(tau.data()),
+        tau_ext_(tau_ext.data()),
+        status_(&status) {}
+
+  std::size_t size() const { return size_; }  ///< samples
+  /// [s] of a sample, or of the first of several runs.
+  double t(std::size_t k) const {
+    const Scalar& t = *at(t_, sample_, k);
+    if constexpr (std::is_same_v<Scalar, double>)
+      return t;
+    else
+      return t[0];
+  }
+  /// [rad/s]
+  JointsView<Scalar> qd(std::size_t k) const { return {at(qd_, sample_, k), joints_}; }
+  /// [N m]
+  JointsView<Scalar> tau(std::size_t k) const { return {at(tau_, sample_, k), joints_}; }
+  /// [N m]
+  JointsView<Scalar> tau_ext(std::size_t k) const { return {at(tau_ext_, estimate_, k), joints_}; }
+  /// Of the estimate, of one run.
+  Status status(std::size_t k) const requires std::is_same_v<Scalar, double> {
+    return *at(status_, estimate_, k);
+  }
+
+ private:
+  template <class T>
+  static const T* at(const T* first, std::size_t bytes, std::size_t k) {
+    return reinterpret_cast<const T*>(reinterpret_cast<const char*>(first) + k * bytes);
+  }
+
+  std::size_t size_;
+  int joints_;
+  std::size_t sample_, estimate_;  // [bytes] from one to the next
+  const Scalar *t_ = nullptr, *qd_ = nullptr, *tau_ = nullptr, *tau_ext_ = nullptr;
+  const Status* status_ = nullptr;
+};
+
+/// A detector, type-erased; with a Pack for Scalar, of several runs of one clock, of whose estimates
+/// all are used().
+template <class Scalar = double>
+class DetectorStage {
+ public:
+  virtual ~DetectorStage() = default;
+  virtual void reset() = 0;  ///< forgets all samples
+  /// What is detected at each sample.
+  virtual void run(const DetectorInput<Scalar>& in, std::span<DetectionOf<Scalar>> out) = 0;
+  /// Of the last sample; empty for a detector that cannot be calibrated.
+  virtual Joints<Scalar> statistic() const = 0;
+  /// What its metric weighs; empty for a detector without one.
+  virtual Joints<Scalar> change() const = 0;
+};
+
+/// The stage of this detector, which computes with Scalar.
+template <class D, class Scalar = double>
+class DetectorStageOf final : public DetectorStage<Scalar> {
+ public:
+  explicit DetectorStageOf(D d) : d_(std::move(d)) {}  ///< takes it over
+  void reset() override { d_.reset(); }
+  /// As DetectorStage says.
+  void run(const DetectorInput<Scalar>& in, std::span<DetectionOf<Scalar>> out) override {
+    for (std::size_t k = 0; k < in.size(); ++k) {
+      if constexpr (std::is_same_v<Scalar, double>) {
+        if (!used(in.status(k))) {  // as detect() behind an estimator
+          if (in.status(k) == Status::kDiverged) d_.reset();
+          out[k] = {};
+          continue;
+        }
+      }
+      out[k] = detect<Scalar>(d_, in.t(k), in.qd(k), in.tau(k), in.tau_ext(k));
+    }
+  }
+  Joints<Scalar> statistic() const override {
+    if constexpr (requires { d_.statistic(); }) {
+      return d_.statistic();
+    } else {
+      return {};
+    }
+  }
+  Joints<Scalar> change() const override {
+    if constexpr (requires { d_.change(); }) {
+      return d_.change();
+    } else {
+      return {};
+    }
+  }
+
+ private:
+  D d_;
+};
+
+/// What calibrating a detector needs to know.
+struct Calibration {
+  int degree = 1;             ///< power of tau_ext that its statistic grows with
+  Eigen::VectorXd threshold;  ///< its default, in the unit of its statistic
+  bool has_metric = false;    ///< whether it weighs the joints by a metric, too
+};
+
+namespace detail {
+
+// a detector whose thresholds another one takes, and what stands before its keys there
+struct TrainedPart {
+  std::string name, prefix;
+};
+
+// sets what is known of Parameters p
+template <class P>
+void set_trained(P& p, const char* name, const DetectorThresholds& known) {
+  const auto it = known.find(name);
+  if (it == known.end()) return;
+  p.threshold = it->second.threshold;
+  if constexpr (requires { p.metric; }) {
+    if (it->second.metric.size() > 0) p.metric = it->second.metric;
+  }
+}
+
+// one that is made of two others is trained as they are
+template <class D>
+concept OfTrainedParts = requires(typename D::Parameters p) {
+  p.collision.threshold;
+  p.clamping.threshold;
+};
+
+// Times factor, joint by joint, for every parameter in N m: squared for one in (N m)^2. Where a
+// metric mixes the joints, it makes them comparable, and its threshold is that of as many.
+template <class P>
+void scale_torques(P& p, const Joints<>& factor) {
+  for_each_field<P>([&](const auto& f) {
+    auto& x = p.*f.at;
+    if constexpr (!requires { f.unit; }) {
+      scale_torques(x, factor);
+    } else if constexpr (std::is_same_v<decltype(x), Joints<>&>) {
+      const std::string_view unit = f.unit;
+      if (unit.starts_with("N m")) x = x.cwiseProduct(factor).eval();
+      if (unit.starts_with("(N m")) x = x.cwiseProduct(factor.cwiseAbs2()).eval();
+    }
+  });
+  if constexpr (requires { p.metric; }) {
+    if ((factor.array() == 1).all()) return;
+    const Joints<> even = factor.maxCoeff() * factor.cwiseInverse();
+    p.metric = even.cwiseAbs2().asDiagonal();  // of an identity
+    p.threshold =
+        (p.threshold.cwiseProduct(even) * std::sqrt(static_cast<double>(even.size()) / 3)).eval();
+  }
+}
+
+// an arm's defaults
+template <class D>
+typename D::Parameters defaults_for(const Joints<>& torques) {
+  typename D::Parameters p;
+  if constexpr (ListsFields<typename D::Parameters>) {
+    p = for_joints(p, static_cast<int>(torques.size()), D::kName);
+    scale_torques(p, torques);
+  }
+  return p;
+}
+
+// the arm's defaults, then what training says, then what the specification says
+template <class D>
+D made_detector(const Specification& s, const DetectorSettings& settings, const Joints<>& torques) {
+  const int joints = static_cast<int>(torques.size());
+  if constexpr (requires { typename D::Parameters; }) {
+    typename D::Parameters p = defaults_for<D>(torques);
+    if constexpr (OfTrainedParts<D>) {
+      set_trained(p.collision, "pan_tompkins", settings.thresholds);
+      set_trained(p.clamping, "clamping", settings.thresholds);
+      p.collision.start_up = p.clamping.start_up = settings.start_up;
+    } else {
+      if constexpr (requires { p.threshold; }) set_trained(p, D::kName, settings.thresholds);
+      if constexpr (requires { p.start_up; }) p.start_up = settings.start_up;
+      if constexpr (requires { p.most_score; })
+        p.most_score = settings.most_score.value_or(p.most_score);
+    }
+    set_parameters(s.keys, p);
+    return D(joints, p);
+  } else {
+    refuse_keys(s);
+    if constexpr (std::is_constructible_v<D, int>)
+      return D(joints);
+    else
+      return D();
+  }
+}
+
+}  // namespace detail
+
+/// A detector of an arm, by name.
+struct DetectorType {
+  std::string name;
+  std::vector<FieldHelp> fields;                   ///< what a specification sets
+  std::vector<detail::TrainedPart> trained_parts;  ///< the detectors whose thresholds it takes
+  std::optional<Calibration> calibration;          ///< how they are set
+  /// Builds one: the arm's defaults, then what training says, then what the specification says.
+  std::unique_ptr<DetectorStage<>> (*make)(const Specification& s, const DetectorSettings& settings,
+                                           const Joints<>& torques) = nullptr;
+};
+
+/// That of D.
+/// @param torques [1] times what the torques in detectors' defaults are right for this arm
+template <CollisionDetector D>
+DetectorType detector_type(const Joints<>& torques) {
+  DetectorType type;
+  type.name = D::kName;
+  if constexpr (requires { typename D::Parameters; }) {
+    const typename D::Parameters p = detail::defaults_for<D>(torques);
+    type.fields = field_help(&p);
+    if constexpr (detail::OfTrainedParts<D>) {
+      type.trained_parts = {{"pan_tompkins", "collision."}, {"clamping", "clamping."}};
+    } else if constexpr (CalibratableDetector<D>) {
+      type.trained_parts = {{D::kName, ""}};
+      type.calibration = Calibration{D::kDegree, p.threshold, requires(D d){p.metric, d.change();
+    }
+  };
+}
+}  // namespace tauext
+type.make = [](const Specification& s, const DetectorSettings& settings,
+               const Joints<>& of_arm) -> std::unique_ptr<DetectorStage<>> {
+  return std::make_unique<DetectorStageOf<D>>(detail::made_detector<D>(s, settings, of_arm));
+};
+return type;
+}
+
+}  // namespace tauext
