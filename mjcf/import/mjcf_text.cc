@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <locale>
@@ -75,6 +76,7 @@ class Import {
     attach(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     read_settings(root);
+    refuse_degrees(root);
     frames_to_bodies(root);
     problems_.raise();
     detail::keep_rated(root);
@@ -242,12 +244,31 @@ class Import {
       if (name_of(e) != "compiler") return true;
       if (e.Attribute("inertiafromgeom") != nullptr)
         from_geom_ = text(e, "inertiafromgeom") == "true";
+      if (e.Attribute("angle") != nullptr) radians_ = text(e, "angle") == "radian";
       if (e.Attribute("balanceinertia") != nullptr) balances_ = text(e, "balanceinertia") == "true";
       by_group_ = by_group_ || e.Attribute("inertiagrouprange") != nullptr;
       total_mass_ = total_mass_ || e.DoubleAttribute("settotalmass", -1) > 0;
       return true;
     });
   }
+
+  // in a file of radians
+  void refuse_degrees(XMLElement& root) {
+    each(root, [&](XMLElement& e) {
+      if (!radians_ || e.Attribute("euler") == nullptr) return true;
+      std::istringstream words(text(e, "euler"));
+      for (double x; words >> x;)
+        if (std::abs(x) > 4 * M_PI)
+          problems_.attempt([&] {
+            fail(e,
+                 "euler of <{}> is '{}', more than two turns: <compiler angle=\"radian\"/> says "
+                 "that it is in rad, and this may be degrees",
+                 name_of(e), text(e, "euler"));
+          });
+      return true;
+    });
+  }
+
   // meshes are needed where a joint moves them, and no <inertial> says the mass; or where all
   // masses are scaled by their sum
   bool mass_is_of_geoms(const XMLElement& geom) const {
@@ -483,6 +504,7 @@ class Import {
   bool from_geom_ = false, balances_ = false, tendons_have_forces_ = false;
   int includes_ = 0;
   bool weightless_ = false, total_mass_ = false, class_has_mesh_ = false;
+  bool radians_ = false;   // whether angles are
   bool by_group_ = false;  // whether the group of a shape says if it has a mass
   std::set<std::string> including_, mocap_;
   std::map<const XMLElement*, std::string> mesh_inertia_;  // where one says how it is found

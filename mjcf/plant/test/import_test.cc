@@ -105,6 +105,16 @@ TEST_F(Import, SaysWhatItLeavesOut) {
   EXPECT_EQ(import_mjcf(again).changed.size(), 0u);
 }
 
+TEST_F(Import, RefusesDegreesInAFileOfRadians) {
+  std::string text = arm(true);
+  const std::string pos = "<body name='lower' pos='0 .01 .3'";
+  text.insert(text.find(pos) + pos.size(), " euler='0 90 0'");
+  EXPECT_NE(error_of([&] { import_mjcf(put(text)); }).find("euler of <body> is '0 90 0', more"),
+            std::string::npos);
+  text.replace(text.find("'radian'"), 8, "'degree'");
+  EXPECT_NO_THROW(import_mjcf(put(text)));
+}
+
 TEST_F(Import, FlattensWhatIsIncluded) {
   put("<mujoco><body name='link'><include file='joint.xml'/><geom size='.1'/></body></mujoco>",
       "link.xml");

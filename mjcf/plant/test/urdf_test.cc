@@ -421,6 +421,7 @@ TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
            {"<link name='base'/>",
             "<link name='base'/><group><link name='x'><inertial/></link></group>",
             "link 'x' stands within <group>, and belongs into <robot>"},
+           {"rpy='.3", "rpy='90", "rpy is 90 -0.2 0.5, more than two turns: it is in rad"},
            {"velocity='1'", "velocity='1,5'", "velocity of <limit> is '1,5', and must be a number"},
            {"lower='-2' upper='2'", "lower='3000' upper='2000'", "no way to go from 3000 to 2000"},
            {"</robot>", "</robot><robot/>", "a second <robot> behind the first"},

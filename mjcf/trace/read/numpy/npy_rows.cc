@@ -47,6 +47,9 @@ bool is_metadata(const NpyHeader& h) {
 std::string objection(const NpyHeader& h) {
   if (h.unusable == "|O")
     return "holds Python objects, which are not read: save numbers (dtype=float)";
+  if (h.unusable.starts_with("<M8") || h.unusable.starts_with("<m8"))
+    return fmt::format("holds '{}', which are no seconds: (t - t[0]) / np.timedelta64(1, 's') are",
+                       printable_name(h.unusable));
   if (!h.unusable.empty())
     return fmt::format("holds '{}', which is no plain number", printable_name(h.unusable));
   if (!has_numbers(h)) return "holds no numbers";

@@ -129,7 +129,7 @@ TEST_F(Npy, ErrorsNameWhatIsWrong) {
   EXPECT_EQ(broken.find('\n'), broken.npos) << broken;
   EXPECT_NE(broken.find("which is no plain number"), broken.npos) << broken;
   EXPECT_EQ(error_with(of("[('t', '<M8[ns]')]", "(1,)")),
-            "holds '<M8[ns]', which is no plain number");
+            "holds '<M8[ns]', which are no seconds: (t - t[0]) / np.timedelta64(1, 's') are");
   EXPECT_EQ(error_with(of("'<f8'", "(1, 2, 3)")),
             "has 3 dimensions, where rows of numbers have 1 or 2");
   EXPECT_EQ(error_with(of("[('t', '<f8')]", "(1, 2)")),
