@@ -105,11 +105,11 @@ concept CollisionDetector = requires(D d) {
   noexcept;
 }
 &&(
-    requires(D d, double t, const JointsView<>& x) {
+    requires(D d, double t, const JointVecView<>& x) {
       { d.update(t, x) }
       noexcept->std::same_as<Detection>;
     } ||
-    requires(D d, double t, const JointsView<>& x) {
+    requires(D d, double t, const JointVecView<>& x) {
       { d.update(t, x, x, x) }
       noexcept->std::same_as<Detection>;
     });
@@ -119,9 +119,9 @@ concept CollisionDetector = requires(D d) {
 /// @param tau_ext [N m] its estimate, which is used(); of as many joints
 template <class Scalar = double, class D>
 [[gnu::always_inline]] inline auto detect(
-    D& d, double t, const std::type_identity_t<JointsView<Scalar>>& qd,
-    const std::type_identity_t<JointsView<Scalar>>& tau,
-    const std::type_identity_t<JointsView<Scalar>>& tau_ext) noexcept {
+    D& d, double t, const std::type_identity_t<JointVecView<Scalar>>& qd,
+    const std::type_identity_t<JointVecView<Scalar>>& tau,
+    const std::type_identity_t<JointVecView<Scalar>>& tau_ext) noexcept {
   if constexpr (requires { d.update(t, qd, tau, tau_ext); }) {
     return d.update(t, qd, tau, tau_ext);
   } else {
@@ -145,8 +145,8 @@ concept CalibratableDetector = CollisionDetector<D> &&
     requires(const D& d, typename D::Parameters p) {
   { D::kDegree } -> std::convertible_to<int>;
   { d.statistic() }
-  noexcept->std::convertible_to<Joints<>>;
-  { p.threshold } -> std::convertible_to<Joints<>>;
+  noexcept->std::convertible_to<JointVec<>>;
+  { p.threshold } -> std::convertible_to<JointVec<>>;
   D(3, p);
 };
 

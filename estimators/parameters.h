@@ -130,15 +130,14 @@ const P& check_parameters(const P& p, const char* of) {
 /// @throws std::invalid_argument as check_parameters does, and for another number of values
 template <ListsFields P>
 P for_joints(P p, int joints, const char* of) {
-  if (joints < 1 || joints > kMaxJoints)
-    detail::fail_limit("joints", "1", of, joints, 1, kMaxJoints);
+  if (joints < 1 || joints > kMostDof) detail::fail_limit("joints", "1", of, joints, 1, kMostDof);
   check_parameters(p, of);
   for_each_field<P>([&](const auto& f) {
     auto& x = p.*f.at;
     if constexpr (!requires { f.unit; }) {
       x = for_joints(x, joints, of);
-    } else if constexpr (std::is_same_v<decltype(x), Joints<>&>) {
-      if (x.size() == 1) x = Joints<>::Constant(joints, x[0]);
+    } else if constexpr (std::is_same_v<decltype(x), JointVec<>&>) {
+      if (x.size() == 1) x = JointVec<>::Constant(joints, x[0]);
       if (x.size() != joints) detail::fail_joints(f.key, of, x.size(), joints);
     }
   });

@@ -23,21 +23,22 @@ template <int N, class Scalar = double>
 using Mat = Eigen::Matrix<Scalar, N, N>;
 
 /// The most joints of an arm that is watched by a detector.
-inline constexpr int kMaxJoints = 8;
-/// A value for each joint of an arm of up to kMaxJoints, without a heap.
+inline constexpr int kMostDof = 8;
+/// A value for each joint of an arm of up to kMostDof, without a heap.
 template <class Scalar = double>
-using Joints = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+using JointVec = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, 0, kMostDof, 1>;
 
-/// The values of a Vec or of Joints, where they are.
+/// The values of a Vec or of a JointVec, where they are.
 template <class Scalar = double>
-class JointsView : public Eigen::Map<const Joints<Scalar>> {
+class JointVecView : public Eigen::Map<const JointVec<Scalar>> {
  public:
   /// Of `joints` values, which must outlive it.
-  JointsView(const Scalar* first, int joints) : Eigen::Map<const Joints<Scalar>>(first, joints) {}
+  JointVecView(const Scalar* first, int joints)
+      : Eigen::Map<const JointVec<Scalar>>(first, joints) {}
   /// Of all of x, likewise.
   template <int N, int Most>
-  JointsView(const Eigen::Matrix<Scalar, N, 1, 0, Most, 1>& x)
-      : Eigen::Map<const Joints<Scalar>>(x.data(), x.size()) {}
+  JointVecView(const Eigen::Matrix<Scalar, N, 1, 0, Most, 1>& x)
+      : Eigen::Map<const JointVec<Scalar>>(x.data(), x.size()) {}
 };
 
 /// [m/s^2] gravity; the letter g is kept for the gravity torque of (3).

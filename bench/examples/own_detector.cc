@@ -10,7 +10,7 @@ struct Jump {
 
   void reset() noexcept { *this = Jump(); }
 
-  tauext::Detection update(double t, const tauext::JointsView<>& tau_ext) noexcept {
+  tauext::Detection update(double t, const tauext::JointVecView<>& tau_ext) noexcept {
     if (!marking.accept(t)) return marking.held();
     if (marking.silent(t)) before = last = tau_ext;                // the first sample
     const double jump = (tau_ext - before).cwiseAbs().maxCoeff();  // [N m]
@@ -20,7 +20,7 @@ struct Jump {
   }
 
   tauext::Marking marking{0.2, 0};
-  tauext::Joints<> last, before;
+  tauext::JointVec<> last, before;
 };
 
 int main(int argc, char** argv) {

@@ -90,11 +90,11 @@ class DetectorClaims {
     for (int k = 0; k < kSamples; ++k) {
       if (k > 4000 && k < 4080) continue;             // a gap
       const double t = (k == 4500 ? 3000 : k) * kTs;  // a time that is not the next one
-      const Joints<Lanes> none = Joints<Lanes>::Zero(joints_);
-      Joints<Lanes> speeds = none, loads = none;
+      const JointVec<Lanes> none = JointVec<Lanes>::Zero(joints_);
+      JointVec<Lanes> speeds = none, loads = none;
       std::array<Detection, kRuns> said;
       for (int i = 0; i < kRuns; ++i) {
-        Joints<> qd = zero(), load = zero();
+        JointVec<> qd = zero(), load = zero();
         for (int j = 0; j < joints_; ++j) {
           qd[j] = 0.1 * i - 0.2 * j;
           load[j] = (0.3 + 0.4 * i) * touch(t, t > 2.5) / (1 + j) + std::sin(t * (20 + i + j));
@@ -113,7 +113,7 @@ class DetectorClaims {
         marks += x.mark;
         if constexpr (CalibratableDetector<D>) {
           for (int j = 0; j < joints_; ++j) {
-            const double own = Joints<>(alone[static_cast<std::size_t>(i)].statistic())[j];
+            const double own = JointVec<>(alone[static_cast<std::size_t>(i)].statistic())[j];
             ASSERT_NEAR(all.statistic()[j][i], own, 1e-12 * (1 + own)) << i << ", " << k;
           }
         }
@@ -145,7 +145,7 @@ class DetectorClaims {
       int marks = 0;
       for (int k = 0; k < kSamples; ++k) {
         const double t = k * kTs;
-        Joints<> qd = Joints<>::Constant(joints_, kSpeed);
+        JointVec<> qd = JointVec<>::Constant(joints_, kSpeed);
         if (k == 1005 || k == 3100) qd[j] = std::numeric_limits<double>::quiet_NaN();
         const double load = touch(t, t > 2.5);
         const Detection x = step(d, t, qd, load);
@@ -165,9 +165,9 @@ class DetectorClaims {
       const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
       step(one, k, x);
       step(two, k, 2 * x);
-      const Joints<> least = std::pow(2, D::kDegree) * Joints<>(one.statistic());
+      const JointVec<> least = std::pow(2, D::kDegree) * JointVec<>(one.statistic());
       for (int j = 0; j < joints_; ++j) {
-        ASSERT_GE(Joints<>(two.statistic())[j], least[j] * (1 - 1e-9)) << "sample " << k;
+        ASSERT_GE(JointVec<>(two.statistic())[j], least[j] * (1 - 1e-9)) << "sample " << k;
       }
     }
   }
@@ -180,10 +180,10 @@ class DetectorClaims {
       const double x = 0.01 * touch(k * kTs, k * kTs > 2.5);
       step(d, k, x);
       step(mirrored, k, -x);
-      ASSERT_EQ(Joints<>(mirrored.statistic()), Joints<>(d.statistic())) << "sample " << k;
+      ASSERT_EQ(JointVec<>(mirrored.statistic()), JointVec<>(d.statistic())) << "sample " << k;
     }
     d.reset();
-    EXPECT_EQ(Joints<>(d.statistic()), zero());
+    EXPECT_EQ(JointVec<>(d.statistic()), zero());
   }
 
   /// No heap allocation in reset() and update(); not seen under sanitizers.
@@ -228,16 +228,16 @@ class DetectorClaims {
 
   // not inlined: a copy in each claim would take long to compile
   [[gnu::noinline]] D made() const { return make_(); }
-  [[gnu::noinline]] Detection step(D& d, double t, const Joints<>& qd, double load) const {
-    const Joints<> tau_ext = Joints<>::Constant(joints_, load);
+  [[gnu::noinline]] Detection step(D& d, double t, const JointVec<>& qd, double load) const {
+    const JointVec<> tau_ext = JointVec<>::Constant(joints_, load);
     return detect(d, t, qd, zero(), tau_ext);
   }
 
   Detection step(D& d, int k, double load, double shift = 0) const {
-    return step(d, k * kTs + shift, Joints<>::Constant(joints_, kSpeed), load);
+    return step(d, k * kTs + shift, JointVec<>::Constant(joints_, kSpeed), load);
   }
 
-  Joints<> zero() const { return Joints<>::Zero(joints_); }
+  JointVec<> zero() const { return JointVec<>::Zero(joints_); }
 
   template <class Load>
   std::vector<Detection> run(Load&& load, double shift = 0) const {

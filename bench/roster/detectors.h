@@ -40,8 +40,8 @@ class DetectorInput {
   }
 
   /// One sample.
-  DetectorInput(const Scalar& t, const JointsView<Scalar>& qd, const JointsView<Scalar>& tau,
-                const JointsView<Scalar>& tau_ext, const Status& status)
+  DetectorInput(const Scalar& t, const JointVecView<Scalar>& qd, const JointVecView<Scalar>& tau,
+                const JointVecView<Scalar>& tau_ext, const Status& status)
       : size_(1),
         joints_(static_cast<int>(qd.size())),
         sample_(0),
@@ -62,11 +62,13 @@ class DetectorInput {
       return t[0];
   }
   /// [rad/s]
-  JointsView<Scalar> qd(std::size_t k) const { return {at(qd_, sample_, k), joints_}; }
+  JointVecView<Scalar> qd(std::size_t k) const { return {at(qd_, sample_, k), joints_}; }
   /// [N m]
-  JointsView<Scalar> tau(std::size_t k) const { return {at(tau_, sample_, k), joints_}; }
+  JointVecView<Scalar> tau(std::size_t k) const { return {at(tau_, sample_, k), joints_}; }
   /// [N m]
-  JointsView<Scalar> tau_ext(std::size_t k) const { return {at(tau_ext_, estimate_, k), joints_}; }
+  JointVecView<Scalar> tau_ext(std::size_t k) const {
+    return {at(tau_ext_, estimate_, k), joints_};
+  }
   /// Of the estimate, of one run.
   Status status(std::size_t k) const requires std::is_same_v<Scalar, double> {
     return *at(status_, estimate_, k);
@@ -95,9 +97,9 @@ class DetectorStage {
   /// What is detected at each sample.
   virtual void run(const DetectorInput<Scalar>& in, std::span<DetectionOf<Scalar>> out) = 0;
   /// Of the last sample; empty for a detector that cannot be calibrated.
-  virtual Joints<Scalar> statistic() const = 0;
+  virtual JointVec<Scalar> statistic() const = 0;
   /// What its metric weighs; empty for a detector without one.
-  virtual Joints<Scalar> change() const = 0;
+  virtual JointVec<Scalar> change() const = 0;
 };
 
 /// The stage of this detector, which computes with Scalar.
@@ -119,14 +121,14 @@ class DetectorStageOf final : public DetectorStage<Scalar> {
       out[k] = detect<Scalar>(d_, in.t(k), in.qd(k), in.tau(k), in.tau_ext(k));
     }
   }
-  Joints<Scalar> statistic() const override {
+  JointVec<Scalar> statistic() const override {
     if constexpr (requires { d_.statistic(); }) {
       return d_.statistic();
     } else {
       return {};
     }
   }
-  Joints<Scalar> change() const override {
+  JointVec<Scalar> change() const override {
     if constexpr (requires { d_.change(); }) {
       return d_.change();
     } else {
@@ -173,12 +175,12 @@ concept OfTrainedParts = requires(typename D::Parameters p) {
 // Times factor, joint by joint, for every parameter in N m: squared for one in (N m)^2. Where a
 // metric mixes the joints, it makes them comparable, and its threshold is that of as many.
 template <class P>
-void scale_torques(P& p, const Joints<>& factor) {
+void scale_torques(P& p, const JointVec<>& factor) {
   for_each_field<P>([&](const auto& f) {
     auto& x = p.*f.at;
     if constexpr (!requires { f.unit; }) {
       scale_torques(x, factor);
-    } else if constexpr (std::is_same_v<decltype(x), Joints<>&>) {
+    } else if constexpr (std::is_same_v<decltype(x), JointVec<>&>) {
       const std::string_view unit = f.unit;
       if (unit.starts_with("N m")) x = x.cwiseProduct(factor).eval();
       if (unit.starts_with("(N m")) x = x.cwiseProduct(factor.cwiseAbs2()).eval();
@@ -186,7 +188,7 @@ void scale_torques(P& p, const Joints<>& factor) {
   });
   if constexpr (requires { p.metric; }) {
     if ((factor.array() == 1).all()) return;
-    const Joints<> even = factor.maxCoeff() * factor.cwiseInverse();
+    const JointVec<> even = factor.maxCoeff() * factor.cwiseInverse();
     p.metric = even.cwiseAbs2().asDiagonal();  // of an identity
     p.threshold =
         (p.threshold.cwiseProduct(even) * std::sqrt(static_cast<double>(even.size()) / 3)).eval();
@@ -195,7 +197,7 @@ void scale_torques(P& p, const Joints<>& factor) {
 
 // an arm's defaults
 template <class D>
-typename D::Parameters defaults_for(const Joints<>& torques) {
+typename D::Parameters defaults_for(const JointVec<>& torques) {
   typename D::Parameters p;
   if constexpr (ListsFields<typename D::Parameters>) {
     p = for_joints(p, static_cast<int>(torques.size()), D::kName);
@@ -206,7 +208,8 @@ typename D::Parameters defaults_for(const Joints<>& torques) {
 
 // the arm's defaults, then what training says, then what the specification says
 template <class D>
-D made_detector(const Specification& s, const DetectorSettings& settings, const Joints<>& torques) {
+D made_detector(const Specification& s, const DetectorSettings& settings,
+                const JointVec<>& torques) {
   const int joints = static_cast<int>(torques.size());
   if constexpr (requires { typename D::Parameters; }) {
     typename D::Parameters p = defaults_for<D>(torques);
@@ -241,13 +244,13 @@ struct DetectorType {
   std::optional<Calibration> calibration;          ///< how they are set
   /// Builds one: the arm's defaults, then what training says, then what the specification says.
   std::unique_ptr<DetectorStage<>> (*make)(const Specification& s, const DetectorSettings& settings,
-                                           const Joints<>& torques) = nullptr;
+                                           const JointVec<>& torques) = nullptr;
 };
 
 /// That of D.
 /// @param torques [1] times what the torques in detectors' defaults are right for this arm
 template <CollisionDetector D>
-DetectorType detector_type(const Joints<>& torques) {
+DetectorType detector_type(const JointVec<>& torques) {
   DetectorType type;
   type.name = D::kName;
   if constexpr (requires { typename D::Parameters; }) {
@@ -263,7 +266,7 @@ DetectorType detector_type(const Joints<>& torques) {
 }
 }  // namespace tauext
 type.make = [](const Specification& s, const DetectorSettings& settings,
-               const Joints<>& of_arm) -> std::unique_ptr<DetectorStage<>> {
+               const JointVec<>& of_arm) -> std::unique_ptr<DetectorStage<>> {
   return std::make_unique<DetectorStageOf<D>>(detail::made_detector<D>(s, settings, of_arm));
 };
 return type;

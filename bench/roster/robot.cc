@@ -65,7 +65,7 @@ bool is_robot_file(std::string_view name) {
 }
 
 Robot::Robot(std::string name, int dof, const Model& file)
-    : name_(std::move(name)), dof_(dof), torques_(Joints<>::Ones(dof)) {
+    : name_(std::move(name)), dof_(dof), torques_(JointVec<>::Ones(dof)) {
   if (!file) return;
   file_ = simulated(file);
   unfit_ = too_stiff(file_);
@@ -252,7 +252,8 @@ std::vector<Detection> Robot::detect(std::string_view detector, const Trace& tra
   std::vector<Detection> all(trace.t.size());
   for (int k = 0; k < trace.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    const Joints<> qd = trace.qd.col(k), tau = trace.tau.col(k), tau_ext = estimates.tau_ext.col(k);
+    const JointVec<> qd = trace.qd.col(k), tau = trace.tau.col(k),
+                     tau_ext = estimates.tau_ext.col(k);
     stage->run({trace.t[at], qd, tau, tau_ext, estimates.status[at]}, {&all[at], 1});
   }
   return all;

@@ -157,7 +157,7 @@ class Robot {
   Robot(std::string name, int dof, const Model& file = nullptr);
 
   /// [1] times what the torques in detectors' defaults are right for this arm.
-  const Joints<>& torques() const { return torques_; }
+  const JointVec<>& torques() const { return torques_; }
   /// @throws std::invalid_argument if its name is taken
   void add_detector(const DetectorType& type);
   /// Null for "".
@@ -174,7 +174,7 @@ class Robot {
   std::string fingerprint_;
   bool slides_ = false;
   Eigen::VectorXd usual_torque_;  // ArmScale::usual_torque [N m] of a file's robot; else empty
-  Joints<> torques_;
+  JointVec<> torques_;
   std::vector<DetectorType> detectors_;
   mutable std::once_flag listed_;
   mutable std::vector<Scenario> scenarios_;  // of a file's robot

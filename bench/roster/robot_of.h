@@ -35,7 +35,7 @@ auto& registered_estimators() {
   return registered<void(const M&, RobotOf<M::kDof>&)>();
 }
 inline auto& registered_detectors() {
-  return registered<DetectorType(const Joints<>& torques)>();
+  return registered<DetectorType(const JointVec<>& torques)>();
 }
 
 // a robot of N joints: its factories, by name
@@ -44,7 +44,7 @@ class RobotOf final : public Robot {
  public:
   template <RobotModel M>
   RobotOf(const std::string& name, const M& model, const Model& file) : Robot(name, N, file) {
-    static_assert(N <= kMaxJoints);
+    static_assert(N <= kMostDof);
     for_each_estimator(model, [&](auto make) {
       add_estimator(model, make);
       if constexpr (std::is_same_v<M, WallMoBot3> || kLarge) add_runs(model, make);

@@ -17,7 +17,7 @@ namespace tauext {
 struct BandPassParameters {
   /// [N m] per joint: larger misses more and alarms less; as in high_pass.h, for which see the
   /// origin
-  Joints<> threshold = Joints<>::Constant(1, 45);
+  JointVec<> threshold = JointVec<>::Constant(1, 45);
   double w_low = 10;        ///< [rad/s] larger lets less of a push pass, and of a blow
   double w_high = 100;      ///< [rad/s] smaller lets less noise pass, and marks later
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -51,7 +51,7 @@ class BasicBandPass {
         slow_(joints, p.w_low),
         quick_(joints, p.w_high),
         marking_(p.refractory, p.start_up),
-        statistic_(Joints<Scalar>::Zero(joints)) {
+        statistic_(JointVec<Scalar>::Zero(joints)) {
     require(p.w_low < p.w_high, "w_low of band_pass must be below w_high");
   }
 
@@ -62,21 +62,21 @@ class BasicBandPass {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       slow_.start(t, tau_ext);
-      quick_.start(t, Joints<Scalar>::Zero(tau_ext.size()).eval());
+      quick_.start(t, JointVec<Scalar>::Zero(tau_ext.size()).eval());
     } else {
-      const Joints<Scalar> high = tau_ext - slow_(t, tau_ext);
+      const JointVec<Scalar> high = tau_ext - slow_(t, tau_ext);
       statistic_ = quick_(t, high).cwiseAbs();  // (i)
     }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |z|.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
@@ -84,7 +84,7 @@ class BasicBandPass {
   Parameters p_;
   LowPass<Scalar> slow_, quick_;
   BasicMarking<Scalar> marking_;
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

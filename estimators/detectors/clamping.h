@@ -29,17 +29,17 @@
 
 namespace tauext {
 
-/// A value for each two joints of an arm of up to kMaxJoints, without a heap.
+/// A value for each two joints of an arm of up to kMostDof, without a heap.
 template <class Scalar = double>
-using JointsMatrix =
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
+using JointMat =
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostDof, kMostDof>;
 
 /// What can be chosen of a Clamping.
 struct ClampingParameters {
   /// [N m] of `lasting`; the smallest one counts, since the metric mixes the joints: larger
   /// misses more and alarms less; by default beyond a push of 100 N at 1.5 m
-  Joints<> threshold = Joints<>::Constant(1, 150);
-  JointsMatrix<> metric{};  ///< [1] of (ii), symmetric positive definite; empty: identity
+  JointVec<> threshold = JointVec<>::Constant(1, 150);
+  JointMat<> metric{};  ///< [1] of (ii), symmetric positive definite; empty: identity
   /// [rad/s] of the baseline: larger forgets payloads and model errors quicker, but also a
   /// clamping that rises slowly
   double w_baseline = 0.5;
@@ -78,17 +78,17 @@ class BasicClamping {
       : p_(for_joints(p, joints, kName)),
         baseline_(joints, p.w_baseline),
         smooth_(joints, p.w_smooth),
-        metric_(JointsMatrix<Scalar>::Identity(joints, joints)),
+        metric_(JointMat<Scalar>::Identity(joints, joints)),
         marking_(p.refractory, p.start_up),
         least_threshold_(p.threshold.minCoeff()),
-        z_(Joints<Scalar>::Zero(joints)),
+        z_(JointVec<Scalar>::Zero(joints)),
         statistic_(z_) {
     require(p.w_baseline < p.w_smooth, "w_baseline of clamping must be below w_smooth");
     if (p.metric.size() > 0) {
       require(p.metric.rows() == joints && p.metric.cols() == joints,
               "metric of clamping must have a row and a column for each joint");
       require(p.metric.isApprox(p.metric.transpose()) &&
-                  Eigen::LLT<JointsMatrix<>>(p.metric).info() == Eigen::Success,
+                  Eigen::LLT<JointMat<>>(p.metric).info() == Eigen::Success,
               "metric of clamping must be symmetric and positive definite");
       metric_ = p.metric.template cast<Scalar>();
     }
@@ -102,16 +102,16 @@ class BasicClamping {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       baseline_.start(t, tau_ext);
-      smooth_.start(t, Joints<Scalar>::Zero(tau_ext.size()).eval());
+      smooth_.start(t, JointVec<Scalar>::Zero(tau_ext.size()).eval());
       block_began_ = t;
     } else {
       using std::sqrt;
-      const Joints<Scalar> changed = tau_ext - baseline_(t, tau_ext);
+      const JointVec<Scalar> changed = tau_ext - baseline_(t, tau_ext);
       z_ = smooth_(t, changed);                        // (i)
       keep(t, sqrt(z_.dot(metric_.lazyProduct(z_))));  // (ii)
     }
@@ -119,10 +119,10 @@ class BasicClamping {
   }
 
   /// [N m] `lasting`, the same for every joint.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
   /// [N m] z of (i): how far tau_ext is from its baseline.
-  const Joints<Scalar>& change() const noexcept { return z_; }
+  const JointVec<Scalar>& change() const noexcept { return z_; }
 
  private:
   void forget() noexcept {
@@ -151,14 +151,14 @@ class BasicClamping {
 
   Parameters p_;
   LowPass<Scalar> baseline_, smooth_;
-  JointsMatrix<Scalar> metric_;
+  JointMat<Scalar> metric_;
   BasicMarking<Scalar> marking_;
   double least_threshold_;              // [N m]
   std::array<Scalar, kBlocks> blocks_;  // [N m]
   Scalar older_ = 0;                    // [N m] least of all but the newest
   int newest_ = 0;
   double block_began_ = 0;  // [s]
-  Joints<Scalar> z_, statistic_;
+  JointVec<Scalar> z_, statistic_;
 };
 
 /// Of one run.

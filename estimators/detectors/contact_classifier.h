@@ -27,7 +27,7 @@ struct ContactClassifierParameters {
   ClampingParameters clamping{};      ///< of what finds a clamping
   /// [N m] per joint from where on a change counts as a touch: larger overlooks light hands; by
   /// default 15 N at 1 m
-  Joints<> intentional = Joints<>::Constant(1, 15);
+  JointVec<> intentional = JointVec<>::Constant(1, 15);
   double hold = 0.3;  ///< [s] for which a collision is one: larger delays what comes after it
 
   static constexpr auto fields() {
@@ -63,7 +63,7 @@ class BasicContactClassifier {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     const Status status = clock_.accept(t);
     if (!used(status)) return {no<Scalar>(), last_.score, last_.contact};
     if (status == Status::kStarted) forget();
@@ -78,7 +78,7 @@ class BasicContactClassifier {
     last_ = {no<Scalar>(), 0, contact_as<Scalar>(Contact::kNone)};
   }
 
-  DetectionOf<Scalar> classified(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> classified(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     using std::max;
     const DetectionOf<Scalar> hit = collision_.update(t, tau_ext);
     const DetectionOf<Scalar> clamp = clamping_.update(t, tau_ext);
@@ -89,7 +89,7 @@ class BasicContactClassifier {
     const MaskOf<Scalar> clamp_mark = clamped & !clamped_ & rested;
     clamped_ = clamped;
     clamp_marked_at_ = select(clamp_mark, Scalar(t), clamp_marked_at_);
-    const Joints<Scalar> change = clamping_.change().cwiseAbs();
+    const JointVec<Scalar> change = clamping_.change().cwiseAbs();
     const MaskOf<Scalar> touched = largest_ratio(change, p_.intentional) >= 1;
     const MaskOf<Scalar> mark = (hit.mark & collides) | clamp_mark;
     const auto as = [](Contact c) { return contact_as<Scalar>(c); };

@@ -22,11 +22,11 @@ namespace tauext {
 struct CusumParameters {
   /// [N m s] per joint: larger misses more and alarms less; by default half the impulse of a blow
   /// of 100 N and 10 ms at 1.2 m
-  Joints<> threshold = Joints<>::Constant(1, 0.4);
+  JointVec<> threshold = JointVec<>::Constant(1, 0.4);
   /// [N m] per joint, what z may have for ever: larger forgets quicker; by default above what a
   /// push of 80 N in 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s,
   /// over w)
-  Joints<> drift = Joints<>::Constant(1, 12);
+  JointVec<> drift = JointVec<>::Constant(1, 12);
   double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
   double most_score = 2;    ///< [1] where a sum stops: larger comes down later when a contact ends
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -60,7 +60,7 @@ class BasicCusum {
       : p_(for_joints(p, joints, kName)),
         mean_(joints, p.w),
         marking_(p.refractory, p.start_up),
-        up_(Joints<Scalar>::Zero(joints)),
+        up_(JointVec<Scalar>::Zero(joints)),
         down_(up_),
         statistic_(up_) {}
 
@@ -71,16 +71,16 @@ class BasicCusum {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
       const Scalar h = t - t_;
-      const Joints<Scalar> drift = p_.drift.template cast<Scalar>();
-      const Joints<Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
-      const Joints<Scalar> z = tau_ext - mean_(t, tau_ext);
+      const JointVec<Scalar> drift = p_.drift.template cast<Scalar>();
+      const JointVec<Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
+      const JointVec<Scalar> z = tau_ext - mean_(t, tau_ext);
       up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
       down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
       statistic_ = up_.cwiseMax(down_);
@@ -90,7 +90,7 @@ class BasicCusum {
   }
 
   /// [N m s] the larger sum.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept {
@@ -105,7 +105,7 @@ class BasicCusum {
   LowPass<Scalar> mean_;
   BasicMarking<Scalar> marking_;
   double t_ = 0;
-  Joints<Scalar> up_, down_, statistic_;
+  JointVec<Scalar> up_, down_, statistic_;
 };
 
 /// Of one run.

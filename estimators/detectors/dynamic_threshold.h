@@ -20,7 +20,7 @@ namespace tauext {
 struct DynamicThresholdParameters {
   /// [N m] per joint at rest: larger misses more and alarms less; by default a push of 80 N at
   /// 1.2 m
-  Joints<> threshold = Joints<>::Constant(1, 100);
+  JointVec<> threshold = JointVec<>::Constant(1, 100);
   double speed = 0.5;       ///< [rad/s] at which the limit has doubled: smaller trusts motion less
   double share = 0;         ///< [1] of tau that may be wrong: larger trusts model and sensor less
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -50,7 +50,7 @@ class BasicDynamicThreshold {
   explicit BasicDynamicThreshold(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
-        statistic_(Joints<Scalar>::Zero(joints)) {}
+        statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -59,23 +59,24 @@ class BasicDynamicThreshold {
     statistic_.setZero();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& qd, const JointsView<Scalar>& tau,
-                             const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& qd,
+                             const JointVecView<Scalar>& tau,
+                             const JointVecView<Scalar>& tau_ext) noexcept {
     if (!measured(qd) || !measured(tau)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
-    const Joints<Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
-    const Joints<Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
+    const JointVec<Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
+    const JointVec<Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
     statistic_ = beyond.cwiseMax(Scalar(0)).cwiseQuotient(growth);
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |tau_ext| as it would count at rest and without a torque.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
   BasicMarking<Scalar> marking_;
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

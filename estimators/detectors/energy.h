@@ -24,7 +24,7 @@ namespace tauext {
 struct EnergyParameters {
   /// [W] per joint, of which the least counts: larger misses more and alarms less; by default 80 N
   /// at 0.25 m/s
-  Joints<> threshold = Joints<>::Constant(1, 20);
+  JointVec<> threshold = JointVec<>::Constant(1, 20);
   double w = 60;            ///< [rad/s] of the low-pass: larger is quicker, and noisier
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -53,7 +53,7 @@ class BasicEnergy {
       : p_(for_joints(p, joints, kName)),
         power_(1, p.w),
         marking_(p.refractory, p.start_up),
-        statistic_(Joints<Scalar>::Zero(joints)) {}
+        statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -62,12 +62,12 @@ class BasicEnergy {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& qd, const JointsView<Scalar>&,
-                             const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& qd, const JointVecView<Scalar>&,
+                             const JointVecView<Scalar>& tau_ext) noexcept {
     if (!measured(qd)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
-    const Joints<Scalar> power = Joints<Scalar>::Constant(1, qd.dot(tau_ext));
+    const JointVec<Scalar> power = JointVec<Scalar>::Constant(1, qd.dot(tau_ext));
     if (marking_.silent(t)) {
       power_.start(t, power);
     } else {
@@ -78,7 +78,7 @@ class BasicEnergy {
   }
 
   /// [W] |r|, the same for each joint.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
@@ -86,7 +86,7 @@ class BasicEnergy {
   Parameters p_;
   LowPass<Scalar> power_;
   BasicMarking<Scalar> marking_;
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

@@ -20,19 +20,19 @@ class LowPass {
  public:
   /// @param w [rad/s] cut-off
   /// @throws std::invalid_argument unless it is positive
-  LowPass(int joints, double w) : w_(w), x_(Joints<Scalar>::Zero(joints)), low_(x_) {
+  LowPass(int joints, double w) : w_(w), x_(JointVec<Scalar>::Zero(joints)), low_(x_) {
     require(w > 0, "w [rad/s] of a filter must be positive");
   }
 
   /// As if x had been there for ever.
-  void start(double t, const JointsView<Scalar>& x) noexcept {
+  void start(double t, const JointVecView<Scalar>& x) noexcept {
     t_ = t;
     x_ = low_ = x;
   }
 
   /// (i) at t [s], which is later than the last one.
-  [[gnu::always_inline]] const Joints<Scalar>& operator()(double t,
-                                                          const JointsView<Scalar>& x) noexcept {
+  [[gnu::always_inline]] const JointVec<Scalar>& operator()(
+      double t, const JointVecView<Scalar>& x) noexcept {
     const double h = t - t_;
     if (new_step_(h)) decay_ = std::exp(-w_ * h);
     low_ = x_ + Scalar(decay_) * (low_ - x_);
@@ -46,7 +46,7 @@ class LowPass {
   StepChange<> new_step_;
   double decay_ = 0;
   double t_ = 0;
-  Joints<Scalar> x_, low_;
+  JointVec<Scalar> x_, low_;
 };
 
 }  // namespace tauext

@@ -27,7 +27,7 @@ namespace tauext {
 struct GlrParameters {
   /// [N m s^0.5] per joint: larger misses more and alarms less; by default half of what a blow of
   /// 100 N and 10 ms at 1.2 m has
-  Joints<> threshold = Joints<>::Constant(1, 4);
+  JointVec<> threshold = JointVec<>::Constant(1, 4);
   double w = 20;            ///< [rad/s] of the slow mean: larger lets less of a push pass
   double span = 0.1;        ///< [s] of the longest change; it holds 128 samples at most
   double refractory = 0.2;  ///< [s] after a mark without another
@@ -60,7 +60,7 @@ class BasicGlr {
         mean_(joints, p.w),
         marking_(p.refractory, p.start_up),
         sum_(Sums::Zero(joints, kSums)),
-        statistic_(Joints<Scalar>::Zero(joints)) {}
+        statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -69,7 +69,7 @@ class BasicGlr {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_[last_] > kGap) {
@@ -83,11 +83,11 @@ class BasicGlr {
   }
 
   /// [N m s^0.5] g.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   static constexpr int kSums = 256;  // that are kept, a power of two
-  using Sums = Eigen::Matrix<Scalar, Eigen::Dynamic, kSums, Eigen::ColMajor, kMaxJoints, kSums>;
+  using Sums = Eigen::Matrix<Scalar, Eigen::Dynamic, kSums, Eigen::ColMajor, kMostDof, kSums>;
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   void forget() noexcept {
@@ -101,7 +101,7 @@ class BasicGlr {
     t_[0] = t;
     sum_.col(0).setZero();
   }
-  [[gnu::always_inline]] void add(double t, const Joints<Scalar>& z) noexcept {
+  [[gnu::always_inline]] void add(double t, const JointVec<Scalar>& z) noexcept {
     const int next = (last_ + 1) % kSums;
     sum_.col(next) = sum_.col(last_) + Scalar(t - t_[last_]) * z;
     t_[next] = t;
@@ -126,7 +126,7 @@ class BasicGlr {
   int last_ = 0, count_ = 1;  // of the sums
   std::array<double, kSums> t_{};
   Sums sum_;  // [N m s]
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

@@ -19,7 +19,7 @@ namespace tauext {
 struct HighPassParameters {
   /// [N m] per joint: larger misses more and alarms less; by default twice what a push of 80 N in
   /// 0.8 s at 1.2 m leaves behind the filter (its steepest slope, 225 N m/s, over w)
-  Joints<> threshold = Joints<>::Constant(1, 45);
+  JointVec<> threshold = JointVec<>::Constant(1, 45);
   double w = 10;            ///< [rad/s] cut-off: larger lets less of a push pass, and of a blow
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -48,7 +48,7 @@ class BasicHighPass {
       : p_(for_joints(p, joints, kName)),
         low_(joints, p.w),
         marking_(p.refractory, p.start_up),
-        statistic_(Joints<Scalar>::Zero(joints)) {}
+        statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -57,7 +57,7 @@ class BasicHighPass {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
@@ -69,7 +69,7 @@ class BasicHighPass {
   }
 
   /// [N m] |z|.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   void forget() noexcept { statistic_.setZero(); }
@@ -77,7 +77,7 @@ class BasicHighPass {
   Parameters p_;
   LowPass<Scalar> low_;
   BasicMarking<Scalar> marking_;
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

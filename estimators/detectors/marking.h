@@ -42,8 +42,8 @@ using DetectionOf =
 
 /// [1] the score of a detector that compares each joint's statistic with a threshold of its own.
 template <class Scalar>
-[[gnu::always_inline]] inline Scalar largest_ratio(const Joints<Scalar>& statistic,
-                                                   const Joints<>& threshold) noexcept {
+[[gnu::always_inline]] inline Scalar largest_ratio(const JointVec<Scalar>& statistic,
+                                                   const JointVec<>& threshold) noexcept {
   using std::max;
   Scalar most = statistic[0] / Scalar(threshold[0]);
   for (Eigen::Index i = 1; i < statistic.size(); ++i)
@@ -77,7 +77,7 @@ constexpr auto threshold_field(const char* unit) {
 
 /// Whether a detector may compute with what was measured; of several runs somebody has looked before.
 template <class Scalar>
-bool measured(const JointsView<Scalar>& x) noexcept {
+bool measured(const JointVecView<Scalar>& x) noexcept {
   if constexpr (std::is_same_v<Scalar, double>)
     return within(x, kMeasurementLimit);
   else

@@ -30,7 +30,7 @@ struct PanTompkinsParameters {
   int stride = 5;
   /// [(N m/s)^2] of (iii) per joint; the default is 40 times the squared slope of a human's
   /// minimum-jerk push of 50 N m in 1 s (94 N m/s), and belongs to stride 5 at 1 kHz
-  Joints<> threshold = Joints<>::Constant(1, 3.6e5);
+  JointVec<> threshold = JointVec<>::Constant(1, 3.6e5);
   double hold = 0.02;       ///< [s] how long an energy is kept
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
@@ -61,7 +61,7 @@ class BasicPanTompkins {
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
         tau_ext_(History::Zero(joints, kHistory)),
-        held_(Joints<Scalar>::Zero(joints)),
+        held_(JointVec<Scalar>::Zero(joints)),
         held_at_(held_) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
@@ -71,7 +71,7 @@ class BasicPanTompkins {
     forget();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
@@ -79,7 +79,7 @@ class BasicPanTompkins {
     tau_ext_.col(newest_) = tau_ext;
     if (++count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
-    const Joints<Scalar> energy = slope(newest_).cwiseAbs2();
+    const JointVec<Scalar> energy = slope(newest_).cwiseAbs2();
     for (Eigen::Index i = 0; i < energy.size(); ++i) {  // (ii)
       const MaskOf<Scalar> is_higher = energy[i] >= held_[i], is_over = t - held_at_[i] > p_.hold;
       const MaskOf<Scalar> is_new = is_higher | is_over;
@@ -94,12 +94,12 @@ class BasicPanTompkins {
   }
 
   /// [(N m/s)^2] held energy of each joint.
-  const Joints<Scalar>& statistic() const noexcept { return held_; }
+  const JointVec<Scalar>& statistic() const noexcept { return held_; }
 
  private:
   static constexpr int kHistory = 4 * Parameters::kMaxStride + 1;
   using History =
-      Eigen::Matrix<Scalar, Eigen::Dynamic, kHistory, Eigen::ColMajor, kMaxJoints, kHistory>;
+      Eigen::Matrix<Scalar, Eigen::Dynamic, kHistory, Eigen::ColMajor, kMostDof, kHistory>;
 
   void forget() noexcept {
     count_ = 0;
@@ -108,7 +108,7 @@ class BasicPanTompkins {
   }
 
   // (i), [N m/s]
-  Joints<Scalar> slope(int newest) const noexcept {
+  JointVec<Scalar> slope(int newest) const noexcept {
     std::array<int, 5> at;
     double sum_t = 0;
     for (int& place : at) {
@@ -118,7 +118,7 @@ class BasicPanTompkins {
       if (newest < 0) newest += kHistory;
     }
     const double mean_t = 0.2 * sum_t;
-    Joints<Scalar> numerator = Joints<Scalar>::Zero(held_.size());
+    JointVec<Scalar> numerator = JointVec<Scalar>::Zero(held_.size());
     double denominator = 0;
     for (const int j : at) {
       const double from_mean = t_[j] - mean_t;
@@ -134,7 +134,7 @@ class BasicPanTompkins {
   History tau_ext_;  // [N m]
   long count_ = 0;
   int newest_ = 0;  // of the history
-  Joints<Scalar> held_, held_at_;
+  JointVec<Scalar> held_, held_at_;
 };
 
 /// Of one run.

@@ -18,7 +18,7 @@ namespace tauext {
 struct ThresholdParameters {
   /// [N m] per joint: larger misses more and alarms less; by default beyond a push of 100 N at
   /// 1.2 m
-  Joints<> threshold = Joints<>::Constant(1, 120);
+  JointVec<> threshold = JointVec<>::Constant(1, 120);
   double refractory = 0.2;  ///< [s] after a mark without another
   double start_up = 0;      ///< [s] after the first sample without a mark
 
@@ -42,7 +42,7 @@ class BasicThreshold {
   explicit BasicThreshold(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
-        statistic_(Joints<Scalar>::Zero(joints)) {}
+        statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
 
@@ -51,19 +51,19 @@ class BasicThreshold {
     statistic_.setZero();
   }
 
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if (!marking_.accept(t)) return marking_.held();
     statistic_ = tau_ext.cwiseAbs();
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
   /// [N m] |tau_ext|.
-  const Joints<Scalar>& statistic() const noexcept { return statistic_; }
+  const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
   Parameters p_;
   BasicMarking<Scalar> marking_;
-  Joints<Scalar> statistic_;
+  JointVec<Scalar> statistic_;
 };
 
 /// Of one run.

@@ -115,7 +115,7 @@ static_assert(TorqueEstimator<Forgetful> && !ForRuns<Forgetful>);
 struct Nervous {
   static constexpr const char* kName = "nervous";
   void reset() noexcept {}
-  Detection update(double t, const JointsView<>&) noexcept {
+  Detection update(double t, const JointVecView<>&) noexcept {
     const bool mark = std::fmod(t, 0.1) < 1e-3;
     return {mark, mark ? 0.5 : 0, Contact::kCollision};
   }
@@ -131,11 +131,12 @@ struct LooksAtOneRun {
   explicit LooksAtOneRun(int joints, const Parameters& p = {}) : one_(joints, p) {}
   const Parameters& parameters() const noexcept { return one_.parameters(); }
   void reset() noexcept { one_.reset(); }
-  DetectionOf<Scalar> update(double t, const JointsView<Scalar>& tau_ext) noexcept {
+  DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     if constexpr (std::is_same_v<Scalar, double>) {
       return one_.update(t, tau_ext);
     } else {
-      const Joints<Scalar> first = tau_ext.unaryExpr([](const Scalar& x) { return Scalar(x[0]); });
+      const JointVec<Scalar> first =
+          tau_ext.unaryExpr([](const Scalar& x) { return Scalar(x[0]); });
       return one_.update(t, first);
     }
   }

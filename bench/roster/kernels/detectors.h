@@ -14,17 +14,17 @@ namespace tauext::detail {
 
 // for an arm whose torques are so many times the usual ones
 template <int W>
-std::vector<DetectorType> roster_detectors(const Joints<>& torques);
+std::vector<DetectorType> roster_detectors(const JointVec<>& torques);
 template <>
-std::vector<DetectorType> roster_detectors<kRuns>(const Joints<>& torques);
+std::vector<DetectorType> roster_detectors<kRuns>(const JointVec<>& torques);
 
 // null for one that is not of the list
 template <int W>
 std::unique_ptr<DetectorStage<Pack<W>>> detector_of_runs(const Specification& s,
                                                          const DetectorSettings& settings,
-                                                         const Joints<>& torques);
+                                                         const JointVec<>& torques);
 template <>
 std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs<kRuns>(
-    const Specification& s, const DetectorSettings& settings, const Joints<>& torques);
+    const Specification& s, const DetectorSettings& settings, const JointVec<>& torques);
 
 }  // namespace tauext::detail
