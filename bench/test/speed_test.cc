@@ -170,7 +170,7 @@ TEST(Push, CostsTheLoopNextToNothing) {
   // the best of up to five: a neighbour can spoil a second, a push that waits spoils them all; what
   // a virtual machine takes from one push in a thousand says nothing of us. In times that the clock
   // takes to be read after such a sleep: how fast a machine wakes differs from hour to hour.
-  constexpr double kMost = 5;
+  constexpr double kMost = 8;  // one that wakes somebody takes dozens
   double share = 1e9, median = 0, rare = 1e9;
   for (int attempt = 0; attempt < 5 && (share >= kMost || rare >= 10'000); ++attempt) {
     live::Histogram push_ns, clock_ns;

@@ -5,8 +5,8 @@
 #include <lcm/eventlog.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -164,10 +164,10 @@ TEST_F(LogTest, LengthsThatLieDoNotTakeForever) {
   std::string bytes = log_of(0, 1);
   while (bytes.size() < 4'000'000) bytes += header;
   put(bytes);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor, whoever else has it
   EXPECT_EQ(read_back(), numbers(0, 1));
   // 0.05 s; once it was quadratic and took 8 s
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+  EXPECT_LT(std::clock() - begin, 3 * CLOCKS_PER_SEC);
 }
 
 TEST_F(LogTest, WhatIsNoLogIsAnErrorThatNamesIt) {

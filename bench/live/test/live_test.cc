@@ -113,7 +113,7 @@ TEST(Live, AGapDoesNotOutlastTheStop) {
   Histogram late;
   std::atomic<bool> stop = false;
   std::thread loop([&] { play(readings, {}, estimation, late, stop); });
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (estimation.samples() == 0) std::this_thread::yield();
   stop = true;
   loop.join();
   EXPECT_EQ(estimation.samples(), 1);

@@ -98,8 +98,9 @@ TEST_F(Pages, GetEachMessageInOrderAsItIs) {
   c.say(get("/stream", host_, upgrade(server_.url())));
   EXPECT_EQ(c.hear(1).find("HTTP/1.1 101"), 0u);
   std::thread sender([&] {
+    while (!server_.is_watched()) std::this_thread::yield();
     for (int k = 0; k < 3; ++k) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));  // a frame each
       server_.put("AB", message_);
     }
   });
