@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -20,6 +19,7 @@
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/scenarios/scenario.h"
+#include "mjcf/trace/digest.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -31,7 +31,7 @@ std::vector<Scenario>& registered_for(const std::string& robot) {
   return all[robot];
 }
 
-// FNV-1a of what an estimator knows of it, to nine digits
+// of what an estimator knows of it, to nine digits
 std::string fingerprint_of(const ArmTree& arm) {
   std::string text =
       fmt::format("{:.9g}", fmt::join(arm.gravity.data(), arm.gravity.data() + 3, " "));
@@ -49,9 +49,7 @@ std::string fingerprint_of(const ArmTree& arm) {
     text += fmt::format(" {:.9g} {:.9g}", fmt::join(arm.drho.reshaped(), " "),
                         fmt::join(arm.rho0.data(), arm.rho0.data() + arm.rho0.size(), " "));
   }
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", fnv1a(text));
 }
 
 }  // namespace

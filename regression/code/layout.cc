@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "mjcf/trace/digest.h"
 #include "regression/code/assembly.h"
 
 namespace tauext::gate {
@@ -21,13 +22,6 @@ std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
-}
-
-// Fowler, Noll and Vo's FNV-1a
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t h = 0xcbf29ce484222325u;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
 }
 
 bool never_passed(std::string_view word) {
@@ -54,7 +48,7 @@ std::string laid_out(const std::string& assembly, std::uint64_t seed, const Layo
     }
     if (functions.contains(label)) {
       const auto it = names.find(label);
-      of_function = mixed(hash_of(it == names.end() ? label : it->second) + mixed(seed));
+      of_function = mixed(fnv1a(it == names.end() ? label : it->second) + mixed(seed));
       place = 0;
       out += fmt::format("\t.balign {}\n", kPeriod);
       skip(kStep * (of_function % (kPeriod / kStep)));

@@ -20,6 +20,7 @@
 #include "bench/score/parallel.h"
 #include "bench/study/detection/journal.h"
 #include "bench/study/study_runs.h"
+#include "mjcf/trace/digest.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
 
@@ -209,9 +210,6 @@ Shard shard_of(const std::string& text) {
 }
 
 StudyAbout about(const StudyOptions& o, const Thresholds& thresholds) {
-  std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
-  for (const char c : thresholds_json(thresholds))
-    digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return {touched_runs(o.robot).robot,
           thresholds.trained_on,
           thresholds.margin,
@@ -222,7 +220,7 @@ StudyAbout about(const StudyOptions& o, const Thresholds& thresholds) {
            {"regions", o.regions},
            {"hours", o.hours},
            {"seed", o.first_seed},
-           {"thresholds", fmt::format("{:016x}", digest)}},
+           {"thresholds", fmt::format("{:016x}", fnv1a(thresholds_json(thresholds)))}},
           {}};
 }
 
