@@ -5,6 +5,7 @@
 ///     mark where max_i(|z_i| / threshold_i) rises through 1
 #pragma once
 
+#include <cmath>
 #include <tuple>
 
 #include "estimators/concepts.h"
@@ -69,8 +70,11 @@ class BasicBandPass {
       slow_.start(t, tau_ext);
       quick_.start(t, JointVec<Scalar>::Zero(tau_ext.size()).eval());
     } else {
-      const JointVec<Scalar> high = tau_ext - slow_(t, tau_ext);
-      statistic_ = quick_(t, high).cwiseAbs();  // (i)
+      using std::abs;
+      slow_.advance(t);
+      quick_.advance(t);
+      for (int i = 0; i < statistic_.size(); ++i)
+        statistic_[i] = abs(quick_(i, tau_ext[i] - slow_(i, tau_ext[i])));  // (i)
     }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }

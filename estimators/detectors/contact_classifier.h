@@ -89,8 +89,11 @@ class BasicContactClassifier {
     const MaskOf<Scalar> clamp_mark = clamped & !clamped_ & rested;
     clamped_ = clamped;
     clamp_marked_at_ = select(clamp_mark, Scalar(t), clamp_marked_at_);
-    const JointVec<Scalar> change = clamping_.change().cwiseAbs();
-    const MaskOf<Scalar> touched = largest_ratio(change, p_.intentional) >= 1;
+    using std::abs;
+    Scalar most = 0;
+    for (int i = 0; i < tau_ext.size(); ++i)
+      most = max(most, abs(clamping_.change()[i]) / Scalar(p_.intentional[i]));
+    const MaskOf<Scalar> touched = most >= 1;
     const MaskOf<Scalar> mark = (hit.mark & collides) | clamp_mark;
     const auto as = [](Contact c) { return contact_as<Scalar>(c); };
     return {mark, max(hit.score, clamp.score),

@@ -10,6 +10,7 @@
 /// times the threshold: it does not have to come down from the sky when a contact ends.
 #pragma once
 
+#include <algorithm>
 #include <tuple>
 
 #include "estimators/concepts.h"
@@ -77,13 +78,18 @@ class BasicCusum {
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);
     } else {
+      using std::max;
+      using std::min;
       const Scalar h = t - t_;
-      const JointVec<Scalar> drift = p_.drift.template cast<Scalar>();
-      const JointVec<Scalar> most = (p_.most_score * p_.threshold).template cast<Scalar>();
-      const JointVec<Scalar> z = tau_ext - mean_(t, tau_ext);
-      up_ = (up_ + h * (z - drift)).cwiseMax(Scalar(0)).cwiseMin(most);  // (i)
-      down_ = (down_ - h * (z + drift)).cwiseMax(Scalar(0)).cwiseMin(most);
-      statistic_ = up_.cwiseMax(down_);
+      mean_.advance(t);
+      for (int i = 0; i < statistic_.size(); ++i) {
+        const Scalar z = tau_ext[i] - mean_(i, tau_ext[i]);
+        const double drift = p_.drift[i], most = p_.most_score * p_.threshold[i];
+        const auto sum = [&](const Scalar& x) { return min(max(x, Scalar(0)), Scalar(most)); };
+        up_[i] = sum(up_[i] + h * (z - drift));  // (i)
+        down_[i] = sum(down_[i] - h * (z + drift));
+        statistic_[i] = max(up_[i], down_[i]);
+      }
     }
     t_ = t;
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);

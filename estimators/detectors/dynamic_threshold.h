@@ -8,6 +8,8 @@
 ///     through 1
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <type_traits>
 
@@ -64,9 +66,12 @@ class BasicDynamicThreshold {
                              const JointVecView<Scalar>& tau_ext) noexcept {
     if (!measured(qd) || !measured(tau)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
-    const JointVec<Scalar> growth = (Scalar(1) + qd.array().abs() / Scalar(p_.speed)).matrix();
-    const JointVec<Scalar> beyond = tau_ext.cwiseAbs() - Scalar(p_.share) * tau.cwiseAbs();
-    statistic_ = beyond.cwiseMax(Scalar(0)).cwiseQuotient(growth);
+    using std::abs;
+    using std::max;
+    for (int i = 0; i < statistic_.size(); ++i) {
+      const Scalar growth = Scalar(1) + abs(qd[i]) / Scalar(p_.speed);
+      statistic_[i] = max(abs(tau_ext[i]) - Scalar(p_.share) * abs(tau[i]), Scalar(0)) / growth;
+    }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 

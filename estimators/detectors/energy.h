@@ -67,12 +67,14 @@ class BasicEnergy {
     if (!measured(qd)) return marking_.held();
     if (!marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
-    const JointVec<Scalar> power = JointVec<Scalar>::Constant(1, qd.dot(tau_ext));
+    Scalar power = qd[0] * tau_ext[0];
+    for (int i = 1; i < statistic_.size(); ++i) power = power + qd[i] * tau_ext[i];
     if (marking_.silent(t)) {
-      power_.start(t, power);
+      power_.start(t, {&power, 1});
     } else {
       using std::abs;
-      statistic_.setConstant(abs(power_(t, power)[0]));  // (i)
+      power_.advance(t);
+      statistic_.setConstant(abs(power_(0, power)));  // (i)
     }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }

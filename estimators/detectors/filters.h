@@ -30,15 +30,18 @@ class LowPass {
     x_ = low_ = x;
   }
 
-  /// (i) at t [s], which is later than the last one.
-  [[gnu::always_inline]] const JointVec<Scalar>& operator()(
-      double t, const JointVecView<Scalar>& x) noexcept {
+  /// To the next sample, at t [s], which is later than the last one; then each joint's.
+  [[gnu::always_inline]] void advance(double t) noexcept {
     const double h = t - t_;
     if (new_step_(h)) decay_ = std::exp(-w_ * h);
-    low_ = x_ + Scalar(decay_) * (low_ - x_);
     t_ = t;
-    x_ = x;
-    return low_;
+  }
+
+  /// (i) of joint i, where it is x now.
+  [[gnu::always_inline]] Scalar operator()(int i, const Scalar& x) noexcept {
+    const Scalar low = x_[i] + Scalar(decay_) * (low_[i] - x_[i]);
+    x_[i] = x;
+    return low_[i] = low;
   }
 
  private:

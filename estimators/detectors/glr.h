@@ -59,7 +59,6 @@ class BasicGlr {
       : p_(for_joints(p, joints, kName)),
         mean_(joints, p.w),
         marking_(p.refractory, p.start_up),
-        sum_(Sums::Zero(joints, kSums)),
         statistic_(JointVec<Scalar>::Zero(joints)) {}
 
   const Parameters& parameters() const noexcept { return p_; }  ///< as constructed
@@ -76,7 +75,7 @@ class BasicGlr {
       mean_.start(t, tau_ext);
       start(t);
     } else {
-      add(t, tau_ext - mean_(t, tau_ext));
+      add(t, tau_ext);
       look_back();
     }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
@@ -86,8 +85,8 @@ class BasicGlr {
   const JointVec<Scalar>& statistic() const noexcept { return statistic_; }
 
  private:
-  static constexpr int kSums = 256;  // that are kept, a power of two
-  using Sums = Eigen::Matrix<Scalar, Eigen::Dynamic, kSums, Eigen::ColMajor, kMostDof, kSums>;
+  static constexpr int kSums = 256;     // that are kept, a power of two
+  static constexpr int kSpans = 8;      // between them
   static constexpr double kGap = 0.05;  // [s] after which the mean starts anew, as estimators do
 
   void forget() noexcept {
@@ -99,24 +98,38 @@ class BasicGlr {
     last_ = 0;
     count_ = 1;
     t_[0] = t;
-    sum_.col(0).setZero();
+    sum_[0].fill(0);
   }
-  [[gnu::always_inline]] void add(double t, const JointVec<Scalar>& z) noexcept {
+  [[gnu::always_inline]] void add(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     const int next = (last_ + 1) % kSums;
-    sum_.col(next) = sum_.col(last_) + Scalar(t - t_[last_]) * z;
+    const Scalar h = t - t_[last_];
+    mean_.advance(t);
+    for (int i = 0; i < statistic_.size(); ++i)
+      sum_[next][i] = sum_[last_][i] + h * (tau_ext[i] - mean_(i, tau_ext[i]));
     t_[next] = t;
     last_ = next;
     count_ = std::min(count_ + 1, kSums);
   }
   // (i)
   [[gnu::always_inline]] void look_back() noexcept {
-    statistic_.setZero();
-    for (int n = 1; n < count_; n *= 2) {
-      const int then = (last_ - n + kSums) % kSums;
-      const double lasts = t_[last_] - t_[then];
+    using std::abs;
+    using std::max;
+    std::array<const Scalar*, kSpans> then;
+    std::array<double, kSpans> weight;
+    std::size_t spans = 0;
+    for (int n = 1; n < count_; n *= 2, ++spans) {
+      const int at = (last_ - n + kSums) % kSums;
+      const double lasts = t_[last_] - t_[at];
       if (lasts > p_.span) break;
-      const Scalar weight = 1 / std::sqrt(lasts);
-      statistic_ = statistic_.cwiseMax(weight * (sum_.col(last_) - sum_.col(then)).cwiseAbs());
+      then[spans] = sum_[at].data();
+      weight[spans] = 1 / std::sqrt(lasts);
+    }
+    for (int i = 0; i < statistic_.size(); ++i) {
+      const Scalar now = sum_[last_][i];
+      Scalar most = 0;
+      for (std::size_t s = 0; s < spans; ++s)
+        most = max(most, Scalar(weight[s]) * abs(now - then[s][i]));
+      statistic_[i] = most;
     }
   }
 
@@ -125,7 +138,7 @@ class BasicGlr {
   BasicMarking<Scalar> marking_;
   int last_ = 0, count_ = 1;  // of the sums
   std::array<double, kSums> t_{};
-  Sums sum_;  // [N m s]
+  std::array<std::array<Scalar, kMostDof>, kSums> sum_{};  // [N m s]
   JointVec<Scalar> statistic_;
 };
 

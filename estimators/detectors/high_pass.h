@@ -7,6 +7,7 @@
 ///     mark where max_i(|z_i| / threshold_i) rises through 1
 #pragma once
 
+#include <cmath>
 #include <tuple>
 
 #include "estimators/concepts.h"
@@ -63,7 +64,10 @@ class BasicHighPass {
     if (marking_.silent(t)) {
       low_.start(t, tau_ext);
     } else {
-      statistic_ = (tau_ext - low_(t, tau_ext)).cwiseAbs();  // (i)
+      using std::abs;
+      low_.advance(t);
+      for (int i = 0; i < statistic_.size(); ++i)
+        statistic_[i] = abs(tau_ext[i] - low_(i, tau_ext[i]));  // (i)
     }
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 
@@ -60,7 +61,6 @@ class BasicPanTompkins {
   explicit BasicPanTompkins(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
-        tau_ext_(History::Zero(joints, kHistory)),
         held_(JointVec<Scalar>::Zero(joints)),
         held_at_(held_) {}
 
@@ -76,17 +76,18 @@ class BasicPanTompkins {
     if (marking_.starts()) forget();
     newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
     t_[newest_] = t;
-    tau_ext_.col(newest_) = tau_ext;
+    for (int i = 0; i < held_.size(); ++i) tau_ext_[newest_][i] = tau_ext[i];
     if (++count_ <= 4 * p_.stride) return marking_(t, 0, Contact::kNone);
 
-    const JointVec<Scalar> energy = slope(newest_).cwiseAbs2();
-    for (Eigen::Index i = 0; i < energy.size(); ++i) {  // (ii)
-      const MaskOf<Scalar> is_higher = energy[i] >= held_[i], is_over = t - held_at_[i] > p_.hold;
-      const MaskOf<Scalar> is_new = is_higher | is_over;
+    const Slope to_newest = slope(newest_);
+    for (int i = 0; i < held_.size(); ++i) {
+      const Scalar rate = to_newest(i), energy = rate * rate;
+      const MaskOf<Scalar> is_higher = energy >= held_[i], is_over = t - held_at_[i] > p_.hold;
+      const MaskOf<Scalar> is_new = is_higher | is_over;  // (ii)
       if constexpr (std::is_same_v<Scalar, double>) {
         if (!is_new) continue;  // for one run the processor predicts this branch
       }
-      held_[i] = select(is_new, energy[i], held_[i]);
+      held_[i] = select(is_new, energy, held_[i]);
       held_at_[i] = select(is_new, Scalar(t), held_at_[i]);
     }
     return marking_(t, largest_ratio(held_, p_.threshold),
@@ -98,8 +99,6 @@ class BasicPanTompkins {
 
  private:
   static constexpr int kHistory = 4 * Parameters::kMaxStride + 1;
-  using History =
-      Eigen::Matrix<Scalar, Eigen::Dynamic, kHistory, Eigen::ColMajor, kMostDof, kHistory>;
 
   void forget() noexcept {
     count_ = 0;
@@ -107,31 +106,41 @@ class BasicPanTompkins {
     held_at_.setZero();
   }
 
-  // (i), [N m/s]
-  JointVec<Scalar> slope(int newest) const noexcept {
-    std::array<int, 5> at;
-    double sum_t = 0;
-    for (int& place : at) {
-      place = newest;
-      sum_t += t_[place];
+  // (i)
+  struct Slope {
+    std::array<const Scalar*, 5> tau_ext;  // of the five points [N m], joint by joint
+    std::array<double, 5> from_mean;       // [s]
+    double per_square;                     // [1/s^2]
+    // [N m/s]
+    [[gnu::always_inline]] Scalar operator()(int joint) const noexcept {
+      Scalar sum = Scalar(from_mean[0]) * tau_ext[0][joint];
+      for (std::size_t j = 1; j < tau_ext.size(); ++j)
+        sum += Scalar(from_mean[j]) * tau_ext[j][joint];
+      return sum * Scalar(per_square);
+    }
+  };
+  [[gnu::always_inline]] Slope slope(int newest) const noexcept {
+    Slope s;
+    double sum_t = 0, square = 0;
+    for (std::size_t j = 0; j < s.tau_ext.size(); ++j) {
+      s.tau_ext[j] = tau_ext_[newest].data();
+      s.from_mean[j] = t_[newest];
+      sum_t += t_[newest];
       newest -= p_.stride;
       if (newest < 0) newest += kHistory;
     }
-    const double mean_t = 0.2 * sum_t;
-    JointVec<Scalar> numerator = JointVec<Scalar>::Zero(held_.size());
-    double denominator = 0;
-    for (const int j : at) {
-      const double from_mean = t_[j] - mean_t;
-      numerator += Scalar(from_mean) * tau_ext_.col(j);
-      denominator += from_mean * from_mean;
+    for (double& t : s.from_mean) {
+      t -= 0.2 * sum_t;
+      square += t * t;
     }
-    return numerator * Scalar(1 / denominator);
+    s.per_square = 1 / square;
+    return s;
   }
 
   Parameters p_;
   BasicMarking<Scalar> marking_;
   std::array<double, kHistory> t_{};
-  History tau_ext_;  // [N m]
+  std::array<std::array<Scalar, kMostDof>, kHistory> tau_ext_{};  // [N m]
   long count_ = 0;
   int newest_ = 0;  // of the history
   JointVec<Scalar> held_, held_at_;

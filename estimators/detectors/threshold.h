@@ -7,6 +7,7 @@
 /// lacks.
 #pragma once
 
+#include <cmath>
 #include <tuple>
 
 #include "estimators/concepts.h"
@@ -52,8 +53,9 @@ class BasicThreshold {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
+    using std::abs;
     if (!marking_.accept(t)) return marking_.held();
-    statistic_ = tau_ext.cwiseAbs();
+    for (int i = 0; i < statistic_.size(); ++i) statistic_[i] = abs(tau_ext[i]);
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }
 
