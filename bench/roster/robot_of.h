@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/roster/kernels/detectors.h"
+#include "bench/roster/detectors.h"
 #include "bench/roster/making.h"
 #include "bench/roster/session/session_of.h"
 #include "estimators/runs/runs.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/roster/kernels/detectors.h"
+#include "bench/roster/detectors.h"
 
 #include "bench/roster/detector_list.h"
-#include "estimators/math/pack.h"
 
 namespace tauext::detail {
 
