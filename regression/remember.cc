@@ -9,7 +9,7 @@
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
-#include "regression/history/show.h"
+#include "regression/history/drift.h"
 
 namespace tauext::gate {
 

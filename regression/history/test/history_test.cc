@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mjcf/test/error_of.h"
-#include "regression/history/show.h"
+#include "regression/history/drift.h"
 
 namespace tauext::gate {
 namespace {
