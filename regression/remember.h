@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bench/program/exit_code.h"
-#include "regression/history/measure.h"
+#include "regression/history/history.h"
 
 namespace tauext::gate {
 
