@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "regression/report/accepting.h"
+#include "regression/accept.h"
 
 namespace tauext::gate {
 namespace {
