@@ -9,17 +9,19 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 #include "regression/host/child.h"
 #include "regression/host/files.h"
 #include "regression/host/plugin_host.h"
-#include "regression/time/cold.h"
 #include "regression/time/verdict.h"
 
 namespace tauext::gate {
@@ -74,6 +76,38 @@ double median_ratio(const Lane& of, const Lane& to) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < of.times.size(); ++i) ratios.push_back(of.times[i] / to.times[i]);
   return median(ratios);
+}
+
+constexpr std::size_t kMemory = std::size_t{2} << 20, kLine = 64;  // [bytes]
+constexpr int kBranches = 128, kFunctions = 64;
+
+volatile std::uint64_t sink;
+
+// a branch each at an address of its own, taken or not
+template <int I>
+[[gnu::always_inline]] inline void branch(std::uint64_t random) {
+  if (random >> (I % 64) & 1) sink = I;
+}
+
+template <int F, int... I>
+[[gnu::noinline]] void branches(std::uint64_t random, std::integer_sequence<int, I...>) {
+  (branch<F * kBranches + I>(random * (2 * I + 1)), ...);
+}
+
+template <int... F>
+void all_branches(std::uint64_t& random, std::integer_sequence<int, F...>) {
+  ((random = random * 6364136223846793005u + 1442695040888963407u,
+    branches<F>(random, std::make_integer_sequence<int, kBranches>())),
+   ...);
+}
+
+// reads and writes 2 MB, and takes 8192 branches at random [about 0.2 ms], after which caches and
+// predictors know nothing of a kernel
+void do_other_work() {
+  static std::vector<unsigned char> memory(kMemory);
+  static std::uint64_t random = 1;
+  for (std::size_t i = 0; i < kMemory; i += kLine) ++memory[i];
+  all_branches(random, std::make_integer_sequence<int, kFunctions>());
 }
 
 // head, base and base's copy, a step each with other work before it
