@@ -4,14 +4,18 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "regression/code/assembly.h"
-#include "regression/code/layout.h"
 
 namespace tauext::gate {
+
+/// Names that decide where a function lies, by the function's name; one that is not there decides
+/// by its own.
+using LayoutNames = std::map<std::string, std::string, std::less<>>;
 
 /// What CMake's tauext_add_plugin leaves beside a plug-in, in PLUGIN.code/.
 class PluginCode {
@@ -30,7 +34,9 @@ class PluginCode {
   /// A function's own instructions without any name, by the function's name.
   std::map<std::string, std::string> shapes() const;
 
-  /// Assembles and links it into `out`, laid out anew.
+  /// Assembles and links it into `out`, laid out anew: every function at an address whose remainder
+  /// mod 512 is chosen by its layout name and `seed`, and with 1 to 63 bytes that nobody runs after
+  /// half of its jumps and returns. Equal names and seeds give equal places.
   /// @throws std::runtime_error with what the compiler said
   void lay_out(std::uint64_t seed, const LayoutNames& names, const std::string& out) const;
 
