@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Counted instructions of a step: as a file, and beside others. A count means something beside one
-/// of the same compiler, flags and libraries alone: its key.
+/// Counted instructions of a step: as a file, and beside others, also line by line. A count means
+/// something beside one of the same compiler, flags and libraries alone: its key.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "regression/counts/lines.h"
 
 namespace tauext::gate {
 
@@ -20,6 +19,9 @@ namespace tauext::gate {
 using Key = std::map<std::string, std::string>;
 
 inline constexpr int kCountedSteps = 1000;
+
+/// Instructions by file and line, as the compiler says where they come from.
+using LineCounts = std::map<std::pair<std::string, int>, std::uint64_t>;
 
 /// Instructions of so many steps of each kernel.
 struct Counts {
@@ -43,6 +45,18 @@ Counts read_counts(const std::string& path);
 /// The counts that a folder holds for a key, if it holds any.
 /// @throws std::runtime_error as read_counts does, and if the file's key is not the one of its name
 std::optional<Counts> committed_counts(const std::string& folder, const Key& key);
+
+/// Lines that execute more or less than they did.
+struct LineChange {
+  std::string file;
+  int line = 0;         ///< the first of head's, or the one behind those that are gone
+  std::int64_t by = 0;  ///< instructions more, all steps together
+};
+
+/// What differs, the most first. Lines have moved where a commit put others before them, so those
+/// of equal counts are paired in their order, as many as can be, and what is left between two pairs
+/// is one change.
+std::vector<LineChange> changed_lines(const LineCounts& before, const LineCounts& after);
 
 /// A kernel whose count differs.
 struct CountChange {
