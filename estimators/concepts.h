@@ -153,8 +153,8 @@ concept CalibratableDetector = CollisionDetector<D> &&
 template <int W>
 class Pack;
 
-/// A detector that can do several runs of one clock at once, one in each SIMD lane: it computes with
-/// a Scalar, which then is a Pack (estimators/math/pack.h), names that class `For`, and has
+/// A detector that can do several runs of one clock at once, one in each SIMD lane: it computes
+/// with a Scalar, which then is a Pack (estimators/math/pack.h), names that class `For`, and has
 /// parameters(), of which one is made. All samples of all runs are used; only scores differ from
 /// run to run, and what depends on time alone stays one number.
 template <class D>

@@ -88,8 +88,8 @@ class DetectorInput {
   const Status* status_ = nullptr;
 };
 
-/// A detector, type-erased; with a Pack for Scalar, of several runs of one clock, of whose estimates
-/// all are used().
+/// A detector, type-erased; with a Pack for Scalar, of several runs of one clock, of whose
+/// estimates all are used().
 template <class Scalar = double>
 class DetectorStage {
  public:

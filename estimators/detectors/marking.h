@@ -75,7 +75,7 @@ constexpr auto threshold_field(const char* unit) {
   return Field{"threshold", &P::threshold, unit, 1e-12, 1e15, "larger misses more, alarms less"};
 }
 
-/// Whether a detector may compute with what was measured; of several runs somebody has looked before.
+/// Whether a detector may compute with what was measured; of several runs somebody has looked.
 template <class Scalar>
 bool measured(const JointVecView<Scalar>& x) noexcept {
   if constexpr (std::is_same_v<Scalar, double>)
