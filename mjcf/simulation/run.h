@@ -15,7 +15,6 @@
 #include "mjcf/scenarios/motion.h"
 #include "mjcf/scenarios/scenario_type.h"
 #include "mjcf/simulation/drivetrain.h"
-#include "mjcf/simulation/load_handler.h"
 #include "mjcf/simulation/recording.h"
 #include "mjcf/simulation/region_contact.h"
 #include "mjcf/trace/sensors.h"
@@ -57,6 +56,32 @@ inline Trace empty_trace(int n, int samples) {
   trace.force.resize(3, samples);
   return trace;
 }
+
+// hangs, pushes and drops the load when its time has come
+class LoadHandler {
+ public:
+  explicit LoadHandler(const std::optional<Load>& load) : load_(load) {}
+
+  template <class P>
+  void apply(P& plant, double t) {
+    if constexpr (requires { plant.hang_load(); }) {
+      if (load_) handle(plant, t);
+    }
+  }
+
+ private:
+  template <class P>
+  void handle(P& plant, double t) {
+    const bool hang = t >= load_->hang_at && t < load_->drop_at;
+    if (hang && !hung_) plant.hang_load();
+    if (!hang && hung_) plant.drop_load();
+    hung_ = hang;
+    if (hung_ && load_->push) plant.push_load(load_->push(t));
+  }
+
+  const std::optional<Load>& load_;
+  bool hung_ = false;
+};
 
 // one run of a scenario on a Plant or a TreePlant, sample by sample
 template <class P>
