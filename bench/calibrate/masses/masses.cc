@@ -4,27 +4,36 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "bench/calibrate/arm_calibration.h"
-#include "bench/calibrate/masses/joint_bounds.h"
-#include "bench/calibrate/masses/mass_prior.h"
+#include "bench/calibrate/joint_fit.h"
+#include "bench/calibrate/masses/body_terms.h"
 #include "bench/calibrate/masses/physical_fit.h"
 #include "bench/calibrate/masses/window_sums.h"
 #include "mjcf/import/robot_file.h"
+#include "mjcf/mujoco/layout.h"
+#include "mjcf/plant/tree.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
 namespace {
 
 using Eigen::Index;
+using Eigen::Matrix3d;
 using Eigen::MatrixXd;
+using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kBestModel = 1e-3;  // [1] of a joint's torque; none is better
@@ -55,6 +64,174 @@ MatrixXd scaled_inverse(const MatrixXd& positive) {
          MatrixXd(scaled.ldlt().solve(MatrixXd::Identity(scaled.rows(), scaled.cols()))) *
          scale.asDiagonal();
 }
+
+// a body that a joint moves
+struct MovingBody {
+  std::string name;   // as the file has it
+  int joint = 0;      // whose body it is, by its number in ArmTree::joints
+  Vector3d origin;    // [m] of its frame in that of the joint, which has the same axes
+  bool known = true;  // whether the file has a mass of it
+  BodyVector file;    // what it has, if so
+  // What it is taken for where the recordings do not show it: as the file has it, but no thinner
+  // than 1 cm. Of one without a mass, a rod from its joint to the next, half as thick as it is
+  // long (at least a tenth of the arm's reach), of 100 kg for each cubic meter of its length.
+  BodyVector prior;
+};
+
+constexpr double kFrame = 1e-9;  // [kg] that a frame between joints may have
+
+// of mass m at c, with that spread of it [m^2] about c
+BodyVector body_at(double m, const Vector3d& c, const Matrix3d& spread) {
+  Eigen::Matrix4d P;
+  P << m * (spread + c * c.transpose()), m * c, m * c.transpose(), m;
+  return body_vector(P);
+}
+
+// no thinner than that of a body of 1 cm
+BodyVector thick(const TreeJoint& j) {
+  constexpr double kThinnest = 0.01 * 0.01 / 12, kShare = 0.01;  // [m^2], [1] of its length
+  const Matrix3d I = j.inertia / j.mass;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> own(
+      Matrix3d(I.trace() / 2 * Matrix3d::Identity() - I));
+  const double least = std::max(kThinnest, kShare * own.eigenvalues()[2]);
+  const Vector3d spread = own.eigenvalues().cwiseMax(least);
+  return body_at(j.mass, j.center,
+                 own.eigenvectors() * spread.asDiagonal() * own.eigenvectors().transpose());
+}
+
+// [m] from a joint to the next, or to the end effector
+Vector3d way_on(const ArmTree& arm, int joint) {
+  Vector3d sum = Vector3d::Zero();
+  int children = 0;
+  for (const TreeJoint& j : arm.joints)
+    if (j.parent == joint) sum += j.position, ++children;
+  if (children > 0) return sum / children;
+  const ArmPoint& end = arm.point(kEndEffector);
+  return end.joint == joint ? end.place : sum;
+}
+
+double reach(const ArmTree& arm) {
+  double length = 0;
+  for (const TreeJoint& j : arm.joints) length += j.parent < 0 ? 0 : j.position.norm();
+  return std::max(length, 0.1);
+}
+
+BodyVector rod(const ArmTree& arm, int joint) {
+  constexpr double kDensity = 100, kThickness = 0.5, kShortest = 0.1;  // [kg/m^3], [1], [1]
+  const Vector3d way = way_on(arm, joint);
+  const double length = std::max(way.norm(), kShortest * reach(arm));
+  const double thickness = kThickness * length;
+  return body_at(kDensity * std::pow(length, 3), way / 2,
+                 (way * way.transpose() + thickness * thickness * Matrix3d::Identity()) / 12);
+}
+
+// those of an arm before anything is known of them but their file; frames between joints that weigh
+// nothing are none
+std::vector<MovingBody> moving_bodies(const ArmTree& arm, const std::set<std::string>& massless) {
+  std::vector<MovingBody> all;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const TreeJoint& j = arm.joints[i];
+    if (j.mass <= kFrame) continue;  // also of a body with several joints all but the last
+    const int joint = static_cast<int>(i);
+    if (arm.bodies[i].empty())
+      throw std::invalid_argument(
+          fmt::format("the body behind joint {} '{}' has no name; give it one in the robot's file",
+                      joint + 1, arm.names[i]));
+    MovingBody b{arm.bodies[i], joint, arm.point(arm.bodies[i]).place};
+    b.known = massless.count(b.name) == 0;
+    if (b.known) b.file = body_vector(j);
+    b.prior = b.known ? thick(j) : rod(arm, joint);
+    all.push_back(b);
+  }
+  if (all.empty()) throw std::invalid_argument("no body of this arm has a mass");
+  return all;
+}
+
+// the place of a term in kJointTerms
+int term_number(std::string_view name) {
+  const auto* const at = std::find_if(std::begin(kJointTerms), std::end(kJointTerms),
+                                      [&](const JointTerm& t) { return name == t.name; });
+  return static_cast<int>(at - std::begin(kJointTerms));
+}
+
+// What terms of joints are free in a fit of all joints together, and what is held: armature and
+// friction at 0, and a skew of viscous friction at all of that. The terms stand in theta behind
+// `before` other numbers.
+class JointBounds {
+ public:
+  // all are free
+  JointBounds(int before, int joints) : before_(before) {
+    std::array<Is, kTermsOfJoint> free;
+    free.fill(Is::kFree);
+    joints_.assign(static_cast<std::size_t>(joints), free);
+  }
+
+  // theta = (this) phi, of what is free
+  MatrixXd freedom() const {
+    const int n = at(static_cast<int>(joints_.size()), 0), viscous = term_number("viscous");
+    MatrixXd T = MatrixXd::Zero(n, n);
+    int columns = before_;
+    T.leftCols(before_).topRows(before_).setIdentity();
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      const int joint = static_cast<int>(j);
+      for (int k = 0; k < kTermsOfJoint; ++k)
+        if (joints_[j][static_cast<std::size_t>(k)] == Is::kFree) T(at(joint, k), columns++) = 1;
+      const Is skew = joints_[j][static_cast<std::size_t>(term_number("viscous_skew"))];
+      if (skew == Is::kViscous || skew == Is::kMinusViscous)
+        T.row(at(joint, term_number("viscous_skew"))) =
+            (skew == Is::kViscous ? 1 : -1) * T.row(at(joint, viscous));
+    }
+    return T.leftCols(columns);
+  }
+
+  // holds the term that is furthest beyond what a joint can have, in standard errors, and tells
+  // `found` which term of which joint that is, and how far beyond; false if there is none.
+  template <class Found>
+  bool hold(const VectorXd& theta, const VectorXd& errors, Found&& found) {
+    int joint = 0, term = 0;
+    double much = 0;
+    if (!furthest(theta, errors, joint, term, much)) return false;
+    found(joint, term, much);
+    take(joint, term, theta[at(joint, term)] < 0);
+    return true;
+  }
+  // the number in theta of a joint's term
+  int at(int joint, int term) const { return before_ + joint * kTermsOfJoint + term; }
+
+ private:
+  enum class Is { kFree, kZero, kViscous, kMinusViscous };
+
+  bool furthest(const VectorXd& theta, const VectorXd& errors, int& joint, int& term,
+                double& much) const {
+    const int viscous = term_number("viscous"), skew = term_number("viscous_skew"),
+              offset = term_number("offset");
+    double most = 0;
+    for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
+      for (int k = 0; k < kTermsOfJoint; ++k) {
+        const bool free =
+            joints_[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] == Is::kFree;
+        if (!free || k == offset) continue;
+        const double x = theta[at(j, k)];
+        const double beyond = k == skew ? std::abs(x) - std::max(theta[at(j, viscous)], 0.) : -x;
+        if (beyond <= 1e-12 * std::abs(x)) continue;
+        const double errors_beyond = beyond / std::max(errors[at(j, k)], 1e-300);
+        if (errors_beyond <= most) continue;
+        most = errors_beyond, joint = j, term = k, much = beyond;
+      }
+    }
+    return most > 0;
+  }
+
+  void take(int joint, int term, bool negative) {
+    Is& is = joints_[static_cast<std::size_t>(joint)][static_cast<std::size_t>(term)];
+    is = term != term_number("viscous_skew") ? Is::kZero
+         : negative                          ? Is::kMinusViscous
+                                             : Is::kViscous;
+  }
+
+  int before_;
+  std::vector<std::array<Is, kTermsOfJoint>> joints_;
+};
 
 class Search {
  public:
