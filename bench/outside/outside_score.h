@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "bench/outside/estimates_file.h"
+#include "bench/roster/stages.h"
+#include "bench/score/score.h"
 #include "bench/score/table.h"
+#include "mjcf/trace/trace.h"
 
 namespace tauext {
 
@@ -35,6 +38,23 @@ Row score_outside(const OutsideRun& run, const OutsideEstimates& estimates);
 /// @param estimates of each of them
 Row score_outside(const std::vector<OutsideRun>& runs,
                   const std::vector<OutsideEstimates>& estimates);
+
+/// Estimates, and marks, of one log.
+struct LogRun {
+  const Trace* trace = nullptr;    ///< the log
+  const Output* output = nullptr;  ///< of its samples
+  double from = 0;                 ///< [s] samples before it do not count
+};
+
+/// What is left while nothing touches, by the labels of the logs: all the time in a log without.
+void add_floor_metrics(const std::vector<LogRun>& runs, Score& score);
+
+/// How the estimates compare with the maker's own, joint by joint, where all of the logs have them.
+void add_maker_metrics(const std::vector<LogRun>& runs, Score& score);
+
+/// Marks against the labels of all logs together, with intervals; a log without labels has nothing
+/// that touches. Nothing without a detector.
+void add_label_metrics(const std::vector<LogRun>& runs, Score& score);
 
 /// The rows as tauext-bench writes them, a benchmark for each.
 /// @param context keys and texts that say where they come from

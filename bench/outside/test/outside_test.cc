@@ -10,7 +10,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bench/outside/log_metrics.h"
 #include "bench/outside/outside_score.h"
 #include "bench/roster/robots.h"
 #include "mjcf/record.h"
