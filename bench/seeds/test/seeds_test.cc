@@ -7,7 +7,6 @@
 
 #include "bench/roster/robots.h"
 #include "bench/seeds/golden.h"
-#include "bench/seeds/seed_figures.h"
 #include "bench/seeds/seed_tables.h"
 #include "mjcf/test/error_of.h"
 
