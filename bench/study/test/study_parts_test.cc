@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "bench/study/detection/detection_report.h"
-#include "bench/study/detection/journal.h"
 #include "mjcf/test/error_of.h"
 #include "mjcf/trace/input_file.h"
 
