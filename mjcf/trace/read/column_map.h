@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What the columns of somebody's recording mean: which of them are t, q, qd and so on, in which
-/// unit, with which sign, in which order of the joints.
+/// unit, with which sign, in which order of the joints; and the samples that are made of them.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjcf/trace/read/text/csv_rows.h"
@@ -128,5 +129,36 @@ class ColumnMap {
   CsvFormat csv_;
   double rate_ = 0, velocity_filter_ = 100, join_ = 0;
 };
+
+/// Where the quantities of a sample stand, side by side and in SI units, and of which columns they
+/// are made; t is the first.
+struct SampleLayout {
+  int dof = 0;                                  ///< joints
+  int q = -1, qd = -1, tau = -1, tau_ext = -1;  ///< where each begins; -1: it has none
+  int driver = -1, force = -1, contact = -1;    ///< likewise
+  int size = 1;                                 ///< numbers
+  bool instants = false;                        ///< tau was read at t
+  bool currents = false;                  ///< tau is in A: of drives whose gains are not known
+  bool without_gravity = false;           ///< Trace::tau_without_gravity
+  std::vector<std::pair<int, double>> t;  ///< columns and gains, which are added up; may be none
+  /// What makes another number of a row.
+  struct Number {
+    int column;   ///< of the row, from 0
+    double gain;  ///< to SI units
+    double zero;  ///< [SI] that is added then
+  };
+  std::vector<Number> rest;        ///< all others
+  std::vector<std::string> names;  ///< of all, like "[q] of joint 2"; the first is that of t
+
+  std::vector<int> columns() const;  ///< that matter
+  /// The sample of a row [SI], without a time of columns 0.
+  void convert(const std::vector<double>& row, std::vector<double>& sample) const;
+};
+
+/// The layout of the samples that the columns of a recording make.
+/// @param has_t whether there must be a time
+/// @throws std::runtime_error naming the path and what is missing, or does not fit
+SampleLayout layout_of(const MappedColumns& mapped, const std::vector<std::string>& columns,
+                       const std::string& path, bool has_t = true);
 
 }  // namespace tauext

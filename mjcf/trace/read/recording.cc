@@ -20,12 +20,12 @@
 #include "mjcf/trace/read/bag/bag_rows.h"
 #include "mjcf/trace/read/bag/message_type.h"
 #include "mjcf/trace/read/bag/parts.h"
+#include "mjcf/trace/read/column_map.h"
 #include "mjcf/trace/read/column_map_file.h"
 #include "mjcf/trace/read/files/several_files.h"
 #include "mjcf/trace/read/joined_rows.h"
 #include "mjcf/trace/read/mat/mat_rows.h"
 #include "mjcf/trace/read/numpy/npy_rows.h"
-#include "mjcf/trace/read/sample_layout.h"
 #include "mjcf/trace/read/text/csv_rows.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 
