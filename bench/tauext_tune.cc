@@ -5,14 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/outside/outside_score.h"
+#include "bench/program/interrupt.h"
 #include "bench/program/program.h"
 #include "bench/replay/robot_log.h"
 #include "bench/roster/robots.h"
@@ -20,13 +24,18 @@
 #include "bench/run/scenario_file.h"
 #include "bench/run/study_flags.h"
 #include "bench/score/degradation.h"
+#include "bench/score/table.h"
 #include "bench/seeds/golden.h"
 #include "bench/seeds/seed_tables.h"
 #include "bench/seeds/seeds.h"
+#include "bench/study/detection/tuned.h"
+#include "bench/tune/study_tuning.h"
 #include "bench/tune/tune.h"
-#include "bench/tune/tune_conditions.h"
+#include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/table_writer.h"
 
 namespace {
 
@@ -233,6 +242,93 @@ int tune_on_recordings(const Flags& f, const Robot& r, TuneOptions o, TableForma
   fmt::print("{}", format_table(rows, format, also));
   if (format == TableFormat::kText) fmt::print("\n{}", table_legend(rows, also));
   return std::isnan(t.of_best) ? kAnswerIsNo : kGood;
+}
+
+// pairs of the study to tune into a file
+struct ConditionsToTune {
+  std::string robot;                    // "" for the first one that has runs
+  std::vector<std::string> conditions;  // names
+  std::string estimators, detectors;    // specifications, apart by commas; "" for all
+  int evaluations;                      // of each pair
+  std::string shard;                    // "I/N", or "" for all of it
+  std::string out;                      // the file, to which is added
+  std::string format;                   // of the table
+};
+
+// the texts between commas
+std::vector<std::string> list_of(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream in(text);
+  for (std::string item; std::getline(in, item, ',');) all.push_back(item);
+  return all;
+}
+
+std::string command_of(const ConditionsToTune& f) {
+  std::string text = "tauext-tune";
+  if (!f.robot.empty()) text += " --robot " + f.robot;
+  text +=
+      fmt::format(" --conditions {} --evaluations {}", fmt::join(f.conditions, ","), f.evaluations);
+  if (!f.estimators.empty()) text += " --estimator " + f.estimators;
+  if (!f.detectors.empty()) text += " --detector " + f.detectors;
+  return text + " --out FILE.json";  // whose name says nothing, nor that it was made in parts
+}
+
+// tunes the pairs that the file does not have, adds them, and prints them; kInterrupted if there
+// are pairs left
+int tune_conditions(const ConditionsToTune& f) {
+  if (f.out.empty())
+    throw std::invalid_argument("--conditions needs --out FILE.json, for pairs and thresholds");
+  const TableFormat format = table_format(f.format);
+  const auto known = [&] {
+    if (!std::filesystem::exists(f.out)) return study::TunedStudy();
+    study::TunedStudy all = study::read_tuned(f.out);
+    release_input(f.out);
+    return all;
+  };
+  { const AtomicFile probe(f.out); }  // an unwritable path should not cost a run
+  const Interrupt interrupt;
+  std::atomic<bool> told = false;
+  std::vector<study::TunedRow> rows;
+  Progress progress("tuning");
+  StudyTuning o;
+  o.robot = f.robot;
+  o.conditions = f.conditions;
+  o.estimators = list_of(f.estimators);
+  o.detectors = list_of(f.detectors);
+  o.evaluations = f.evaluations;
+  if (!f.shard.empty()) o.shard = study::shard_of(f.shard);
+  o.progress = progress.callback();
+  o.stop = [&] {
+    if (interrupt.seen() && !told.exchange(true))
+      say("stopping: what was tuned gets its thresholds first, which takes a minute");
+    return interrupt.seen();
+  };
+  o.found = [&](const study::TunedStudy& more) {
+    study::TunedStudy all = known();  // as it is now: somebody else may have added to it
+    study::TunedStudy adds = more;
+    adds.made_by = command_of(f);
+    append(adds, all);
+    study::write_tuned(all, f.out);
+    rows.insert(rows.end(), more.rows.begin(), more.rows.end());
+  };
+  tune_study(o, known().rows);
+  progress.clear();
+  TableWriter table({{"condition", "", true},
+                     {"before", "", true},
+                     {"recall", "%"},
+                     {"tuned", "", true},
+                     {"recall", "%"},
+                     {"evaluations", ""}});
+  const auto share = [](double x) { return std::isnan(x) ? "-" : percent(x, 1); };
+  for (const study::TunedRow& p : rows)
+    table.add({p.condition, p.before, share(p.recall_before), p.estimator + "+" + p.detector,
+               share(p.recall), fmt::to_string(p.evaluations)});
+  if (rows.empty())
+    say(f.out + ": nothing was added: it has all of these pairs that make estimates");
+  else
+    fmt::print("{}", table.format(format));
+  if (told) say("stopped; the same command goes on from here");
+  return told ? kInterrupted : int{kGood};
 }
 
 int run(const CLI::App& app, Flags& f) {

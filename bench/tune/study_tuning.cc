@@ -9,8 +9,11 @@
 #include <map>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "bench/program/exit_code.h"
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
 #include "bench/score/parallel.h"
@@ -19,6 +22,7 @@
 #include "bench/study/study_runs.h"
 #include "bench/tune/tune.h"
 #include "mjcf/scenarios/region_runs.h"
+#include "mjcf/trace/printable.h"
 
 namespace tauext {
 
@@ -334,6 +338,27 @@ void tune_study(const StudyTuning& o, const std::vector<study::TunedRow>& known)
     for (const study::TunedRow& p : found) c.pairs.emplace_back(p.estimator, p.detector);
     o.found({study::calibrate_for({name}, c), found, ""});
   }
+}
+
+int merge_tuned(const std::vector<std::string>& paths, const std::string& out) {
+  study::TunedStudy all;
+  for (const std::string& path : paths) {
+    const study::TunedStudy more = study::read_tuned(path);
+    if (more.rows.empty())
+      throw std::runtime_error(path + ": has no pairs that tauext-tune --conditions has tuned");
+    for (const study::TunedRow& p : more.rows) {
+      if (std::any_of(all.rows.begin(), all.rows.end(), [&](const study::TunedRow& k) {
+            return k.robot == p.robot && k.arm == p.arm && k.condition == p.condition &&
+                   k.before == p.before;
+          }))
+        throw std::runtime_error(fmt::format("{}: {} for {} on {} is in a file before it, too",
+                                             path, p.before, p.condition, p.robot));
+    }
+    append(more, all);
+  }
+  study::write_tuned(all, out);
+  say(fmt::format("{}: {} pairs", out, all.rows.size()));
+  return kGood;
 }
 
 }  // namespace tauext

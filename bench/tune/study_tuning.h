@@ -81,4 +81,9 @@ struct StudyTuning {
 /// on which regions find no place, and numbers out of range
 void tune_study(const StudyTuning& options, const std::vector<study::TunedRow>& known);
 
+/// Puts files of tuned pairs together, in any order: the file that one machine makes.
+/// @returns kGood
+/// @throws std::runtime_error naming the file for what is none, and for a pair that is there twice
+int merge_tuned(const std::vector<std::string>& paths, const std::string& out);
+
 }  // namespace tauext

@@ -12,7 +12,6 @@
 
 #include "bench/roster/robots.h"
 #include "bench/roster/threshold_file.h"
-#include "bench/tune/tune_conditions.h"
 #include "mjcf/test/error_of.h"
 
 namespace tauext::test {
