@@ -111,18 +111,6 @@ Model without_dry_friction(const Model& model) {
   });
 }
 
-Model testbed1_absorbed(std::string_view scene) {
-  return changed(load_robot("testbed1", scene), [](mjModel& m) {
-    const int arm = mj_name2id(&m, mjOBJ_BODY, "arm");
-    const double g = -m.opt.gravity[2];
-    const double mass = m.body_mass[arm] / g;
-    // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
-    const double* const r = m.body_ipos + 3 * arm;
-    m.body_inertia[3 * arm + 1] += (m.body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
-    m.body_mass[arm] = mass;
-  });
-}
-
 Model wallmobot3_with_panel(double panel) {
   constexpr double kLink5 = 177, kPanel = 150;  // [kg] Table II
   return with_scaled_body(load_robot("wallmobot3"), "link5", (kLink5 - kPanel + panel) / kLink5);

@@ -43,10 +43,6 @@ Model with_scaled_body(const Model& model, const std::string& body, double facto
 /// A copy of the model without dry friction.
 Model without_dry_friction(const Model& model);
 
-/// testbed1 with g inside theta_2 and theta_3, Testbed1::Parameters::absorbed(): its first moments
-/// divided by 9.81, its inertia and friction as they are.
-Model testbed1_absorbed(std::string_view scene = "");
-
 /// wallmobot3 with another panel [kg] than the 150 kg of Table II: link 5 weighs 27 kg + panel and
 /// its inertia scales with its mass, as WallMoBot3::Parameters::with_panel has it.
 Model wallmobot3_with_panel(double panel);

@@ -46,6 +46,20 @@ TEST(Testbed1Mjcf, AgreesWithEquation36InInertiaGravityAndFriction) {
   expect_agreement(load_robot("testbed1"), Testbed1::Parameters::raw_sign());
 }
 
+// with g inside theta_2 and theta_3, as Testbed1::Parameters::absorbed() has it: first moments are
+// divided by 9.81, inertia and friction as they are
+Model testbed1_absorbed() {
+  return changed(load_robot("testbed1"), [](mjModel& m) {
+    const int arm = mj_name2id(&m, mjOBJ_BODY, "arm");
+    const double g = -m.opt.gravity[2];
+    const double mass = m.body_mass[arm] / g;
+    // theta_1 = I + m r^2: the first moment shrinks with the mass, and I takes what m r^2 loses
+    const double* const r = m.body_ipos + 3 * arm;
+    m.body_inertia[3 * arm + 1] += (m.body_mass[arm] - mass) * (r[0] * r[0] + r[2] * r[2]);
+    m.body_mass[arm] = mass;
+  });
+}
+
 TEST(Testbed1Mjcf, AbsorbedAgreesWithEquation36WithoutG) {
   Testbed1::Parameters p = Testbed1::Parameters::absorbed();
   p.v_s = 0;

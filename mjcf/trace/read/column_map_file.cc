@@ -327,10 +327,4 @@ std::string preset_of_messages(const std::string& type) {
   return "";
 }
 
-std::string list_column_presets() {
-  std::string all;
-  for (const auto& p : detail::kColumnPresets) all += fmt::format("{:12} {}\n", p.name, p.what);
-  return all;
-}
-
 }  // namespace tauext

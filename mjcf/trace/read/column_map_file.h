@@ -10,7 +10,7 @@
 
 namespace tauext {
 
-/// @param name a preset (list_column_presets), or the path of a TOML file (it ends in .toml)
+/// @param name a preset (presets.h), or the path of a TOML file (it ends in .toml)
 /// @throws std::invalid_argument for an unknown preset, listing the known ones, and for a map that
 /// is none, naming the path, the line and what is wrong; std::runtime_error for a file that cannot
 /// be read, and where toml++ was missing at build, naming the package
@@ -23,8 +23,5 @@ ColumnMap column_map_of(std::string_view toml, const std::string& name);
 
 /// The preset that reads messages of a type of ROS 2, like "sensor_msgs/JointState"; "": none.
 std::string preset_of_messages(const std::string& type);
-
-/// The presets: their names, and what each one is for.
-std::string list_column_presets();
 
 }  // namespace tauext
