@@ -5,17 +5,16 @@
 
 namespace tauext::detail {
 
-template <>
-std::vector<DetectorType> roster_detectors<kRuns>(const JointVec<>& torques) {
+std::vector<DetectorType> roster_detectors(const JointVec<>& torques) {
   std::vector<DetectorType> all;
   for_each_detector(
       [&]<class D>(std::type_identity<D>) { all.push_back(detector_type<D>(torques)); });
   return all;
 }
 
-template <>
-std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs<kRuns>(
-    const Specification& s, const DetectorSettings& settings, const JointVec<>& torques) {
+std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs(const Specification& s,
+                                                             const DetectorSettings& settings,
+                                                             const JointVec<>& torques) {
   std::unique_ptr<DetectorStage<Pack<kRuns>>> made;
   for_each_detector([&]<class D>(std::type_identity<D>) {
     if (s.name != D::kName) return;

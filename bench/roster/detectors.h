@@ -275,21 +275,13 @@ return type;
 
 namespace detail {
 
-// those of detector_list.h, compiled once for each level of instructions, whose W is in their
-// names; for an arm whose torques are so many times the usual ones
-template <int W>
+// those of detector_list.h, for an arm whose torques are so many times the usual ones
 std::vector<DetectorType> roster_detectors(const JointVec<>& torques);
-template <>
-std::vector<DetectorType> roster_detectors<kRuns>(const JointVec<>& torques);
 
-// of W runs at once; null for one that is not of the list
-template <int W>
-std::unique_ptr<DetectorStage<Pack<W>>> detector_of_runs(const Specification& s,
-                                                         const DetectorSettings& settings,
-                                                         const JointVec<>& torques);
-template <>
-std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs<kRuns>(
-    const Specification& s, const DetectorSettings& settings, const JointVec<>& torques);
+// of several runs at once; null for one that is not of the list
+std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs(const Specification& s,
+                                                             const DetectorSettings& settings,
+                                                             const JointVec<>& torques);
 
 }  // namespace detail
 }  // namespace tauext

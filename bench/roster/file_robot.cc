@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "bench/roster/kernels/kernels.h"
 #include "mjcf/import/robot_file.h"
 #include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/remedy/doubts.h"
@@ -18,13 +17,12 @@ namespace {
 
 static_assert(kMaxFileJoints <= kMostCoordinates);
 
-std::unique_ptr<const Robot> robot_from(const detail::Kernels& kernels, int joints,
-                                        const std::string& name, const Model& model) {
+std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
   if (joints > kMaxFileJoints) {
     throw std::invalid_argument(fmt::format(
         "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
   }
-  return kernels.of_file.at(static_cast<std::size_t>(joints) - 1)(name, model);
+  return detail::kFileRobots.at(static_cast<std::size_t>(joints) - 1)(name, model);
 }
 
 }  // namespace
@@ -36,12 +34,11 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
   std::string changes;
   const Model model = is_robot_file(name) ? load_mjcf(path, options, &changes) : load_robot(name);
   if (!changes.empty()) say(fmt::format("{}: {}", path, changes));
-  const detail::Kernels& kernels = detail::kernels();  // its error is not the file's
   try {
     const ArmTree arm = tree_of(model);
     if (const std::string doubts = doubts_about(*model); is_robot_file(name) && !doubts.empty())
       say(fmt::format("{}: {}", path, doubts));
-    return robot_from(kernels, arm.dof(), name, model);
+    return robot_from(arm.dof(), name, model);
   } catch (const std::invalid_argument& e) {
     std::string why = e.what();
     if (is_robot_file(name)) {

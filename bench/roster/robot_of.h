@@ -49,7 +49,7 @@ class RobotOf final : public Robot {
       add_estimator(model, make);
       if constexpr (std::is_same_v<M, WallMoBot3> || kLarge) add_runs(model, make);
     });
-    for (const DetectorType& d : roster_detectors<kRuns>(torques())) add_detector(d);
+    for (const DetectorType& d : roster_detectors(torques())) add_detector(d);
     for (const auto& add : registered_estimators<M>()) add(model, *this);
     for (const auto& type : registered_detectors()) add_detector(type(torques()));
     for (const auto& [robot, text] : registered_specifications()) {
@@ -159,7 +159,7 @@ class RobotOf final : public Robot {
 
   std::unique_ptr<DetectorStage<Lanes>> runs_detector(const Asked& asked) const {
     return made(asked.detector, detector_fields(asked.detector), [&](const Specification& s) {
-      return detector_of_runs<kRuns>(s, asked.settings, torques());
+      return detector_of_runs(s, asked.settings, torques());
     });
   }
 
@@ -199,7 +199,7 @@ class RobotOf final : public Robot {
   std::vector<std::string> specifications_;  // that are listed beside the estimators
 };
 
-// compiled in the library, by the sources of kernels/
+// compiled in the library
 extern template class RobotOf<1>;
 extern template class RobotOf<2>;
 extern template class RobotOf<3>;
@@ -221,7 +221,7 @@ std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model,
   return std::make_unique<detail::RobotOf<M::kDof>>(name, model, file);
 }
 
-/// That of wallmobot3 is compiled in the library, for this processor.
+/// That of wallmobot3 is compiled in the library.
 template <>
 std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&, const Model&);
 /// That of testbed1, likewise.

@@ -14,7 +14,6 @@
 
 #include "bench/roster/detector_list.h"
 #include "bench/roster/file_robot.h"
-#include "bench/roster/kernels/kernels.h"
 #include "bench/roster/robot_of.h"
 #include "mjcf/import/robot_file.h"
 #include "mjcf/plant/tree.h"
@@ -24,17 +23,6 @@
 #include "mjcf/trace/table_writer.h"
 
 namespace tauext {
-
-template <>
-std::unique_ptr<const Robot> make_robot(const std::string& name, const WallMoBot3& model,
-                                        const Model& file) {
-  return detail::kernels().wallmobot3(name, model, file);
-}
-template <>
-std::unique_ptr<const Robot> make_robot(const std::string& name, const Testbed1& model,
-                                        const Model& file) {
-  return detail::kernels().testbed1(name, model, file);
-}
 
 namespace {
 
@@ -168,7 +156,7 @@ const Scenario& scenario_of(const Robot& r, std::string_view name) {
 }
 
 std::string level() {
-  return detail::kernels().level;
+  return TAUEXT_ARCH;
 }
 
 bool study_only(std::string_view detector) {

@@ -40,10 +40,8 @@ std::string with_lock(const std::string& robot, const std::string& lock);
 /// believes.
 std::unique_ptr<const Robot> wallmobot3_believing(double panel);
 
-/// The level of instructions that estimators and detectors run on, as -march names it; "" for any
-/// processor. It is the highest that the build has (CMake's TAUEXT_LEVELS) and the processor knows,
-/// or that of the environment variable TAUEXT_LEVEL.
-/// @throws std::invalid_argument for one that is not there, listing those that are
+/// The instructions that estimators and detectors are compiled for (CMake's TAUEXT_ARCH), as -march
+/// names them; "" for any processor.
 std::string level();
 
 /// Whether a detector stands in the studies alone (for_each_study_detector).
