@@ -54,9 +54,9 @@ void register_estimator(Make make) {
       });
 }
 
-/// A detector for every robot: D(), D(joints), or with D::Parameters D(joints, parameters), which
-/// are the defaults unless a specification sets them (D::Parameters::fields()). A name that is
-/// taken is refused likewise.
+/// A detector for every robot: D(), or D(joints) where there is no such constructor; with
+/// D::Parameters D(joints, parameters), of which a specification sets what fields() lists. A name
+/// that is taken is refused likewise.
 template <CollisionDetector D>
 void register_detector() {
   detail::require_unused();

@@ -97,7 +97,8 @@ concept TorqueEstimator = requires(E e, const Measurement<E::kDof>& y) {
 };
 
 /// Turns estimates of tau_ext into fiducial marks, either from t [s] and tau_ext [N m] alone, or
-/// with the speed and torque of the sample, too: update(t, qd, tau, tau_ext).
+/// with qd [rad/s] and tau [N m] of the sample, too: update(t, qd, tau, tau_ext). It is made for a
+/// number of joints, D(joints) or D(joints, parameters); of another number it detects nothing.
 template <class D>
 concept CollisionDetector = requires(D d) {
   { D::kName } -> std::convertible_to<std::string_view>;

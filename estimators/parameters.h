@@ -125,8 +125,10 @@ const P& check_parameters(const P& p, const char* of) {
   return p;
 }
 
-/// Parameters of a detector of so many joints: checked, and with a value for each where one stands
-/// for all.
+/// Parameters of a detector, checked, and with a value for each joint where one stands for all;
+/// those of a detector within are left to its own class.
+/// @param joints 1 to kMostDof
+/// @param of the name of the detector, for the error
 /// @throws std::invalid_argument as check_parameters does, and for another number of values
 template <ListsFields P>
 P for_joints(P p, int joints, const char* of) {
@@ -134,9 +136,7 @@ P for_joints(P p, int joints, const char* of) {
   check_parameters(p, of);
   for_each_field<P>([&](const auto& f) {
     auto& x = p.*f.at;
-    if constexpr (!requires { f.unit; }) {
-      x = for_joints(x, joints, of);
-    } else if constexpr (std::is_same_v<decltype(x), JointVec<>&>) {
+    if constexpr (std::is_same_v<decltype(x), JointVec<>&>) {
       if (x.size() == 1) x = JointVec<>::Constant(joints, x[0]);
       if (x.size() != joints) detail::fail_joints(f.key, of, x.size(), joints);
     }

@@ -12,9 +12,9 @@ std::vector<DetectorType> roster_detectors(const JointVec<>& torques) {
   return all;
 }
 
-std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs(const Specification& s,
-                                                             const DetectorSettings& settings,
-                                                             const JointVec<>& torques) {
+template <>
+std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs<kRuns>(
+    const Specification& s, const DetectorSettings& settings, const JointVec<>& torques) {
   std::unique_ptr<DetectorStage<Pack<kRuns>>> made;
   for_each_detector([&]<class D>(std::type_identity<D>) {
     if (s.name != D::kName) return;

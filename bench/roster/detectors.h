@@ -155,14 +155,20 @@ struct TrainedPart {
   std::string name, prefix;
 };
 
-// sets what is known of Parameters p
+// sets what is known of Parameters p, which have a value for each joint
 template <class P>
 void set_trained(P& p, const char* name, const DetectorThresholds& known) {
   const auto it = known.find(name);
   if (it == known.end()) return;
-  p.threshold = it->second.threshold;
+  const int joints = static_cast<int>(p.threshold.size());
+  const auto& [threshold, metric] = it->second;
+  if (threshold.size() != joints) fail_joints("threshold", name, threshold.size(), joints);
+  p.threshold = threshold;
   if constexpr (requires { p.metric; }) {
-    if (it->second.metric.size() > 0) p.metric = it->second.metric;
+    if (metric.size() == 0) return;
+    if (metric.rows() != joints || metric.cols() != joints)
+      fail_joints("metric", name, metric.rows(), joints);
+    p.metric = metric;
   }
 }
 
@@ -173,15 +179,20 @@ concept OfTrainedParts = requires(typename D::Parameters p) {
   p.clamping.threshold;
 };
 
-// Times factor, joint by joint, for every parameter in N m: squared for one in (N m)^2. Where a
-// metric mixes the joints, it makes them comparable, and its threshold is that of as many.
+constexpr const char *kFindsBlows = "pan_tompkins", *kFindsClampings = "clamping";
+
+// Defaults with a value for each joint, times its factor where they are in N m: squared for
+// (N m)^2. Where a metric mixes the joints, it makes them comparable, and its threshold is that of
+// as many.
 template <class P>
 void scale_torques(P& p, const JointVec<>& factor) {
   for_each_field<P>([&](const auto& f) {
     auto& x = p.*f.at;
     if constexpr (!requires { f.unit; }) {
       scale_torques(x, factor);
-    } else if constexpr (std::is_same_v<decltype(x), JointVec<>&>) {
+    } else if constexpr (requires { x.size(); }) {
+      static_assert(std::is_same_v<decltype(x), JointVec<>&>, "of detectors, a JointVec<>");
+      if (x.size() == 1) x = JointVec<>::Constant(factor.size(), x[0]);
       const std::string_view unit = f.unit;
       if (unit.starts_with("N m")) x = x.cwiseProduct(factor).eval();
       if (unit.starts_with("(N m")) x = x.cwiseProduct(factor.cwiseAbs2()).eval();
@@ -200,10 +211,7 @@ void scale_torques(P& p, const JointVec<>& factor) {
 template <class D>
 typename D::Parameters defaults_for(const JointVec<>& torques) {
   typename D::Parameters p;
-  if constexpr (ListsFields<typename D::Parameters>) {
-    p = for_joints(p, static_cast<int>(torques.size()), D::kName);
-    scale_torques(p, torques);
-  }
+  if constexpr (ListsFields<typename D::Parameters>) scale_torques(p, torques);
   return p;
 }
 
@@ -215,8 +223,8 @@ D made_detector(const Specification& s, const DetectorSettings& settings,
   if constexpr (requires { typename D::Parameters; }) {
     typename D::Parameters p = defaults_for<D>(torques);
     if constexpr (OfTrainedParts<D>) {
-      set_trained(p.collision, "pan_tompkins", settings.thresholds);
-      set_trained(p.clamping, "clamping", settings.thresholds);
+      set_trained(p.collision, kFindsBlows, settings.thresholds);
+      set_trained(p.clamping, kFindsClampings, settings.thresholds);
       p.collision.start_up = p.clamping.start_up = settings.start_up;
     } else {
       if constexpr (requires { p.threshold; }) set_trained(p, D::kName, settings.thresholds);
@@ -228,10 +236,10 @@ D made_detector(const Specification& s, const DetectorSettings& settings,
     return D(joints, p);
   } else {
     refuse_keys(s);
-    if constexpr (std::is_constructible_v<D, int>)
-      return D(joints);
-    else
+    if constexpr (std::is_default_constructible_v<D>)  // of which an int may be a parameter
       return D();
+    else
+      return D(joints);
   }
 }
 
@@ -248,8 +256,8 @@ struct DetectorType {
                                            const JointVec<>& torques) = nullptr;
 };
 
-/// That of D.
-/// @param torques [1] times what the torques in detectors' defaults are right for this arm
+/// The type of detector D.
+/// @param torques [1] factor of each joint on the torques of detectors' defaults
 template <CollisionDetector D>
 DetectorType detector_type(const JointVec<>& torques) {
   DetectorType type;
@@ -258,30 +266,37 @@ DetectorType detector_type(const JointVec<>& torques) {
     const typename D::Parameters p = detail::defaults_for<D>(torques);
     type.fields = field_help(&p);
     if constexpr (detail::OfTrainedParts<D>) {
-      type.trained_parts = {{"pan_tompkins", "collision."}, {"clamping", "clamping."}};
+      type.trained_parts = {{detail::kFindsBlows, "collision."},
+                            {detail::kFindsClampings, "clamping."}};
     } else if constexpr (CalibratableDetector<D>) {
+      constexpr bool kMetric = requires(D d) {
+        p.metric, d.change();
+      };
       type.trained_parts = {{D::kName, ""}};
-      type.calibration = Calibration{D::kDegree, p.threshold, requires(D d){p.metric, d.change();
+      type.calibration = Calibration{D::kDegree, p.threshold, kMetric};
     }
+  }
+  type.make = [](const Specification& s, const DetectorSettings& settings,
+                 const JointVec<>& of_arm) -> std::unique_ptr<DetectorStage<>> {
+    return std::make_unique<DetectorStageOf<D>>(detail::made_detector<D>(s, settings, of_arm));
   };
-}
-}  // namespace tauext
-type.make = [](const Specification& s, const DetectorSettings& settings,
-               const JointVec<>& of_arm) -> std::unique_ptr<DetectorStage<>> {
-  return std::make_unique<DetectorStageOf<D>>(detail::made_detector<D>(s, settings, of_arm));
-};
-return type;
+  return type;
 }
 
 namespace detail {
 
-// those of detector_list.h, for an arm whose torques are so many times the usual ones
+// those of detector_list.h
 std::vector<DetectorType> roster_detectors(const JointVec<>& torques);
 
-// of several runs at once; null for one that is not of the list
-std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs(const Specification& s,
-                                                             const DetectorSettings& settings,
-                                                             const JointVec<>& torques);
+// of W runs at once; null for one that is not of the list. W is in its name: code with other flags
+// has another one
+template <int W>
+std::unique_ptr<DetectorStage<Pack<W>>> detector_of_runs(const Specification& s,
+                                                         const DetectorSettings& settings,
+                                                         const JointVec<>& torques);
+template <>
+std::unique_ptr<DetectorStage<Pack<kRuns>>> detector_of_runs<kRuns>(
+    const Specification& s, const DetectorSettings& settings, const JointVec<>& torques);
 
 }  // namespace detail
 }  // namespace tauext

@@ -210,7 +210,6 @@ const DetectorType& Robot::detector_type(std::string_view specification) const {
                     [](const DetectorType& d) { return d.name; });
 }
 
-// itself, those that it is made of, or none; with the keys that are theirs
 std::vector<std::string> Robot::trained_parts(std::string_view detector) const {
   const Specification whole = parse_specification(detector);
   std::vector<std::string> all;

@@ -156,7 +156,7 @@ class Robot {
   /// @throws std::invalid_argument if that cannot be simulated, saying why not
   Robot(std::string name, int dof, const Model& file = nullptr);
 
-  /// [1] times what the torques in detectors' defaults are right for this arm.
+  /// [1] factor of each joint on the torques of detectors' defaults.
   const JointVec<>& torques() const { return torques_; }
   /// @throws std::invalid_argument if its name is taken
   void add_detector(const DetectorType& type);

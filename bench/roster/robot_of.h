@@ -4,11 +4,7 @@
 /// own model; else bench/roster/robots.h is enough.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,7 +40,7 @@ class RobotOf final : public Robot {
  public:
   template <RobotModel M>
   RobotOf(const std::string& name, const M& model, const Model& file) : Robot(name, N, file) {
-    static_assert(N <= kMostDof);
+    static_assert(N <= kMostDof, "detectors watch 1 to 8 joints");
     for_each_estimator(model, [&](auto make) {
       add_estimator(model, make);
       if constexpr (std::is_same_v<M, WallMoBot3> || kLarge) add_runs(model, make);
@@ -159,7 +155,7 @@ class RobotOf final : public Robot {
 
   std::unique_ptr<DetectorStage<Lanes>> runs_detector(const Asked& asked) const {
     return made(asked.detector, detector_fields(asked.detector), [&](const Specification& s) {
-      return detector_of_runs(s, asked.settings, torques());
+      return detector_of_runs<kRuns>(s, asked.settings, torques());
     });
   }
 

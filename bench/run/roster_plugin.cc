@@ -48,9 +48,8 @@ TAUEXT_PLUGIN(kernels) {
   using namespace tauext;
   for_each_robot([&]<class M>(const std::string& robot, const M& arm) {
     add_model_and_estimators(kernels, robot, arm);
-    for_each_detector([&]<class D>(std::type_identity<D>) {  //
-      kernels.add_detector(robot, arm, D(M::kDof));
-    });
+    for_each_detector(
+        [&]<class D>(std::type_identity<D>) { kernels.add_detector(robot, arm, D(M::kDof)); });
   });
   add_model_and_estimators(kernels, "tree7", tree7());
 }

@@ -46,7 +46,7 @@ class BasicBandPass {
   template <class Other>
   using For = BasicBandPass<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicBandPass(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         slow_(joints, p.w_low),
@@ -64,7 +64,7 @@ class BasicBandPass {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       slow_.start(t, tau_ext);

@@ -73,7 +73,7 @@ class BasicClamping {
   template <class Other>
   using For = BasicClamping<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicClamping(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         baseline_(joints, p.w_baseline),
@@ -103,7 +103,7 @@ class BasicClamping {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       baseline_.start(t, tau_ext);

@@ -48,7 +48,7 @@ class BasicContactClassifier {
   template <class Other>
   using For = BasicContactClassifier<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicContactClassifier(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         collision_(joints, p.collision),
@@ -64,7 +64,8 @@ class BasicContactClassifier {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    const Status status = clock_.accept(t);
+    const bool fits = tau_ext.size() == clamping_.change().size();
+    const Status status = fits ? clock_.accept(t) : Status::kBadMeasurement;
     if (!used(status)) return {no<Scalar>(), last_.score, last_.contact};
     if (status == Status::kStarted) forget();
     last_ = classified(t, tau_ext);

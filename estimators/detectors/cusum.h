@@ -56,7 +56,7 @@ class BasicCusum {
   template <class Other>
   using For = BasicCusum<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicCusum(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         mean_(joints, p.w),
@@ -73,7 +73,7 @@ class BasicCusum {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_ > kGap) {
       mean_.start(t, tau_ext);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
@@ -48,7 +47,7 @@ class BasicDynamicThreshold {
   template <class Other>
   using For = BasicDynamicThreshold<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicDynamicThreshold(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
@@ -64,8 +63,10 @@ class BasicDynamicThreshold {
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& qd,
                              const JointVecView<Scalar>& tau,
                              const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!measured(qd) || !measured(tau)) return marking_.held();
-    if (!marking_.accept(t)) return marking_.held();
+    const Eigen::Index n = statistic_.size();
+    if (tau_ext.size() != n || qd.size() != n || tau.size() != n || !measured(qd) ||
+        !measured(tau) || !marking_.accept(t))
+      return marking_.held();
     using std::abs;
     using std::max;
     for (int i = 0; i < statistic_.size(); ++i) {

@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <tuple>
-#include <type_traits>
 
 #include "estimators/concepts.h"
 #include "estimators/detectors/filters.h"
@@ -48,7 +47,7 @@ class BasicEnergy {
   template <class Other>
   using For = BasicEnergy<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicEnergy(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         power_(1, p.w),
@@ -64,8 +63,9 @@ class BasicEnergy {
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& qd, const JointVecView<Scalar>&,
                              const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!measured(qd)) return marking_.held();
-    if (!marking_.accept(t)) return marking_.held();
+    const Eigen::Index n = statistic_.size();
+    if (tau_ext.size() != n || qd.size() != n || !measured(qd) || !marking_.accept(t))
+      return marking_.held();
     if (marking_.starts()) forget();
     Scalar power = qd[0] * tau_ext[0];
     for (int i = 1; i < statistic_.size(); ++i) power = power + qd[i] * tau_ext[i];

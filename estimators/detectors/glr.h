@@ -54,7 +54,7 @@ class BasicGlr {
   template <class Other>
   using For = BasicGlr<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicGlr(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         mean_(joints, p.w),
@@ -69,7 +69,7 @@ class BasicGlr {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t) || t - t_[last_] > kGap) {
       mean_.start(t, tau_ext);

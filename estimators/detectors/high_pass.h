@@ -44,7 +44,7 @@ class BasicHighPass {
   template <class Other>
   using For = BasicHighPass<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicHighPass(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         low_(joints, p.w),
@@ -59,7 +59,7 @@ class BasicHighPass {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     if (marking_.silent(t)) {
       low_.start(t, tau_ext);

@@ -57,7 +57,7 @@ class BasicPanTompkins {
   template <class Other>
   using For = BasicPanTompkins<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicPanTompkins(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
@@ -72,7 +72,7 @@ class BasicPanTompkins {
   }
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != held_.size() || !marking_.accept(t)) return marking_.held();
     if (marking_.starts()) forget();
     newest_ = newest_ + 1 < kHistory ? newest_ + 1 : 0;
     t_[newest_] = t;

@@ -39,7 +39,7 @@ class BasicThreshold {
   template <class Other>
   using For = BasicThreshold<Other>;  ///< the same, computed with another number
 
-  /// @throws std::invalid_argument for parameters out of range
+  /// @throws std::invalid_argument as for_joints() (estimators/parameters.h)
   explicit BasicThreshold(int joints, const Parameters& p = {})
       : p_(for_joints(p, joints, kName)),
         marking_(p.refractory, p.start_up),
@@ -54,7 +54,7 @@ class BasicThreshold {
 
   DetectionOf<Scalar> update(double t, const JointVecView<Scalar>& tau_ext) noexcept {
     using std::abs;
-    if (!marking_.accept(t)) return marking_.held();
+    if (tau_ext.size() != statistic_.size() || !marking_.accept(t)) return marking_.held();
     for (int i = 0; i < statistic_.size(); ++i) statistic_[i] = abs(tau_ext[i]);
     return marking_(t, largest_ratio(statistic_, p_.threshold), Contact::kCollision);
   }

@@ -11,6 +11,7 @@
 
 #include "estimators/detectors/band_pass.h"
 #include "estimators/detectors/clamping.h"
+#include "estimators/detectors/contact_classifier.h"
 #include "estimators/detectors/cusum.h"
 #include "estimators/detectors/dynamic_threshold.h"
 #include "estimators/detectors/energy.h"
@@ -293,6 +294,18 @@ TYPED_TEST(EveryDetector, RefusesAThresholdThatIsNoPositiveNumber) {
       p.threshold = Vec<3>::Constant(p.threshold[0]);
       p.threshold[j] = bad;
       EXPECT_THROW(TypeParam(3, p), std::invalid_argument) << bad << " on joint " << j + 1;
+    }
+  }
+}
+
+TYPED_TEST(EveryDetector, DetectsNothingInEstimatesOfAnotherNumberOfJoints) {
+  for (const int joints : {1, 2, 4, 8}) {
+    TypeParam d(3);
+    ContactClassifier both(3);
+    for (int k = 0; k < 1000; ++k) {
+      const JointVec<> x = JointVec<>::Constant(joints, k < 500 ? 0 : 1e6);
+      EXPECT_EQ(detect(d, k * 1e-3, x, x, x).score, 0) << joints;
+      EXPECT_EQ(detect(both, k * 1e-3, x, x, x).score, 0) << joints;
     }
   }
 }

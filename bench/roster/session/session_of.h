@@ -115,6 +115,7 @@ class SessionOf final : public Session {
   std::vector<Eigen::VectorXd> largest_statistic(const Asked& detector, double from) override {
     const auto largest = [&](const auto& seen, auto& stage) {
       auto most = stage.statistic();
+      require(most.size() == N, "largest_statistic() is of a calibratable detector");
       most.setZero();
       seen.watch(stage, from, [&](const auto& d) { most = most.cwiseMax(d.statistic()).eval(); });
       return most;
@@ -128,6 +129,7 @@ class SessionOf final : public Session {
       Mat<N, Scalar> sum = Mat<N, Scalar>::Zero();
       int count = 0;
       seen.watch(stage, from, [&](const auto& d) {
+        require(d.change().size() == N, "covariance() is of a detector with a metric");
         const Vec<N, Scalar> z = d.change();
         sum += z * z.transpose();
         ++count;
