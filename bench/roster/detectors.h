@@ -247,7 +247,7 @@ D made_detector(const Specification& s, const DetectorSettings& settings,
 
 /// A detector of an arm, by name.
 struct DetectorType {
-  std::string name;
+  std::string name;                                ///< as specifications have it
   std::vector<FieldHelp> fields;                   ///< what a specification sets
   std::vector<detail::TrainedPart> trained_parts;  ///< the detectors whose thresholds it takes
   std::optional<Calibration> calibration;          ///< how they are set
