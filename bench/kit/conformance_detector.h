@@ -92,7 +92,7 @@ class DetectorClaims {
       const double t = (k == 4500 ? 3000 : k) * kTs;  // a time that is not the next one
       const JointVec<Lanes> none = JointVec<Lanes>::Zero(joints_);
       JointVec<Lanes> speeds = none, loads = none;
-      std::array<Detection, kRuns> said;
+      std::array<Detection, kRuns> one_by_one;
       for (int i = 0; i < kRuns; ++i) {
         JointVec<> qd = zero(), load = zero();
         for (int j = 0; j < joints_; ++j) {
@@ -101,12 +101,12 @@ class DetectorClaims {
           speeds[j].set(i, qd[j]);
           loads[j].set(i, load[j]);
         }
-        said[static_cast<std::size_t>(i)] =
+        one_by_one[static_cast<std::size_t>(i)] =
             detect(alone[static_cast<std::size_t>(i)], t, qd, zero(), load);
       }
       const RunsDetection<Lanes> at_once = detect<Lanes>(all, t, speeds, none, loads);
       for (int i = 0; i < kRuns; ++i) {
-        const Detection& x = said[static_cast<std::size_t>(i)];
+        const Detection& x = one_by_one[static_cast<std::size_t>(i)];
         ASSERT_EQ(at_once.mark[i], x.mark) << "run " << i << ", sample " << k;
         ASSERT_EQ(static_cast<Contact>(at_once.contact[i]), x.contact) << i << ", " << k;
         ASSERT_NEAR(at_once.score[i], x.score, 1e-12 * (1 + x.score)) << i << ", " << k;

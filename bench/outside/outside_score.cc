@@ -97,7 +97,7 @@ void add_floor_metrics(const std::vector<LogRun>& runs, Score& score) {
   score.set_joints(Metric::kDrift, as_list(drift));
 }
 
-void add_maker_metrics(const std::vector<LogRun>& runs, Score& score) {
+void add_vendor_metrics(const std::vector<LogRun>& runs, Score& score) {
   const bool known = std::all_of(runs.begin(), runs.end(), [](const LogRun& r) {
     return r.trace->tau_ext_of_driver.cols() == r.trace->size() && r.trace->size() > 0;
   });
@@ -210,7 +210,7 @@ Row score_outside(const std::vector<OutsideRun>& runs,
   } else {
     add_floor_metrics(logs, score);
   }
-  add_maker_metrics(logs, score);
+  add_vendor_metrics(logs, score);
   if (truth && runs.size() == 1) {
     add_detection_metrics(*first.trace, name.output, score);
   } else {

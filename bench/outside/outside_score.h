@@ -25,7 +25,7 @@ struct OutsideRun {
   std::string log;                     ///< its name, for errors of one of several
 };
 
-/// Puts what a force sensor saw in the place of the maker's estimate, if the trace has a force and
+/// Puts what a force sensor saw in the place of the vendor's estimate, if the trace has a force and
 /// none of that: as the torques with the sign of (3) that such a force at the end effector takes.
 void take_sensor(const Robot& robot, Trace& trace);
 
@@ -49,8 +49,9 @@ struct LogRun {
 /// What is left while nothing touches, by the labels of the logs: all the time in a log without.
 void add_floor_metrics(const std::vector<LogRun>& runs, Score& score);
 
-/// How the estimates compare with the maker's own, joint by joint, where all of the logs have them.
-void add_maker_metrics(const std::vector<LogRun>& runs, Score& score);
+/// How the estimates compare with the vendor's own, joint by joint, where all of the logs have
+/// them.
+void add_vendor_metrics(const std::vector<LogRun>& runs, Score& score);
 
 /// Marks against the labels of all logs together, with intervals; a log without labels has nothing
 /// that touches. Nothing without a detector.

@@ -180,7 +180,7 @@ struct Log {
     const std::vector<LogRun> runs = {{&trace, &output, from}};
     Score s;
     add_floor_metrics(runs, s);
-    add_maker_metrics(runs, s);
+    add_vendor_metrics(runs, s);
     add_label_metrics(runs, s);
     return s;
   }
