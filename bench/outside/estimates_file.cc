@@ -205,6 +205,7 @@ std::vector<OutsideEstimates> read_estimates(const std::string& path, const std:
   rows->read_only(wanted);
   Collector all(path, name, found, trace);
   SkippedRows skipped;
+  skipped.unit = rows->unit();
   for (std::vector<double> row; rows->next(row, skipped);) all.take(row);
   if (skipped.total() > 0)
     say(fmt::format("{}: {} rows could not be read; {}", path, skipped.total(), skipped.first[0]));

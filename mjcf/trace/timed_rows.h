@@ -19,6 +19,7 @@ namespace tauext {
 
 /// Rows of a recording that were left out, by the reason.
 struct SkippedRows {
+  std::string_view unit = "line";  ///< what of the file has a row: "line", "message"
   int not_finite = 0;              ///< a field was NaN, infinite or empty
   int wrong_field_count = 0;       ///< too few or too many fields
   int not_a_number = 0;            ///< a field could not be read as a number
@@ -32,8 +33,8 @@ struct SkippedRows {
   int total() const { return not_finite + wrong_field_count + not_a_number + time_order + alone; }
 
   /// Keeps it if it is among the first.
-  void say(long line, std::string_view reason) {
-    if (first.size() < 3) first.push_back(fmt::format("line {}: {}", line, reason));
+  void say(long number, std::string_view reason) {
+    if (first.size() < 3) first.push_back(fmt::format("{} {}: {}", unit, number, reason));
   }
 };
 
@@ -122,16 +123,16 @@ class TimedRows {
     const double last = kept_.back().first[t_], shift = last + 1 - begin;
     if (last - shift_ - begin < kDisorder && begin > first_) {
       skipped_.notes.push_back(fmt::format(
-          "line {}: its time goes back by {:g} s; rows are left out until they are later than the "
+          "{} {}: its time goes back by {:g} s; rows are left out until they are later than the "
           "last one. If a clock was set back there, or another run begins, save what follows as a "
           "log of its own",
-          waiting_.front().second, last - shift_ - begin));
+          skipped_.unit, waiting_.front().second, last - shift_ - begin));
       return;
     }
     ++skipped_.set_back;
     skipped_.notes.push_back(fmt::format(
-        "line {}: its clock was set back by {:g} s; {:g} s are added to the times from there on",
-        waiting_.front().second, last - shift_ - begin, shift));
+        "{} {}: its clock was set back by {:g} s; {:g} s are added to the times from there on",
+        skipped_.unit, waiting_.front().second, last - shift_ - begin, shift));
     shift_ = shift;
   }
 

@@ -157,9 +157,9 @@ class JoinedRows {
     while (at != window_.begin() && std::prev(at)->t() > t) --at;
     window_.insert(at, std::move(row));
     if (window_.size() > kMost)
-      throw std::runtime_error(fmt::format(
-          "{}: line {}: more than {} rows in half a second: is the time in another unit?", path_,
-          window_.back().line, kMost));
+      throw std::runtime_error(
+          fmt::format("{}: {} {}: more than {} rows in half a second: is the time in another unit?",
+                      path_, skipped_.unit, window_.back().line, kMost));
   }
 
   // makes the samples of earlier times, of which all rows have come by now

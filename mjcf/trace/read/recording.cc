@@ -158,8 +158,8 @@ class VelocityFilter {
 // rows that were left out for the numbers that they do not have
 class Holes {
  public:
-  Holes(const SampleLayout& layout, const std::vector<std::string>& columns)
-      : layout_(layout), columns_(columns) {}
+  Holes(const SampleLayout& layout, const RowSource& rows)
+      : layout_(layout), columns_(rows.columns()), unit_(rows.unit()) {}
 
   void take(const std::vector<double>& sample, long line) {
     std::vector<std::size_t> missing;
@@ -181,8 +181,9 @@ class Holes {
     std::string all;
     std::vector<std::size_t> in_none;
     for (const auto& [missing, kind] : kinds_) {
-      all += fmt::format("{}{} rows (line {}{}) have no {}", all.empty() ? "" : ", ", kind.rows,
-                         fmt::join(kind.lines, ", "), kind.rows > 3 ? " .." : "", listed(missing));
+      all +=
+          fmt::format("{}{} rows ({} {}{}) have no {}", all.empty() ? "" : ", ", kind.rows, unit_,
+                      fmt::join(kind.lines, ", "), kind.rows > 3 ? " .." : "", listed(missing));
       if (&kind == &kinds_.begin()->second) in_none = missing;
       std::erase_if(in_none, [&lacks = missing](std::size_t i) {
         return !std::binary_search(lacks.begin(), lacks.end(), i);
@@ -216,6 +217,7 @@ class Holes {
 
   const SampleLayout& layout_;
   const std::vector<std::string>& columns_;
+  std::string_view unit_;
   std::int64_t rows_ = 0;
   std::map<std::vector<std::size_t>, Kind> kinds_;  // by the numbers that they lack
 };
@@ -231,10 +233,11 @@ struct RecordingReader::Impl {
                 map.leaves_order_open() ? o.joints : std::vector<std::string>()},
         rows(open()),
         layout(layout_of(known(), rows->columns(), path, map.rate() == 0)),
-        holes(layout, rows->columns()),
+        holes(layout, *rows),
         timed(0, skipped),
         filter(map.velocity_filter()) {
     rows->read_only(layout.columns());
+    skipped.unit = rows->unit();
     if (map.join() > 0) joined.emplace(path, map.join(), layout.names, pace(), skipped);
     contents = {layout.dof,          layout.instants,    layout.currents,    layout.without_gravity,
                 layout.tau_ext >= 0, layout.driver >= 0, layout.contact >= 0};

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjcf/trace/timed_rows.h"
@@ -27,6 +28,8 @@ class RowSource {
   virtual void read_only([[maybe_unused]] const std::vector<int>& wanted) {}
   /// Where that row stands in the file, from 1, as a user counts.
   virtual long number() const = 0;
+  /// What has that number: "line", "message", "row".
+  virtual std::string_view unit() const = 0;
 };
 
 }  // namespace tauext

@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjcf/trace/read/bag/message_type.h"
@@ -61,6 +62,7 @@ class BagRows : public RowSource {
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   /// Which message of the topic it was.
   long number() const override { return number_; }
+  std::string_view unit() const override { return "message"; }
 
  private:
   void read_type();

@@ -90,6 +90,7 @@ class Parts final : public RowSource {
   bool next(std::vector<double>& row, SkippedRows& skipped) override {
     while (rows_ != nullptr) {
       SkippedRows here;
+      here.unit = unit();
       const bool any = rows_->next(row, here);
       skipped.not_finite += here.not_finite, skipped.wrong_field_count += here.wrong_field_count;
       skipped.not_a_number += here.not_a_number, skipped.time_order += here.time_order;
@@ -108,6 +109,7 @@ class Parts final : public RowSource {
     return false;
   }
   long number() const override { return rows_ == nullptr ? 0 : rows_->number(); }
+  std::string_view unit() const override { return rows_ == nullptr ? "row" : rows_->unit(); }
 
  private:
   std::string path() const { return (fs::path(folder_) / parts_[part_].name).string(); }
@@ -202,6 +204,7 @@ class SideBySide final : public RowSource {
     return true;
   }
   long number() const override { return files_.front().rows->number(); }
+  std::string_view unit() const override { return files_.front().rows->unit(); }
 
  private:
   struct File {
@@ -220,6 +223,7 @@ class SideBySide final : public RowSource {
 
   bool read(File& f, SkippedRows& skipped) {
     SkippedRows here;
+    here.unit = f.rows->unit();
     const bool any = f.rows->next(f.row, here);
     f.at += here.total() + (any ? 1 : 0);
     bad_fields_ = bad_fields_ || here.wrong_field_count > 0;

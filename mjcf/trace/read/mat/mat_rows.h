@@ -35,6 +35,7 @@ class MatRows final : public RowSource {
   const std::vector<std::string>& columns() const override { return columns_; }
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   long number() const override { return static_cast<long>(row_); }
+  std::string_view unit() const override { return "row"; }
 
  private:
   std::vector<std::string> columns_;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjcf/trace/read/numpy/npy_header.h"
@@ -30,6 +31,7 @@ class NpyRows : public RowSource {
   const std::vector<std::string>& columns() const override { return columns_; }
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   long number() const override { return static_cast<long>(row_); }
+  std::string_view unit() const override { return "row"; }
 
  private:
   struct Cell {

@@ -270,7 +270,7 @@ TEST_F(Bag, MessagesThatCannotBeReadAreSkippedAndCounted) {
     SkippedRows skipped;
     EXPECT_EQ(rows_of(rows, skipped).size(), 2u) << why;
     EXPECT_EQ(skipped.wrong_field_count, 1);
-    EXPECT_EQ(skipped.first, Names{"line 2: " + why});
+    EXPECT_EQ(skipped.first, Names{"message 2: " + why});
     EXPECT_EQ(error_of_opening(with({bytes})),
               "no message on topic /joint_states can be read; of the first: " + why);
   }

@@ -157,7 +157,7 @@ TEST_F(JsonBag, WhatIsNoMessageIsSkippedAndCounted) {
     SkippedRows skipped;
     EXPECT_EQ(rows_of(rows, skipped).size(), 2U);
     EXPECT_EQ(skipped.wrong_field_count, 1);
-    EXPECT_EQ(skipped.first, Names{"line 2: " + why});
+    EXPECT_EQ(skipped.first, Names{"message 2: " + why});
   }
 }
 

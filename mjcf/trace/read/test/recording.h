@@ -21,6 +21,7 @@ namespace tauext::test {
 using Rows = std::vector<std::vector<double>>;
 
 inline Rows rows_of(RowSource& source, SkippedRows& skipped) {
+  skipped.unit = source.unit();
   Rows rows;
   std::vector<double> row;
   while (source.next(row, skipped)) rows.push_back(row);

@@ -35,6 +35,7 @@ class CsvRows final : public RowSource {
   void read_only(const std::vector<int>& wanted) override;
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   long number() const override { return number_; }
+  std::string_view unit() const override { return "line"; }
 
  private:
   bool next_line(std::string_view& line);
