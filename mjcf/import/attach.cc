@@ -112,9 +112,8 @@ std::string graft_defaults(const XMLElement& attach, XMLElement& parent, XMLElem
   for (const XMLElement* d : sections(parent, "default"))
     for (const XMLElement* e = d->FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
       if (name_of(*e) != "default" && has_word(elements_of(kKept), name_of(*e)))
-        fail(*e,
-             "a default of all is not known beside an <attach> (line {}); give that <{}> a class",
-             attach.GetLineNum(), name_of(*e));
+        fail(*e, "a default of all is not known beside an <attach> ({}); give that <{}> a class",
+             place_of(attach), name_of(*e));
   std::string name, main = "main";
   for (int n = 1; name.empty() || has_class(parent, name) || has_class(child, name); ++n)
     name = fmt::format("tauext:attached{}", n);

@@ -109,6 +109,8 @@ class JsonObject {
 /// @throws std::invalid_argument naming a key that is there twice, or saying where it is no JSON
 inline JsonObject::Json parse_json(const std::string& text, bool comments = false) {
   using Json = JsonObject::Json;
+  if (text.find_first_not_of(" \t\r\n") == text.npos)
+    throw std::invalid_argument("no JSON: it is empty");
   std::vector<std::set<std::string>> seen;  // of each object that is open
   const auto look = [&](int, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start) seen.emplace_back();

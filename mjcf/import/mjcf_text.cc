@@ -49,7 +49,9 @@ class Import {
       if (name_of(e) == "custom") return false;
       for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
         const std::string_view attribute = a->Name();
-        if (attribute.ends_with("name") || attribute.ends_with("class")) continue;
+        if (attribute.ends_with("name") || attribute.ends_with("class") ||
+            attribute == detail::kPlace)
+          continue;
         std::istringstream words(a->Value());
         for (std::string word; words >> word;) {
           std::transform(word.begin(), word.end(), word.begin(),
@@ -93,6 +95,10 @@ class Import {
     if (weightless_) option->SetAttribute("gravity", "0 0 0");
     add_motors(root);
     detail::put_measured(root, options_.measured);
+    each(root, [](XMLElement& e) {
+      e.DeleteAttribute(detail::kPlace);
+      return true;
+    });
     tinyxml2::XMLPrinter printer;
     doc_.Print(&printer);
     out_.xml = printer.CStr();
@@ -111,28 +117,35 @@ class Import {
       throw std::runtime_error(
           one_line(fmt::format("{}larger than {} MB", where, kMostBytes >> 20)));
     doc.LoadFile(file.c_str());
-    if (doc.Error() || doc.RootElement() == nullptr)
-      throw std::runtime_error(one_line(
-          fmt::format("{}line {}: no XML ({})", where, doc.ErrorLineNum(), detail::error_of(doc))));
+    if (fs::file_size(file) == 0) throw std::runtime_error(one_line(where + "the file is empty"));
+    if (doc.Error() || doc.RootElement() == nullptr) {
+      const int line = doc.ErrorLineNum();  // 0: in none of them
+      throw std::runtime_error(one_line(fmt::format("{}{}no XML ({})", where,
+                                                    line > 0 ? fmt::format("line {}: ", line) : "",
+                                                    detail::error_of(doc))));
+    }
     claim_input(file.string());
-    if (const XMLElement* const second = doc.RootElement()->NextSiblingElement())
-      fail(*second, "{}a second <{}> behind the first", where, name_of(*second));
-    refuse_controls(*doc.RootElement(), where);
-    each(*doc.RootElement(), [&](const XMLElement& e) {
-      refuse_controls(e, where);
+    const auto check = [&](XMLElement& e) {
+      if (!where.empty()) e.SetAttribute(detail::kPlace, (where + detail::place_of(e)).c_str());
+      refuse_controls(e);
       return true;
-    });
+    };
+    if (XMLElement* const second = doc.RootElement()->NextSiblingElement(); second != nullptr) {
+      check(*second);
+      fail(*second, "a second <{}> behind the first", name_of(*second));
+    }
+    check(*doc.RootElement());
+    each(*doc.RootElement(), check);
     return *doc.RootElement();
   }
 
   // XML must not have them, and terminals obey them
-  static void refuse_controls(const XMLElement& e, const std::string& where) {
+  static void refuse_controls(const XMLElement& e) {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
       for (const char* c = a->Value(); *c != '\0'; ++c)
         if (std::iscntrl(static_cast<unsigned char>(*c)) &&
             !std::isspace(static_cast<unsigned char>(*c)))
-          fail(e, "{}{} of <{}> has a control character: {}", where, a->Name(), name_of(e),
-               a->Value());
+          fail(e, "{} of <{}> has a control character: {}", a->Name(), name_of(e), a->Value());
     }
   }
 
@@ -186,7 +199,7 @@ class Import {
       if (!inside(e, "worldbody") ||
           std::find(std::begin(detail::kUnknown), end, name_of(e)) == end)
         return true;
-      found.push_back(fmt::format("<{}> (line {})", name_of(e), e.GetLineNum()));
+      found.push_back(fmt::format("<{}> ({})", name_of(e), detail::place_of(e)));
       return false;
     });
     if (found.empty()) return;
@@ -396,7 +409,9 @@ class Import {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr;) {
       const std::string attribute = a->Name();
       a = a->Next();
-      if (has_word(kept, attribute) || (by_group_ && attribute == "group")) continue;
+      if (has_word(kept, attribute) || attribute == detail::kPlace ||
+          (by_group_ && attribute == "group"))
+        continue;
       if (!is_left_out(e, attribute)) {
         problems_.attempt([&] {
           fail(e, "<{}> has no attribute '{}' that this import knows; {}", name_of(e), attribute,
@@ -436,7 +451,7 @@ class Import {
         return true;
       }
       if (!m.few_digits && !options_.balance) {
-        all.push_back(detail::impossible(body, e.GetLineNum(), m.moments));
+        all.push_back(detail::impossible(body, detail::place_of(e), m.moments));
         return true;
       }
       if (m.change > 1e-8)

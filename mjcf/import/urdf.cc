@@ -391,12 +391,11 @@ class Urdf {
     if (p.kg == 0 && how_.masses_unknown) return;
     if (p.kg == 0) {
       if (behind == 0) massless_tips_.insert(joint);  // which is nothing to the rest of the arm
-      return massless_.push_back(
-          fmt::format("'{}' (line {})", text(link, "name"), link.GetLineNum()));
+      return massless_.push_back(fmt::format("'{}' ({})", text(link, "name"), place_of(link)));
     }
     const MendedInertia m = mended(p.inertia, p.kg);
     if (!m.few_digits && !how_.balance)
-      impossible_.push_back(impossible(p.links, link.GetLineNum(), m.moments));
+      impossible_.push_back(impossible(p.links, place_of(link), m.moments));
     if (m.change > 1e-8)
       ++how_.changed[fmt::format("inertia of '{}' by {:.2g} %", p.links, 100 * m.change)];
     XMLElement& out = *body.InsertNewChildElement("inertial");

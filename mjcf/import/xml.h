@@ -33,11 +33,22 @@ inline std::string text(const XMLElement& e, const char* attribute) {
   return value == nullptr ? "" : value;
 }
 
-/// These words behind the number of the element's line in the file.
+/// The attribute by which an element of another file than the user's own keeps its place, which a
+/// copy of an element has no more.
+inline constexpr const char* kPlace = "tauext:place";
+
+/// "line 7" or, in an included or attached file, "hand.xml: line 7"; "" of what no file has.
+inline std::string place_of(const XMLElement& e) {
+  if (e.Attribute(kPlace) != nullptr) return text(e, kPlace);
+  return e.GetLineNum() > 0 ? fmt::format("line {}", e.GetLineNum()) : "";
+}
+
+/// These words behind the element's place.
 template <class... Args>
 std::string at_line(const XMLElement& e, fmt::format_string<Args...> words, Args&&... args) {
-  return one_line(
-      fmt::format("line {}: {}", e.GetLineNum(), fmt::format(words, std::forward<Args>(args)...)));
+  const std::string place = place_of(e);
+  return one_line(place + (place.empty() ? "" : ": ") +
+                  fmt::format(words, std::forward<Args>(args)...));
 }
 /// @throws std::runtime_error with the same
 template <class... Args>

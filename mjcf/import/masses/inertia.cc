@@ -41,8 +41,8 @@ MendedInertia mended(const Matrix3d& inertia, double kg) {
   return out;
 }
 
-std::string impossible(const std::string& body, int line, const Vector3d& moments) {
-  return fmt::format("'{}' (line {}) {:.4g}, {:.4g} and {:.4g}", body, line, moments[0], moments[1],
+std::string impossible(const std::string& body, const std::string& place, const Vector3d& moments) {
+  return fmt::format("'{}' ({}) {:.4g}, {:.4g} and {:.4g}", body, place, moments[0], moments[1],
                      moments[2]);
 }
 

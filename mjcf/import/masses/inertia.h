@@ -26,7 +26,8 @@ struct MendedInertia {
 MendedInertia mended(const Eigen::Matrix3d& inertia, double kg);
 
 /// Like "'link' (line 12) 0.1, 0.2 and 0.5".
-std::string impossible(const std::string& body, int line, const Eigen::Vector3d& moments);
+std::string impossible(const std::string& body, const std::string& place,
+                       const Eigen::Vector3d& moments);
 
 /// What is wrong with such bodies, and the remedy.
 std::string impossible_inertias(const std::vector<std::string>& bodies);

@@ -182,6 +182,7 @@ TEST_F(RobotFiles, AnImportedTextHoldsAllOfIt) {
 TEST_F(RobotFiles, ErrorsNameTheKeyAndTheRemedy) {
   const std::string head = R"({"format": "tauext-robot-1", "file": "arm.xml", )";
   for (const auto& [json, words] : std::vector<std::pair<std::string, std::string>>{
+           {"", "arm.json: no JSON: it is empty"},
            {"{", "arm.json: no JSON"},
            {"[]", "arm.json is [], no object"},
            {R"({"file": "arm.xml"})", "\"format\" is missing, and must be \"tauext-robot-1\""},

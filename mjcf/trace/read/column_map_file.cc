@@ -60,16 +60,17 @@ class MapReader {
       }
     }
     if (map_.rate_ > 0 && all.contains("t"))
-      fail(all, "it has a `rate` and a [t], and only one of them can say the time");
+      fail("it has a `rate` and a [t], and only one of them can say the time");
     if (!map_.parts_.empty() && !map_.files().empty())
-      fail(all, "it has `parts`, and a `file` of a quantity: a recording has one or the other");
+      fail("it has `parts`, and a `file` of a quantity: a recording has one or the other");
     if (map_.rate_ > 0 && map_.join_ > 0)
-      fail(all, "it has a `rate`, and `join` is for rows with a time");
+      fail("it has a `rate`, and `join` is for rows with a time");
     for (const char* const q : {"t", "q"})
       if (!map_.wanted_.contains(q) && (map_.rate_ == 0 || *q == 'q'))
-        fail(all, fmt::format("nothing says which columns are [{}]: name them, or a `preset` above "
-                              "all tables that has what they do not name, like preset = \"tauext\"",
-                              q));
+        fail(
+            fmt::format("nothing says which columns are [{}]: name them, or a `preset` above "
+                        "all tables that has what they do not name, like preset = \"tauext\"",
+                        q));
   }
 
   void read(const detail::ColumnPreset& p) {
@@ -112,9 +113,12 @@ class MapReader {
         1 + std::count(text.begin(), at, '\n')));
   }
 
+  // of all of it
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::invalid_argument(one_line(fmt::format("{}: {}", name_, what)));
+  }
   [[noreturn]] void fail(const toml::node& at, const std::string& what) const {
-    throw std::invalid_argument(
-        one_line(fmt::format("{}: line {}: {}", name_, at.source().begin.line, what)));
+    fail(fmt::format("line {}: {}", at.source().begin.line, what));
   }
 
   std::string string(const toml::node& value, std::string_view key) const {

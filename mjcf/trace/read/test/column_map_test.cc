@@ -247,6 +247,7 @@ TEST_F(Columns, ThatAMapOfOnesOwnWantsAndNobodyHasAreTold) {
 
 TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
   expect_says(error_of_map("[q"), "map.toml: line 1: ");
+  expect_says(error_of_map(""), "map.toml: nothing says which columns are [t]");
   expect_says(error_of_map("[|]"), "map.toml: ");
   expect_says(error_of_map("[q]\ncolumns='\xC3\xA4(.)'"), "line 2: a map is written in ASCII");
   expect_says(error_of_map("seperator = ','"), "line 1: unknown key 'seperator'; known: preset, ");
