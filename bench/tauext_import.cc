@@ -60,8 +60,8 @@ std::string cpp_of(const ArmTree& arm, const std::string& file, const ImportOpti
       "// Made by tauext-import from {}{}.\n#pragma once\n\n#include "
       "\"estimators/tree/tree_model.h\"\n\ninline {} {}() {{\n  {}::Parameters p;\n  using K = "
       "tauext::TreeJoint::Kind;\n",
-      printable_name(file), options.lock.empty() ? "" : " --lock " + printable_name(options.lock),
-      type, name, type);
+      printable_name(std::filesystem::path(file).filename().string()),
+      options.lock.empty() ? "" : " --lock " + printable_name(options.lock), type, name, type);
   for (std::size_t i = 0; i < joints; ++i) {
     const TreeJoint& j = arm.joints[i];
     text += fmt::format(
@@ -87,7 +87,9 @@ int import(const std::string& path, const ImportOptions& how, const std::string&
   const auto [file, options] = robot_file(path, how);
   const Model model = load_mjcf(file, options);
   const ArmTree arm = arm_of(model, file, options);
-  const ImportedText text = import_mjcf(file, options);
+  ImportOptions written = options;
+  written.folder = std::filesystem::absolute(out).parent_path().string();
+  const ImportedText text = import_mjcf(file, written);
   double mass = 0;
   int slides = 0;
   for (const TreeJoint& j : arm.joints) {

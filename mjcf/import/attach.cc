@@ -49,7 +49,6 @@ void refuse_other_compiler(const XMLElement& attach, XMLElement& parent, XMLElem
                                       {"boundinertia", "0"},
                                       {"settotalmass", "-1"},
                                       {"exactmeshinertia", "false"},
-                                      {"strippath", "false"},
                                       {"fitaabb", "false"}}) {
     const std::string own = compiler(parent, attribute, otherwise),
                       other = compiler(child, attribute, otherwise);

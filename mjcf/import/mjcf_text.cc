@@ -75,6 +75,7 @@ class Import {
     if (name_of(root) != "mujoco") fail(root, "<{}> is no MJCF, and no URDF", name_of(root));
     include(root, fs::path(path_).parent_path(), 0);
     problems_.raise();
+    strip_paths(root);
     attach(root, fs::path(path_).parent_path(), 0);
     refuse_unknown(root);
     read_settings(root);
@@ -149,6 +150,22 @@ class Import {
     }
   }
 
+  // <compiler strippath="true"/>: a mesh's file is known by its name alone
+  static void strip_paths(XMLElement& root) {
+    bool strips = false;
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "compiler" || e.Attribute("strippath") == nullptr) return true;
+      strips = text(e, "strippath") == "true";
+      e.DeleteAttribute("strippath");
+      return true;
+    });
+    each(root, [&](XMLElement& e) {
+      if (strips && name_of(e) == "mesh" && e.Attribute("file") != nullptr)
+        e.SetAttribute("file", fs::path(text(e, "file")).filename().c_str());
+      return true;
+    });
+  }
+
   // <attach model=".."/> by what it stands for, whose own files are looked for in its own folder
   void attach(XMLElement& root, const fs::path& folder, int depth) {
     if (depth > 20) fail(root, "models are attached to each other in a ring");
@@ -157,6 +174,7 @@ class Import {
       model.folder = (folder / file).parent_path().string();
       include(other, model.folder, 0);
       problems_.raise();
+      strip_paths(other);
       attach(other, model.folder, depth + 1);
     });
   }
@@ -480,9 +498,20 @@ class Import {
       }
       return true;
     });
-    XMLElement* const compiler = root.InsertNewChildElement("compiler");
-    if (!said) compiler->SetAttribute("autolimits", true);
-    compiler->SetAttribute("meshdir", (fs::absolute(path_).parent_path() / folder).c_str());
+    if (!said) root.InsertNewChildElement("compiler")->SetAttribute("autolimits", true);
+    set_mesh_paths(root, fs::absolute(path_).parent_path() / folder);
+  }
+
+  // of the meshes that are left
+  void set_mesh_paths(XMLElement& root, const fs::path& folder) const {
+    each(root, [&](XMLElement& e) {
+      if (name_of(e) != "mesh" || e.Attribute("file") == nullptr) return true;
+      const fs::path file = folder / text(e, "file");
+      e.SetAttribute("file", options_.folder.empty()
+                                 ? file.c_str()
+                                 : fs::proximate(file, options_.folder).c_str());
+      return true;
+    });
   }
 
   // on joints that follow no other

@@ -21,6 +21,9 @@ struct ImportOptions {
   /// Bodies that move without a mass are no error, and get one that means nothing: for whoever
   /// finds out what they have.
   bool masses_unknown = false;
+  /// From which the text names the files of meshes, as MuJoCo does from its own; "": by their whole
+  /// paths, for a text that is in no folder.
+  std::string folder = "";
 
   /// Whether the file is to be taken as it is.
   bool changes_nothing() const { return lock.empty() && measured.empty(); }

@@ -53,7 +53,7 @@ struct Kept {
 inline constexpr Kept kKept[] = {
     {"compiler",
      " boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq "
-     "inertiafromgeom inertiagrouprange autolimits assetdir meshdir strippath fitaabb "
+     "inertiafromgeom inertiagrouprange autolimits assetdir meshdir fitaabb "
      "exactmeshinertia "},
     {"option",
      " timestep impratio gravity wind density viscosity solver iterations tolerance "
