@@ -138,14 +138,15 @@ void BagRows::look_ahead() {
       }
     }
   }
+  const std::string end = messages_->note();
   messages_->rewind();
   if (type_->lists() == 0) missing.clear();
   called_ = joints_;
   if (any && (missing.empty() || find_by_prefix(named))) return;
   if (any) fail_missing(missing, named);
-  throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}",
+  throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}{}",
                                        messages_->path(), printable_name(messages_->topic().name),
-                                       first));
+                                       first, end.empty() ? "" : "; " + end));
 }
 
 // of the fields without names how many there are, if any is finite
@@ -298,7 +299,7 @@ bool BagRows::next_message(std::vector<double>& row, SkippedRows& skipped) {
     }
     if (!find_joints(numbers_)) continue;
     fill(row, numbers_);
-    row[0] = use_stamps_ ? stamp_of(numbers_) : message.received;
+    last_ = row[0] = use_stamps_ ? stamp_of(numbers_) : message.received;
     channel_ = message.channel;
     return true;
   }
@@ -338,13 +339,20 @@ void BagRows::fill(std::vector<double>& row, const MessageNumbers& message) cons
   }
 }
 
+// of a bag without its end: how far it goes
+std::string BagRows::note_of_end() const {
+  const std::string note = messages_->note();
+  if (note.empty()) return "";
+  return fmt::format("{}; {} messages were read, the last of t = {:.3f} s", note, read_, last_);
+}
+
 void BagRows::note_strangers(SkippedRows& skipped) {
-  for (std::string note : {std::exchange(note_, ""), messages_->note()})
+  if (std::exchange(noted_, true)) return;
+  for (std::string note : {note_, note_of_end()})
     if (!note.empty()) skipped.notes.push_back(std::move(note));
   if (with_strangers_ == 0) return;
   skipped.notes.push_back(fmt::format("{} messages name other joints, which are left out: {}",
                                       with_strangers_, listed(strangers_)));
-  with_strangers_ = 0;
 }
 
 }  // namespace tauext

@@ -80,6 +80,7 @@ class BagRows : public RowSource {
   void fill(std::vector<double>& row, const MessageNumbers& message) const;
   bool next_message(std::vector<double>& row, SkippedRows& skipped);
   bool take_into(std::vector<double>& row) const;
+  std::string note_of_end() const;
   void note_strangers(SkippedRows& skipped);
 
   std::unique_ptr<BagMessages> messages_;
@@ -93,11 +94,12 @@ class BagRows : public RowSource {
   std::vector<std::vector<int>> at_;  // of each list of names the joints, or -1
   bool use_stamps_ = false;
   long number_ = 0, read_ = 0, with_strangers_ = 0;
+  double last_ = 0;           // [s] of the message that was read last
   MessageNumbers numbers_;    // of the message that was read last
   std::int64_t channel_ = 0;  // likewise
   // of several topics of JSON: its row, which the next ones may add to
   std::vector<double> ahead_;
-  bool joins_ = false, ended_ = false;
+  bool joins_ = false, ended_ = false, noted_ = false;
   std::set<std::string> strangers_;  // joints that are not ours, the first few
 };
 

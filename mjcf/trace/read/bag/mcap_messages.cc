@@ -22,6 +22,10 @@ constexpr std::uint8_t kFooter = 2, kSchema = 3, kChannel = 4, kMessage = 5, kCh
 constexpr std::uint64_t kMagicSize = 8, kHeadSize = 9, kFooterSize = 20;  // [bytes]
 constexpr std::uint64_t kMostOfChunk = 256 << 20;                         // [bytes]
 
+[[noreturn]] void fail_damaged(const ByteFile& file, std::string_view what) {
+  file.fail(fmt::format("is damaged: {}; `mcap recover` makes a file of what is whole", what));
+}
+
 // the fields of a record in their order
 class Fields {
  public:
@@ -35,7 +39,7 @@ class Fields {
 
  private:
   std::string_view take(std::uint64_t size) {
-    if (size > bytes_.size()) file_.fail("is damaged: a record is shorter than its fields");
+    if (size > bytes_.size()) fail_damaged(file_, "a record is shorter than its fields");
     const std::string_view some = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return some;
@@ -56,6 +60,7 @@ McapMessages::McapMessages(const std::string& path) : file_(path) {
   // a file that was not closed has no summary, and who writes one may leave them out
   if (channels_.empty() || std::any_of(channels_.begin(), channels_.end(), lacks_schema))
     for (Record record; next_record(record);) learn(record);
+  if (channels_.empty() && lost_) file_.fail(note());
   std::vector<BagTopic> topics;
   for (const auto& [id, c] : channels_)
     topics.push_back({c.topic, schemas_[c.schema].type, c.encoding});
@@ -75,12 +80,17 @@ void McapMessages::select() {
 
 void McapMessages::rewind() {
   at_ = kMagicSize, end_ = file_.size();
-  cut_off_ = false;
+  ended_ = false, lost_.reset();
   chunk_.clear(), chunk_at_ = 0;
 }
 
 std::string McapMessages::note() const {
-  return cut_off_ ? "it ends too early: read up to its last whole record" : "";
+  if (!lost_) return "";
+  return *lost_ == 0 ? "it was not closed, so its last messages may be missing"
+                     : fmt::format(
+                           "it ends too early: the last {} of its {} bytes are no whole "
+                           "record, and are not read",
+                           *lost_, file_.size());
 }
 
 // the channels that stand at the end of a file that was closed
@@ -112,22 +122,27 @@ void McapMessages::learn(const Record& record) {
   }
 }
 
+// @returns false
+// @param closed whether the file says that it ends here
+bool McapMessages::end(bool closed) {
+  if (!ended_ && !closed) lost_ = file_.size() - at_;
+  ended_ = true;
+  return false;
+}
+
 // false at the end; of messages that are too long the size alone
 bool McapMessages::next_record(Record& record) {
   while (!next_in_chunk(record)) {
-    if (at_ == end_) return false;
+    if (ended_ || at_ == end_) return end(end_ < file_.size());
     std::string head(kHeadSize, '\0');
-    cut_off_ = !file_.has(at_, kHeadSize);
-    if (cut_off_) return false;
+    if (!file_.has(at_, kHeadSize)) return end(false);
     file_.read(at_, head.data(), head.size());
     Fields f(file_, head);
     record.kind = static_cast<std::uint8_t>(f.number(1));
     record.size = f.number(8);
-    cut_off_ = !file_.has(at_ + kHeadSize, record.size);
-    if (cut_off_ || record.kind == op::kEnd || record.kind == op::kFooter) {
-      at_ = end_;
-      return false;
-    }
+    // a disk that lost its power leaves zeros, of which no record is made
+    if (record.kind == 0 || !file_.has(at_ + kHeadSize, record.size)) return end(false);
+    if (record.kind == op::kEnd || record.kind == op::kFooter) return end(true);
     at_ += kHeadSize;
     const std::uint64_t begin = std::exchange(at_, at_ + record.size);
     if (record.kind == op::kChunk) {
@@ -149,7 +164,7 @@ bool McapMessages::next_in_chunk(Record& record) {
   Fields f(file_, std::string_view(chunk_).substr(chunk_at_));
   record.kind = static_cast<std::uint8_t>(f.number(1));
   record.size = f.number(8);
-  if (record.size > f.rest().size()) file_.fail("is damaged: a record ends behind its chunk");
+  if (record.size > f.rest().size()) fail_damaged(file_, "a record ends behind its chunk");
   record.bytes = f.rest().substr(0, record.size);
   chunk_at_ += kHeadSize + record.size;
   return true;
@@ -167,7 +182,7 @@ void McapMessages::open_chunk(std::uint64_t begin) {
   const std::string compression(f.text());
   const std::uint64_t packed = f.number(8);
   if (size > kMostOfChunk) file_.fail("has a chunk of more than 256 MB");
-  if (packed > f.rest().size()) file_.fail("is damaged: a chunk is shorter than it says");
+  if (packed > f.rest().size()) fail_damaged(file_, "a chunk is shorter than it says");
   const std::string_view bytes = f.rest().substr(0, packed);
   if (compression.empty()) {
     chunk_ = bytes;
@@ -178,7 +193,7 @@ void McapMessages::open_chunk(std::uint64_t begin) {
                            printable_name(compression)));
   }
   if (chunk_.size() != size || (crc != 0 && crc != crc32_of(0, chunk_.data(), chunk_.size())))
-    file_.fail("is damaged: the bytes of a chunk do not have its checksum");
+    fail_damaged(file_, "the bytes of a chunk do not have its checksum");
   chunk_at_ = 0;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -44,6 +45,7 @@ class McapMessages final : public BagMessages {
   };
 
   bool next_record(Record& record);
+  bool end(bool closed);
   bool next_in_chunk(Record& record);
   void open_chunk(std::uint64_t size);
   void read_summary();
@@ -51,7 +53,8 @@ class McapMessages final : public BagMessages {
 
   ByteFile file_;
   std::uint64_t at_ = 0, end_ = 0;  // in the file: the next record; where they end
-  bool cut_off_ = false;
+  bool ended_ = false;
+  std::optional<std::uint64_t> lost_;  // [bytes] behind the last record of a file without its end
   std::string record_, chunk_;
   std::size_t chunk_at_ = 0;
   std::map<std::uint16_t, Schema> schemas_;

@@ -40,8 +40,14 @@ void refuse_cut_off(const ByteFile& file) {
   };
   const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
   const std::uint64_t whole = number(24, 4) == number(92, 4) ? page * number(28, 4) : header.size();
-  if (file.size() < whole) file.fail(fmt::format("is cut off: {} of {} bytes", file.size(), whole));
-  if (page == 0 || file.size() % page != 0) file.fail("is cut off within a page");
+  const std::string remedy = fmt::format(
+      "; sqlite3 {} .dump | sed 's/^ROLLBACK.*/COMMIT;/' | sqlite3 whole.db3 saves what SQLite "
+      "still "
+      "finds in it",
+      file.path());
+  if (file.size() < whole)
+    file.fail(fmt::format("is cut off: {} of {} bytes{}", file.size(), whole, remedy));
+  if (page == 0 || file.size() % page != 0) file.fail("is cut off within a page" + remedy);
 }
 
 // these would have to be written into the file, or be missed

@@ -116,6 +116,8 @@ TEST_F(Parts, ThatAreCompressedAreReadAndLeaveNothingBehind) {
     const std::string file = put(bytes.substr(0, n), "cut.db3.zst");
     const std::string error = error_of([&] { rows_of(BagRows(file)); });
     EXPECT_TRUE(error.starts_with(file + ": ")) << error;
+    EXPECT_TRUE(error.ends_with("; zstd -dc " + file + " > part.db3 gets what is before that"))
+        << n << ": " << error;
   }
   EXPECT_TRUE(fs::is_empty(path("empty")));
   fs::remove(path("empty"));

@@ -176,7 +176,11 @@ TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {
   const Trace t =
       read_csv(written(std::string(kHead) + "0,1,2,3,4,5,6\n0.001,1,2,3,4,5,-5"), &skipped);
   EXPECT_EQ(t.size(), 1);
-  EXPECT_EQ(skipped.first.at(0), "line 3: the last line is incomplete");
+  EXPECT_EQ(skipped.first.at(0), "line 3: the last line has no end: the file may be cut off there");
+  SkippedRows less;
+  EXPECT_EQ(read_csv(written(std::string(kHead) + "0,1,2,3,4,5,6\n0.001,1,2,-"), &less).size(), 1);
+  EXPECT_EQ(less.first, skipped.first);
+  EXPECT_EQ(less.total(), 1);
 }
 
 TEST_F(TraceFile, HalfATruthIsRefused) {

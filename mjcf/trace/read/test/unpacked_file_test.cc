@@ -2,8 +2,10 @@
 // Compressed text, as the programs of the same names write it; and files that are no recordings.
 #include "mjcf/trace/read/text/unpacked_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 #include <utility>
 
@@ -56,12 +58,17 @@ TEST_F(Unpacked, ATextIsTheSameWhateverItsNameIs) {
 }
 
 // a file that ends early; and for kinds that have a checksum, a wrong number in it
-TEST_F(Unpacked, DamageIsAnErrorThatNamesTheFile) {
+TEST_F(Unpacked, DamageIsAnErrorThatNamesTheFileAndWhatSavesTheRest) {
+  const std::map<std::string, std::string> programs = {
+      {"gz", "gzip"}, {"xz", "xz"}, {"bz2", "bzip2"}, {"zst", "zstd"}, {"lz4", "lz4"}};
   for (const auto& [kind, hex] : kPacked) {
     const std::string bytes = bytes_of_hex(hex);
     const std::string cut = put(bytes.substr(0, bytes.size() / 2), "cut.csv."s + kind);
     const std::string error = error_of([&] { rows_of(std::move(*open_rows(cut))); });
-    EXPECT_TRUE(error.starts_with(cut + ": ")) << kind << ": " << error;
+    EXPECT_TRUE(error.starts_with(cut + ": cannot be unpacked: ")) << kind << ": " << error;
+    EXPECT_TRUE(error.ends_with(
+        fmt::format("; {} -dc {} > part.csv gets what is before that", programs.at(kind), cut)))
+        << kind << ": " << error;
     if (kind == "gz"s || kind == "xz"s) {
       std::string wrong = bytes;
       wrong[kind == "gz"s ? wrong.size() - 8 : wrong.size() - 30] ^= 1;

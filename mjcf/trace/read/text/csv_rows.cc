@@ -234,9 +234,9 @@ bool CsvRows::next(std::vector<double>& row, SkippedRows& skipped) {
   for (std::string_view line; next_line(line);) {
     if (line.empty() || is_comment(line)) continue;
     std::string reason = parse(line, row, skipped);
-    if (reason.empty() && cut_off_) {  // the last number may be
-      ++skipped.wrong_field_count;
-      reason = "the last line is incomplete";
+    if (cut_off_) {  // and so may be its last number
+      if (reason.empty()) ++skipped.wrong_field_count;
+      reason = "the last line has no end: the file may be cut off there";
     }
     if (reason.empty()) return true;
     skipped.say(number_, reason);

@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -25,12 +26,36 @@
 namespace tauext {
 namespace {
 
-constexpr std::string_view kGzip = "\x1f\x8b";
-constexpr std::string_view kMagic[] = {kGzip, std::string_view("\xfd\x37zXZ\0", 6),
-                                       "\x28\xb5\x2f\xfd", "BZh", "\x04\x22\x4d\x18"};
+// how what a program has packed begins
+struct Packer {
+  std::string_view magic, program;
+};
+constexpr std::string_view kGzip = "gzip";
+constexpr Packer kPackers[] = {{"\x1f\x8b", kGzip},
+                               {std::string_view("\xfd\x37zXZ\0", 6), "xz"},
+                               {"\x28\xb5\x2f\xfd", "zstd"},
+                               {"BZh", "bzip2"},
+                               {"\x04\x22\x4d\x18", "lz4"}};
+
+// "": of none
+std::string_view packer_of(std::string_view begin) {
+  for (const Packer& p : kPackers)
+    if (begin.starts_with(p.magic)) return p.program;
+  return "";
+}
 
 [[noreturn]] void fail(const std::string& path, const std::string& why) {
   throw std::runtime_error(fmt::format("{}: {}", path, why));
+}
+
+// "run.csv.zst" is part.csv without it
+[[noreturn]] void fail_unpacking(const std::string& path, std::string_view program,
+                                 std::string_view why) {
+  const std::string remedy =
+      program.empty() ? ""
+                      : fmt::format("; {} -dc {} > part{} gets what is before that", program, path,
+                                    std::filesystem::path(path).stem().extension().string());
+  fail(path, one_line(fmt::format("cannot be unpacked: {}{}", why, remedy)));
 }
 
 using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -46,8 +71,7 @@ Stream opened(const std::string& path) {
 }  // namespace
 
 bool is_compressed(std::string_view begin) {
-  return std::any_of(std::begin(kMagic), std::end(kMagic),
-                     [&](std::string_view magic) { return begin.starts_with(magic); });
+  return !packer_of(begin).empty();
 }
 
 namespace detail {
@@ -56,10 +80,10 @@ namespace detail {
 
 class Unpacker {
  public:
-  explicit Unpacker(const std::string& path) : Unpacker(path, nullptr) {}
-  // of these bytes, which must outlive it; nullptr: the file's
-  Unpacker(const std::string& path, const std::string_view* bytes)
-      : path_(path), archive_(archive_read_new(), archive_read_free) {
+  // of a file that this program has packed, or of bytes in it, which must outlive this
+  Unpacker(const std::string& path, std::string_view program,
+           const std::string_view* bytes = nullptr)
+      : path_(path), program_(program), archive_(archive_read_new(), archive_read_free) {
     if (!archive_) throw std::bad_alloc();
     for (auto* knows : {archive_read_support_filter_xz, archive_read_support_filter_zstd,
                         archive_read_support_filter_bzip2, archive_read_support_filter_lz4,
@@ -83,11 +107,11 @@ class Unpacker {
   void require(int code) const {
     if (code == ARCHIVE_OK) return;
     const char* const why = archive_error_string(archive_.get());
-    fail(path_,
-         one_line(fmt::format("cannot be unpacked: {}", why == nullptr ? "it is damaged" : why)));
+    fail_unpacking(path_, program_, why == nullptr ? "it is damaged" : why);
   }
 
   std::string path_;
+  std::string_view program_;
   std::unique_ptr<archive, int (*)(archive*)> archive_;
 };
 
@@ -95,7 +119,7 @@ class Unpacker {
 
 class Unpacker {
  public:
-  explicit Unpacker(const std::string& path, const std::string_view* = nullptr) {
+  Unpacker(const std::string& path, std::string_view, const std::string_view* = nullptr) {
     fail(path,
          "is compressed, and what unpacks it is left out of this build: install Debian's "
          "libarchive-dev, and build again");
@@ -118,9 +142,9 @@ class Gunzipper {
   std::size_t read(char* to, std::size_t most) {
     const int got = ::gzread(file_.get(), to, static_cast<unsigned>(std::min(most, kMost)));
     int code = Z_OK;
-    const char* const why = ::gzerror(file_.get(), &code);
-    if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
-      fail(path_, one_line(fmt::format("cannot be unpacked: {}", why)));
+    std::string_view why = ::gzerror(file_.get(), &code);
+    if (why.starts_with(path_ + ": ")) why.remove_prefix(path_.size() + 2);
+    if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) fail_unpacking(path_, kGzip, why);
     return static_cast<std::size_t>(got);
   }
 
@@ -159,7 +183,7 @@ std::uint32_t crc32_of(std::uint32_t, const void*, std::size_t) {
 #endif
 
 std::string unpacked(std::string_view bytes, std::size_t size, const std::string& path) {
-  detail::Unpacker from(path, &bytes);
+  detail::Unpacker from(path, "", &bytes);
   std::string all(size + 1, '\0');
   std::size_t got = 0;
   for (std::size_t some = 1; some > 0 && got < all.size(); got += some)
@@ -173,10 +197,11 @@ struct UnpackedFile::Source {
     std::array<char, 8> begin{};
     const std::size_t size = std::fread(begin.data(), 1, begin.size(), file.get());
     const std::string_view bytes(begin.data(), size);
-    if (bytes.starts_with(kGzip)) {
+    const std::string_view packer = packer_of(bytes);
+    if (packer == kGzip) {
       gzip.emplace(path);
-    } else if (is_compressed(bytes)) {
-      packed.emplace(path);
+    } else if (!packer.empty()) {
+      packed.emplace(path, packer);
     } else {
       first.assign(begin.data(), size);  // a pipe has no way back
     }
