@@ -87,6 +87,15 @@ std::string nearly(const std::string& expression, const std::vector<std::string>
   return "";
 }
 
+// "'q1'", "'q1' to 'q6'"
+std::string named(const std::vector<int>& which, const std::vector<std::string>& columns) {
+  const auto name = [&](int c) {
+    return '\'' + printable_name(columns[static_cast<std::size_t>(c)]) + '\'';
+  };
+  return which.size() == 1 ? name(which[0])
+                           : fmt::format("{} to {}", name(which.front()), name(which.back()));
+}
+
 // those of one number are in the order of the file, which somebody has to have said
 void require_order(const std::vector<std::pair<int, int>>& numbered, std::string_view quantity,
                    const std::string& expression, const std::string& path) {
@@ -137,7 +146,7 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
   for (const int c : found) {
     if (std::count(found.begin(), found.end(), c) > 1)
       throw std::runtime_error(
-          fmt::format("{}: [{}] names column {} twice", path, quantity, c + 1));
+          fmt::format("{}: [{}] names column {} twice", path, quantity, named({c}, columns)));
     const std::string& name = columns[static_cast<std::size_t>(c)];
     if (w.numbers.empty() && std::count(columns.begin(), columns.end(), name + "#2") > 0)
       throw std::runtime_error(
@@ -206,14 +215,17 @@ bool ColumnMap::leaves_order_open() const {
   return q != wanted_.end() && q->second.of_preset && order_.empty();
 }
 
-std::string ColumnMap::choose_torque(MappedColumns& found) const {
+std::string ColumnMap::choose_torque(MappedColumns& found,
+                                     const std::vector<std::string>& columns) const {
   const auto current = found.find("current");
   if (current == found.end() || !wanted_.find("current")->second.of_preset) return "";
   for (const std::string_view name : kTorques) {
     if (name == "current" || found.find(name) == found.end()) continue;
+    std::string note = fmt::format(
+        "tau is read from {}, and not made of {}; a map with [current] does that",
+        named(found.find(name)->second.columns, columns), named(current->second.columns, columns));
     found.erase(current);
-    return fmt::format(
-        "tau is read from [{}] of the preset; a map with [current] reads the currents", name);
+    return note;
   }
   return "";
 }
@@ -262,8 +274,8 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
       const auto shared = std::find_first_of(m.columns.begin(), m.columns.end(),
                                              other.columns.begin(), other.columns.end());
       if (shared != m.columns.end())
-        throw std::runtime_error(
-            fmt::format("{}: column {} is both [{}] and [{}]", path, *shared + 1, name, q.name));
+        throw std::runtime_error(fmt::format("{}: column {} is both [{}] and [{}]", path,
+                                             named({*shared}, columns), name, q.name));
     }
     all.emplace(q.name, std::move(m));
   }
@@ -329,20 +341,24 @@ class LayoutMaker {
     const MappedQuantity* const m = find(name);
     if (m == nullptr) return -1;
     if (static_cast<int>(m->columns.size()) == count) return append(name, *m);
-    const std::string wanted = count == l_.dof ? fmt::format("{} columns are q", count)
-                                               : fmt::format("{} columns are wanted", count);
-    throw std::runtime_error(
-        fmt::format("{}: {}, and {} are {}", path_, wanted, m->columns.size(), name));
+    const std::string wanted = count == l_.dof ? "as q has" : "are wanted";
+    throw std::runtime_error(fmt::format("{}: [{}] has {} columns ({}), and not {}, {}", path_,
+                                         name, m->columns.size(), named(m->columns, columns_),
+                                         count, wanted));
   }
 
   int add_torque() {
     int at = -1;
+    std::string_view first;
     for (const std::string_view name : kTorques) {
       if (find(name) == nullptr) continue;
       if (at >= 0)
-        throw std::runtime_error(fmt::format(
-            "{}: has {}, and another torque, too: the map must choose one of them", path_, name));
+        throw std::runtime_error(
+            fmt::format("{}: {} are [{}], and {} are [{}]: the map must choose one of them", path_,
+                        named(find(first)->columns, columns_), first,
+                        named(find(name)->columns, columns_), name));
       at = add(name);
+      first = name;
       l_.instants = !find(name)->held.value_or(name == "tau");
       l_.currents = name == "current" && !find(name)->has_gain;
       l_.without_gravity = name == "tau_without_gravity";

@@ -82,7 +82,7 @@ class ColumnMap {
   std::vector<std::string> missing_in(const MappedColumns& found) const;
 
   /// Where a preset finds currents beside a torque, leaves the torque, and says so; else "".
-  std::string choose_torque(MappedColumns& found) const;
+  std::string choose_torque(MappedColumns& found, const std::vector<std::string>& columns) const;
 
   /// Whether it says nothing of which joint is which: its q is a preset's, and it has no `order`.
   bool leaves_order_open() const;

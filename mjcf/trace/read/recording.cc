@@ -301,7 +301,7 @@ struct RecordingReader::Impl {
     if (map.rate() > 0)
       skipped.notes.push_back(
           fmt::format("the time is counted, {:g} rows a second, as the map says", map.rate()));
-    if (std::string note = map.choose_torque(all); !note.empty())
+    if (std::string note = map.choose_torque(all, rows->columns()); !note.empty())
       skipped.notes.push_back(std::move(note));
     const std::vector<int>& q = all.at("q").columns;
     if (is_bag(path) && joints.empty() && map.leaves_order_open() && q.size() > 1 &&

@@ -272,8 +272,9 @@ TEST_F(Columns, OfAMapThatIsNoneAreRefusedWithTheLine) {
               "[q] has 1 columns, and `order` names joint 2");
   expect_says(error_of_map("order=[1,1]\n[t]\ncolumns='a'\n[q]\ncolumns=[2]"),
               "`order` names joint 1 of the recording twice");
-  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=['b','b']"), "[q] names column 2 twice");
-  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1]"), "column 1 is both [t] and [q]");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=['b','b']"),
+              "[q] names column 'b' twice");
+  expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1]"), "column 'a' is both [t] and [q]");
   expect_says(error_of_map("[t]\ncolumns='a'\n[q]\ncolumns=[1,2]\ngain=[1,2,3]"),
               "[q] has 2 columns, and the map 3 gains");
   expect_says(error_of([&] { read("a,b\n", "nowhere.toml"); }), "nowhere.toml: No such file");

@@ -94,9 +94,11 @@ TEST_F(TraceFile, TorqueReadAtInstantsSaysSoInItsName) {
   EXPECT_FALSE(
       read_csv(written(std::string(kHead) + "0,0,0,0,0,0,0\n"), &skipped).torque_at_instants);
   EXPECT_EQ(error_of_reading("t,q1,qd1,tau1,tau_instant1\n0,0,0,0,0\n"),
-            path() + ": has tau_instant, and another torque, too: the map must choose one of them");
+            path() +
+                ": 'tau1' are [tau], and 'tau_instant1' are [tau_instant]: the map must choose one "
+                "of them");
   EXPECT_EQ(error_of_reading("t,q1,q2,qd1,qd2,tau_instant1\n0,0,0,0,0,0\n"),
-            path() + ": 2 columns are q, and 1 are tau_instant");
+            path() + ": [tau_instant] has 1 columns ('tau_instant1'), and not 2, as q has");
 }
 
 TEST_F(TraceFile, BadRowsAreSkippedAndCountedByReason) {
@@ -185,7 +187,7 @@ TEST_F(TraceFile, ALastLineWithoutItsEndIsNotTrusted) {
 
 TEST_F(TraceFile, HalfATruthIsRefused) {
   EXPECT_EQ(error_of_reading("t,q1,q2,qd1,qd2,tau1,tau2,tau_ext1\n0,1,2,3,4,5,6,7\n"),
-            path() + ": 2 columns are q, and 1 are tau_ext");
+            path() + ": [tau_ext] has 1 columns ('tau_ext1'), and not 2, as q has");
 }
 
 TEST_F(TraceFile, ColumnsAreFoundByNameInAnyOrder) {
