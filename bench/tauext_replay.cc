@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tauext-replay: runs estimators over a recorded log.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/logs/lcm_trace.h"
@@ -84,8 +86,9 @@ bool report_status(const Replayed& c, const LogReader& log) {
 // looks whether tau is what the estimators take it for
 class TorqueCheck {
  public:
+  // @param by_flag whether --torque has put their `torque` into them
   TorqueCheck(const Robot& r, const RecordingContents& log,
-              const std::vector<std::string>& estimators)
+              const std::vector<std::string>& estimators, bool by_flag)
       : estimates_(2, Eigen::VectorXd::Zero(log.dof)), weigher_(log.dof) {
     for (const std::string& e : estimators) {
       const auto fields = r.estimator_fields(name_of_specification(e));
@@ -93,9 +96,12 @@ class TorqueCheck {
                        [](const FieldHelp& h) { return h.key == "torque"; }))
         continue;
       const std::string by_log = log.torque_at_instants ? "instant" : "held";
-      assumed_[key_of(e, "torque").value_or(by_log) == "instant"] = true;
+      const auto own = key_of(e, "torque");
+      const bool instant = own.value_or(by_log) == "instant";
+      takers_[instant].push_back(with_torque(e, instant ? "held" : "instant"));
+      flag_will_do_[instant] = flag_will_do_[instant] && (by_flag || !own);
     }
-    if (!assumed_[0] && !assumed_[1]) return;
+    if (takers_[0].empty() && takers_[1].empty()) return;
     for (const char* torque : {"held", "instant"})
       observers_.push_back(
           r.stepper(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", Trace()));
@@ -116,18 +122,35 @@ class TorqueCheck {
     const double samples = static_cast<double>(std::max<std::int64_t>(log.samples - 1, 1));
     const auto w = weigher_.weight(kBandwidth, (log.to - log.from) / samples);
     for (const bool instant : {false, true}) {
-      if (!w || !assumed_[instant] || !w->contradicts(instant)) continue;
+      if (!w || takers_[instant].empty() || !w->contradicts(instant)) continue;
+      constexpr const char* kHow[] = {"held from each t", "read at each t"};
       say(fmt::format(
-          "tau seems to be {} t (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken as "
-          "the other: see --torque",
-          instant ? "held from each" : "read at each", w->weight, w->sure));
+          "tau seems to be {} (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken as {}; "
+          "use {}",
+          kHow[!instant], w->weight, w->sure, kHow[instant], remedy(instant)));
     }
   }
 
  private:
   static constexpr double kBandwidth = 30;  // [rad/s]
 
-  std::array<bool, 2> assumed_{};  // held, read at instants
+  static std::string with_torque(std::string estimator, const char* torque) {
+    constexpr std::string_view kKey = ":torque=";
+    if (const std::size_t at = estimator.find(kKey); at != estimator.npos)
+      estimator.erase(at, estimator.find(':', at + 1) - at);
+    return estimator + std::string(kKey) + torque;
+  }
+
+  // of those that take tau so
+  std::string remedy(bool instant) const {
+    if (flag_will_do_[instant]) return instant ? "--torque held" : "--torque instant";
+    return fmt::format("--estimator {}", fmt::join(takers_[instant], ","));
+  }
+
+  // of tau as held, and as read at instants: who takes it so, as it would have to be written to
+  // take it the other way; and whether --torque says that of all of them
+  std::array<std::vector<std::string>, 2> takers_;
+  std::array<bool, 2> flag_will_do_{true, true};
   std::vector<std::unique_ptr<Stepper>> observers_;
   std::vector<Eigen::VectorXd> estimates_;
   TorqueWeigher weigher_;
@@ -232,7 +255,7 @@ int replay(Flags& f) {
                      r.stepper(e, f.detector, truth, settings[i]), contents);
   }
   truth = Trace();
-  TorqueCheck torque(r, contents, f.estimators);
+  TorqueCheck torque(r, contents, f.estimators, !f.torque.empty());
   const auto out = estimates_writer(f.out, all, recorded);
   for (RecordedSample sample; log.next(sample);) {
     for (Replayed& c : all) c.take(sample);

@@ -139,8 +139,15 @@ TEST_F(Programs, ReplaySaysWhereTheTorqueIsReadTheWrongWay) {
   ASSERT_EQ(run("tauext-record --robot wallmobot3 --scenario free --out log.csv").code, 0);
   const std::string replay = "tauext-replay log.csv --robot wallmobot3 --out est.csv --estimator ";
   const std::string seems = "tau seems to be";
-  EXPECT_TRUE(run(replay + "mo1 --torque instant").says("tau seems to be held from each t"));
+  const Outcome wrong = run(replay + "mo1 --torque instant");
+  EXPECT_TRUE(wrong.says("tau seems to be held from each t (weight ")) << wrong.text;
+  EXPECT_TRUE(wrong.says("and is taken as read at each t; use --torque held\n")) << wrong.text;
+  EXPECT_FALSE(run(replay + "mo1 --torque held").says(seems));
   EXPECT_FALSE(run(replay + "mo1").says(seems));
+  // where an estimator says it, --torque would be an error
+  const Outcome own = run(replay + "mo1:torque=instant:bandwidth=20");
+  EXPECT_TRUE(own.says("use --estimator mo1:bandwidth=20:torque=held\n")) << own.text;
+  EXPECT_FALSE(run(replay + "mo1:bandwidth=20:torque=held").says(seems));
   EXPECT_FALSE(run(replay + "zero").says(seems)) << "which reads no torque";
   std::string log = content("log.csv");  // in contact all the time, it tells nothing
   for (std::size_t at = log.find('\n'); (at = log.find(",0\n", at)) != log.npos; ++at)
