@@ -26,6 +26,8 @@ class RowSource {
   virtual bool next(std::vector<double>& row, SkippedRows& skipped) = 0;
   /// Columns that matter, by their numbers from 0: the others may be NaN, and are not judged.
   virtual void read_only([[maybe_unused]] const std::vector<int>& wanted) {}
+  /// Columns that are not judged, either, and yet read where they hold numbers.
+  virtual void look_at([[maybe_unused]] const std::vector<int>& columns) {}
   /// Where that row stands in the file, from 1, as a user counts.
   virtual long number() const = 0;
   /// What has that number: "line", "message", "row".

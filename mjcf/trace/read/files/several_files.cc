@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <regex>
 #include <stdexcept>
@@ -178,11 +180,12 @@ class SideBySide final : public RowSource {
 
   const std::vector<std::string>& columns() const override { return columns_; }
   void read_only(const std::vector<int>& wanted) override {
+    find_twins(wanted);
+    std::vector<int> others;
+    for (const Twin& twin : twins_) others.push_back(twin.other);
     for (File& f : files_) {
-      std::vector<int> own;
-      for (const int c : wanted)
-        if (c >= f.begin && c < f.begin + f.columns()) own.push_back(c - f.begin);
-      f.rows->read_only(own);
+      f.rows->read_only(f.own(wanted));
+      f.rows->look_at(f.own(others));
     }
   }
   bool next(std::vector<double>& row, SkippedRows& skipped) override {
@@ -201,6 +204,7 @@ class SideBySide final : public RowSource {
     count(row_ - wanted, skipped);
     row.clear();
     for (const File& f : files_) row.insert(row.end(), f.row.begin(), f.row.end());
+    for (Twin& twin : twins_) twin.take(row);
     return true;
   }
   long number() const override { return files_.front().rows->number(); }
@@ -214,7 +218,62 @@ class SideBySide final : public RowSource {
     std::int64_t at = 0;  // which row it is, from 1, with those that could not be read
     std::vector<double> row;
     int columns() const { return static_cast<int>(rows->columns().size()); }
+    std::string name() const { return fs::path(path).filename().string(); }
+    bool has(int c) const { return c >= begin && c < begin + columns(); }
+    std::vector<int> own(const std::vector<int>& all) const {
+      std::vector<int> some;
+      for (const int c : all)
+        if (has(c)) some.push_back(c - begin);
+      return some;
+    }
   };
+  // a column that is read of the file with the time, and one of that name in another file that is
+  // not read
+  struct Twin {
+    int one, other;
+    std::string name, where, elsewhere;  // the files of both
+    double least = kNever, most = -kNever, apart = 0;
+
+    void take(const std::vector<double>& row) {
+      const double a = row[static_cast<std::size_t>(one)], b = row[static_cast<std::size_t>(other)];
+      if (!std::isfinite(a) || !std::isfinite(b)) return;
+      least = std::min(least, a), most = std::max(most, a);
+      apart = std::max(apart, std::abs(a - b));
+    }
+  };
+
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  void find_twins(const std::vector<int>& wanted) {
+    twins_.clear();
+    const auto is_wanted = [&](int c) {
+      return std::find(wanted.begin(), wanted.end(), c) != wanted.end();
+    };
+    const auto each_column = [this](auto&& visit) {
+      for (const File& f : files_)
+        for (int k = 0; k < f.columns(); ++k)
+          visit(f, f.begin + k, f.rows->columns()[static_cast<std::size_t>(k)]);
+    };
+    each_column([&](const File& f, int one, const std::string& name) {
+      if (!is_wanted(one) || !f.has(wanted.front())) return;
+      each_column([&](const File& g, int other, const std::string& its) {
+        if (&f != &g && its == name && !is_wanted(other))
+          twins_.push_back({one, other, name, f.name(), g.name()});
+      });
+    });
+  }
+
+  // of twins that are more apart than by rounding, or by the times of two topics
+  void note_twins(SkippedRows& skipped) const {
+    constexpr double kSame = 0.01;  // [1] of what a column varies by
+    for (const Twin& twin : twins_)
+      if (twin.apart > 0 && twin.apart > kSame * (twin.most - twin.least))
+        return skipped.notes.push_back(fmt::format(
+            "column '{}' of {} is up to {:.3g} away from that of {}: are these files of one "
+            "recording?",
+            printable_name(twin.name), printable_name(twin.elsewhere), twin.apart,
+            printable_name(twin.where)));
+  }
 
   void open_one(const std::string& path, const std::string& prefix, const OpenRows& open) {
     files_.push_back({path, open(path), static_cast<int>(columns_.size()), 0, {}});
@@ -227,7 +286,7 @@ class SideBySide final : public RowSource {
     const bool any = f.rows->next(f.row, here);
     f.at += here.total() + (any ? 1 : 0);
     bad_fields_ = bad_fields_ || here.wrong_field_count > 0;
-    add_words(skipped, here, fs::path(f.path).filename().string());
+    add_words(skipped, here, f.name());
     return any;
   }
 
@@ -239,6 +298,7 @@ class SideBySide final : public RowSource {
   // one of them is at its end, as all must be
   bool finish(const File& ended, std::int64_t wanted, SkippedRows& skipped) {
     ended_ = true;
+    note_twins(skipped);
     count(ended.at - wanted + 1, skipped);
     for (File& f : files_) {
       if (&f == &ended) continue;
@@ -254,6 +314,7 @@ class SideBySide final : public RowSource {
   }
 
   std::vector<File> files_;
+  std::vector<Twin> twins_;
   std::vector<std::string> columns_;
   std::int64_t row_ = 0;
   bool ended_ = false, bad_fields_ = false;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "mjcf/test/error_of.h"
@@ -125,6 +126,35 @@ TEST_F(SeveralFiles, StandSideBySide) {
   EXPECT_NE(
       error(log, map + "[qd]\nfile = 'none.csv'\ncolumns = [1]\n").find("none.csv: No such file"),
       std::string::npos);
+}
+
+// what both have, though it is read of one, is the same in both: but for digits, and for the times
+// of two topics
+TEST_F(SeveralFiles, SideBySideOfTwoRecordingsAreDoubted) {
+  const auto notes = [&](double stamp, double position, const std::string& column) {
+    std::string motion = head_, torque = "t,tau1," + column + "\n";
+    for (int k = 0; k < 100; ++k) {
+      motion += fmt::format("{:.6f},{:.6f},0,0\n", 0.01 * k, 0.001 * k);
+      torque += std::isnan(stamp)
+                    ? "12:30,1,none\n"
+                    : fmt::format("{:.9f},1,{:.9f}\n", 0.01 * k + stamp, 0.001 * k + position);
+    }
+    skipped_ = {};
+    put(torque, "torque.csv");
+    const Trace t = read(put(motion, "motion.csv"),
+                         "preset = 'tauext'\n[tau]\nfile = 'torque.csv'\ncolumns = ['tau1']\n");
+    EXPECT_EQ(t.size(), 100);
+    return skipped_.notes;
+  };
+  using Notes = std::vector<std::string>;
+  EXPECT_EQ(notes(0, 0, "q1"), Notes{});
+  EXPECT_EQ(notes(0.004, 1e-7, "q1"), Notes{});
+  EXPECT_EQ(notes(0, 5, "q2"), Notes{});
+  EXPECT_EQ(notes(NAN, 0, "q1"), Notes{}) << "which are no numbers";
+  EXPECT_EQ(notes(5, 0, "q1"), Notes{"column 't' of torque.csv is up to 5 away from that of "
+                                     "motion.csv: are these files of one recording?"});
+  EXPECT_EQ(notes(0, -0.5, "q1"), Notes{"column 'q1' of torque.csv is up to 0.5 away from that of "
+                                        "motion.csv: are these files of one recording?"});
 }
 
 }  // namespace

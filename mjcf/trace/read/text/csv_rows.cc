@@ -83,7 +83,7 @@ char separator_of(std::string_view line) {
 CsvRows::CsvRows(const std::string& path, const CsvFormat& format)
     : path_(path), format_(format), file_(path), buffer_(kChunk + kLongest + 1) {
   read_header();
-  wanted_.assign(columns_.size(), true);
+  wanted_.assign(columns_.size(), Use::kNumber);
 }
 
 // false at the end of the file
@@ -192,8 +192,12 @@ void CsvRows::read_header() {
 }
 
 void CsvRows::read_only(const std::vector<int>& wanted) {
-  wanted_.assign(columns_.size(), false);
-  for (const int c : wanted) wanted_[static_cast<std::size_t>(c)] = true;
+  wanted_.assign(columns_.size(), Use::kNone);
+  for (const int c : wanted) wanted_[static_cast<std::size_t>(c)] = Use::kNumber;
+}
+
+void CsvRows::look_at(const std::vector<int>& columns) {
+  for (const int c : columns) wanted_[static_cast<std::size_t>(c)] = Use::kIfNumber;
 }
 
 // the row's numbers, or why it cannot be used
@@ -205,8 +209,12 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
   for (bool more = true; more; ++fields) {
     std::string_view field;
     more = take_field(line, field);
-    if (fields >= columns_.size() || !wanted_[fields]) continue;
+    if (fields >= columns_.size() || wanted_[fields] == Use::kNone) continue;
     double& value = row[fields];
+    if (wanted_[fields] == Use::kIfNumber) {
+      if (!number_of(field, value)) value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     if (format_.holes && is_hole(field)) {
       value = std::numeric_limits<double>::quiet_NaN();
     } else if (!number_of(field, value) && wrong.empty()) {

@@ -33,6 +33,7 @@ class CsvRows final : public RowSource {
 
   const std::vector<std::string>& columns() const override { return columns_; }
   void read_only(const std::vector<int>& wanted) override;
+  void look_at(const std::vector<int>& columns) override;
   bool next(std::vector<double>& row, SkippedRows& skipped) override;
   long number() const override { return number_; }
   std::string_view unit() const override { return "line"; }
@@ -54,7 +55,8 @@ class CsvRows final : public RowSource {
   bool at_end_ = false, cut_off_ = false;  // of the file; the last line has no end
   long number_ = 0;
   std::vector<std::string> columns_;
-  std::vector<bool> wanted_;
+  enum class Use { kNone, kIfNumber, kNumber };
+  std::vector<Use> wanted_;  // of each column
 };
 
 }  // namespace tauext
