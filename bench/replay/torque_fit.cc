@@ -22,6 +22,7 @@ constexpr double kMaxRatio = 0.1;   // [1] of mean squares: what a cause may lea
 constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
 constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
+constexpr double kMinVariedShare = 0.01;   // [1] of it, by which the motion makes it vary
 constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
 constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
@@ -320,6 +321,26 @@ std::string TorqueFit::by_rest() const {
                      listed(dead));
 }
 
+// of joints whose motion takes a torque that varies: less that, tau varies more than it does
+std::string TorqueFit::by_another_motion() const {
+  std::vector<int> joints;
+  const Windows windows = thinned(maker_.windows(), kMost);
+  const VectorXd load = VectorXd::Ones(static_cast<Eigen::Index>(windows.size()));
+  for (int j = 0; j < n_; ++j) {
+    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
+                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
+    const double least = kMinVariedShare * arm_.usual_torque[j];
+    if (misfit(windows, j, model, load) < least * least) continue;
+    if (misfit(windows, j, tau - model, load) < misfit(windows, j, tau, load)) return "";
+    joints.push_back(j + 1);
+  }
+  if (joints.size() < 2) return "";
+  return fmt::format(
+      "tau of {} does not follow the motion: less what the motion takes, it varies more than it "
+      "does by itself. Are tau and q of one recording, and is it of this robot?",
+      listed(joints));
+}
+
 bool TorqueFit::is_long_enough() const {
   return maker_.windows().size() >= kMinWindows;
 }
@@ -343,6 +364,7 @@ TorqueFit::Judgement TorqueFit::judge() const {
     if (!why.empty()) return {why + or_else, false};
   if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
   if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
+  if (std::string why = by_another_motion(); !why.empty()) return {why, false};
   if (std::string why = by_drive_unit(); !why.empty()) return {why, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;

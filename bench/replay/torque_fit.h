@@ -81,6 +81,7 @@ class TorqueFit {
   std::string by_gravity_of_file() const;
   std::string by_copies() const;
   std::string by_rest() const;
+  std::string by_another_motion() const;
 
   ArmTree arm_;
   bool gravity_added_;

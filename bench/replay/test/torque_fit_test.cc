@@ -356,6 +356,28 @@ TEST_F(TorqueFits, AnotherArmIsDoubted) {
   expect(Robot::words_of(light, robot.run("free")), "times the torque of the model");
 }
 
+// as of two files side by side that are not of one recording; of an arm that hardly moves they may
+// be loads
+TEST_F(TorqueFits, TorquesOfAnotherMotionAreADoubt) {
+  const Robot robot = arm6();
+  for (const std::string own : {"free", "in_motion"}) {
+    for (const std::string other : {"free", "in_motion", "chirp"}) {
+      Trace log = robot.run(own);
+      const Trace torques = robot.run(other);
+      const int size = std::min(log.size(), torques.size());
+      log.t.resize(static_cast<std::size_t>(size));
+      log.q.conservativeResize(Eigen::NoChange, size);
+      log.qd.conservativeResize(Eigen::NoChange, size);
+      log.tau = torques.tau.leftCols(size);
+      const std::string words = robot.words(log);
+      EXPECT_EQ(words.empty(), own == other) << own << ", " << other << ": " << words;
+      if (own == "in_motion" && own != other) expect(words, "of joints 1, 2, 3");
+      if (own == "in_motion" && own != other) expect(words, "does not follow the motion");
+      EXPECT_EQ(robot.contradiction(log), "");
+    }
+  }
+}
+
 TEST_F(TorqueFits, OutliersDecideNothing) {
   const Robot robot = arm6();
   Trace log = robot.run("in_motion");
