@@ -15,8 +15,9 @@
 #include <string>
 #include <utility>
 
+#include "bench/roster/estimator_type.h"
 #include "bench/roster/file_robot.h"
-#include "bench/roster/robot_of.h"
+#include "bench/roster/make_robot.h"
 #include "bench/roster/robots.h"
 #include "estimators/tree/tree_model.h"
 #include "mjcf/plant/any_tree.h"
@@ -48,10 +49,9 @@ template <RobotModel M, class Make>
 void register_estimator(Make make) {
   detail::require_unused();
   detail::say_if_unoptimised();
-  detail::registered_estimators<M>().push_back(
-      [make](const M& model, detail::RobotOf<M::kDof>& robot) {
-        robot.add_estimator(model, [make, model](const Trace&) { return make(model); });
-      });
+  detail::registered_estimators<M>().push_back([make](const M& model) {
+    return estimator_type(model, [make, model] { return make(model); });
+  });
 }
 
 /// A detector for every robot: D(), or D(joints) where there is no such constructor; with
@@ -63,17 +63,6 @@ void register_detector() {
   detail::say_if_unoptimised();
   detail::registered_detectors().push_back(detector_type<D>);
 }
-
-#if TAUEXT_FILE_JOINTS == 8
-namespace detail {
-// compiled in the library, as those of 1 to 3 joints are
-extern template class RobotOf<4>;
-extern template class RobotOf<5>;
-extern template class RobotOf<6>;
-extern template class RobotOf<7>;
-extern template class RobotOf<8>;
-}  // namespace detail
-#endif
 
 /// An estimator for every robot from a file, whatever its number of joints: make takes any
 /// AnyTree<N>, which is a RobotModel.

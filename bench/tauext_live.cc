@@ -52,11 +52,10 @@ std::unique_ptr<const ArmForces> forces_of(const Options& o, const Robot& r) {
   return o.wrench.empty() ? nullptr : r.forces_at(o.wrench, r.dof() >= kJointsOfMoment);
 }
 
-DetectorsOf thresholds_of(const Options& o) {
+DetectorsOf thresholds_of(const Options& o, const Robot& r) {
   const Thresholds all = o.thresholds.empty() ? Thresholds() : read_thresholds(o.thresholds);
-  return [&o, all](const std::string& estimator) {
-    return trained_for(all, with_lock(o.robot, o.lock), o.sensors.velocity_noise, estimator,
-                       o.detector);
+  return [&o, &r, all](const std::string& estimator) {
+    return trained_for(all, r, o.sensors.velocity_noise, estimator, o.detector);
   };
 }
 
@@ -70,7 +69,7 @@ RecordedLog simulate_samples(const Options& o, const Robot& r, const DetectorsOf
   const Scenario& s = scenario_of(r, o.scenario);
   Supervisor supervisor;
   if (s.reacts && !o.detector.empty()) {
-    supervisor = r.supervisor(for_drives(r, o.estimators[0], o.recording.drives), o.detector,
+    supervisor = r.supervisor(o.estimators[0], o.detector, o.recording.drives,
                               {.thresholds = thresholds(o.estimators[0])});
   }
   say(fmt::format("simulating {} s of {}", s.duration, s.name));
@@ -147,7 +146,7 @@ class Loop {
 // received
 int run_recorded(const Options& o) {
   const Robot& r = checked_robot(o);
-  const DetectorsOf thresholds = thresholds_of(o);
+  const DetectorsOf thresholds = thresholds_of(o, r);
   const auto forces = forces_of(o, r);
   if (o.from.empty()) scenario_of(r, o.scenario);  // or says that there is none
   RecordedLog log;
@@ -187,8 +186,8 @@ int run_subscribed(const Options& o) {
   const Robot& r = checked_robot(o);
   const auto forces = forces_of(o, r);
   Outlet outlet(o, title_of(o), o.rate);
-  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o), Trace(), outlet.stream(),
-                            forces.get());
+  LiveEstimation estimation(r, o.estimators, o.detector, thresholds_of(o, r), Trace(),
+                            outlet.stream(), forces.get());
   LiveReport report;
   report.subscribed = true;
   Inlet inlet(o, r, estimation, report);

@@ -75,7 +75,7 @@ Supervisor supervisor_of(const Robot& robot, const std::string& stop, const Driv
     throw std::invalid_argument(
         fmt::format("--stop {}: ESTIMATOR+DETECTOR, like ekf+pan_tompkins", stop));
   }
-  return robot.supervisor(for_drives(robot, stop.substr(0, plus), drives), stop.substr(plus + 1));
+  return robot.supervisor(stop.substr(0, plus), stop.substr(plus + 1), drives);
 }
 
 // with the torques that the robot's sensors say: whoever reads them multiplies them by its file's

@@ -104,15 +104,15 @@ class TorqueCheck {
     if (takers_[0].empty() && takers_[1].empty()) return;
     for (const char* torque : {"held", "instant"})
       observers_.push_back(
-          r.stepper(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", Trace()));
+          r.pair(fmt::format("mo2:bandwidth={}:torque={}", kBandwidth, torque), "", Trace()));
   }
 
   void take(const RecordedSample& y) {
     if (observers_.empty()) return;
     bool ok = !y.contact;
     for (std::size_t i = 0; i < observers_.size(); ++i) {
-      const Stepped s =
-          observers_[i]->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data());
+      const StepResult s =
+          observers_[i].step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data());
       ok = ok && s.status == Status::kOk;
     }
     if (ok) weigher_.take(estimates_[0].data(), estimates_[1].data());
@@ -151,7 +151,7 @@ class TorqueCheck {
   // take it the other way; and whether --torque says that of all of them
   std::array<std::vector<std::string>, 2> takers_;
   std::array<bool, 2> flag_will_do_{true, true};
-  std::vector<std::unique_ptr<Stepper>> observers_;
+  std::vector<Pair> observers_;
   std::vector<Eigen::VectorXd> estimates_;
   TorqueWeigher weigher_;
 };
@@ -203,7 +203,7 @@ std::vector<DetectorSettings> settings_of(Flags& f, const Robot& r) {
   std::vector<DetectorSettings> settings;  // of each estimator
   for (std::string& e : f.estimators) {
     r.check(e, f.detector);
-    settings.push_back({trained_for(trained, r.name(), 0, e, f.detector)});
+    settings.push_back({trained_for(trained, r, 0, e, f.detector)});
     if (f.torque.empty()) continue;
     if (key_of(e, "torque")) {
       throw std::invalid_argument(fmt::format("--torque {}: {} says it, too", f.torque, e));
@@ -247,12 +247,12 @@ int replay(Flags& f) {
     LogReader again(f.log, options);
     truth = trace_of(again);
   }
-  truth.torque_at_instants = contents.torque_at_instants;  // which a stepper looks at
+  truth.torque_at_instants = contents.torque_at_instants;  // which estimators are told
   std::vector<Replayed> all;
   for (std::size_t i = 0; i < f.estimators.size(); ++i) {
     const std::string& e = f.estimators[i];
     all.emplace_back(Replayed::Setup{e, f.detector, forces.get(), f.score_from},
-                     r.stepper(e, f.detector, truth, settings[i]), contents);
+                     r.pair(e, f.detector, truth, settings[i]), contents);
   }
   truth = Trace();
   TorqueCheck torque(r, contents, f.estimators, !f.torque.empty());

@@ -88,10 +88,10 @@ void add_ours(const Flags& f, const std::vector<OutsideRun>& runs, std::vector<R
       say(log + ": the thresholds were trained on it, so it has no false alarms by itself");
   }
   for (const std::string& e : f.ours) {
-    const DetectorSettings settings{trained_for(trained, r.name(), 0, e, f.detector)};
+    const DetectorSettings settings{trained_for(trained, r, 0, e, f.detector)};
     std::vector<OutsideEstimates> all;
     for (const OutsideRun& run : runs)
-      all.push_back({e, f.detector, r.runner(e, f.detector, *run.trace, settings)->run()});
+      all.push_back({e, f.detector, r.pair(e, f.detector, *run.trace, settings).run(*run.trace)});
     rows.push_back(runs.size() == 1 ? score_outside(runs.front(), all.front())
                                     : score_outside(runs, all));
     for (const Row& row : rows) {

@@ -180,8 +180,8 @@ class Recordings {
   Row row(const TunedPair& p) const {
     std::vector<OutsideEstimates> all;
     for (const OutsideRun& run : runs_)
-      all.push_back(
-          {p.estimator, p.detector, robot_.runner(p.estimator, p.detector, *run.trace)->run()});
+      all.push_back({p.estimator, p.detector,
+                     robot_.pair(p.estimator, p.detector, *run.trace).run(*run.trace)});
     return score_outside(runs_, all);
   }
   Scores operator()(const TunedPair& p) const { return {{row(p).score}}; }

@@ -66,10 +66,10 @@ std::vector<std::optional<Trace>> run_together(std::vector<detail::Run<TreePlant
 }  // namespace
 
 std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> scenarios,
-                                  int joints, MakeTreeMotion motion, const Recording& recording) {
+                                  const Recording& recording) {
   const std::optional<PlainArm> arm = plain_arm(model);
   std::shared_ptr<const TreeMotion> dynamics;
-  if (arm && arm->tree.dof() == joints && holds_for(*arm, recording)) dynamics = motion(*arm);
+  if (arm && holds_for(*arm, recording)) dynamics = tree_motion(*arm);
   std::vector<Trace> traces;
   for (std::size_t from = 0, n = 0; from < scenarios.size(); from += n) {
     std::vector<detail::Run<TreePlant>> runs;
@@ -87,6 +87,10 @@ std::vector<Trace> simulate_plain(const Model& model, std::span<const Scenario> 
                                : simulate(model, scenarios[from + i], recording));
   }
   return traces;
+}
+
+Trace simulate_plain(const Model& model, const Scenario& scenario, const Recording& recording) {
+  return std::move(simulate_plain(model, {&scenario, 1}, recording).front());
 }
 
 double difference(const Trace& a, const Trace& b) {

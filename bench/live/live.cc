@@ -91,19 +91,17 @@ LiveEstimation::LiveEstimation(const Robot& robot, const std::vector<std::string
   for (const std::string& e : estimators) {
     const DetectorSettings settings{.thresholds =
                                         thresholds_of ? thresholds_of(e) : DetectorThresholds()};
-    pairs_.push_back(std::make_unique<Pair>());
-    pairs_.back()->name = e;
-    pairs_.back()->stepper = robot.stepper(e, detector, trace, settings);
+    pairs_.emplace_back(new Watched{e, robot.pair(e, detector, trace, settings)});
   }
 }
 
 void LiveEstimation::take(const Reading& r) noexcept {
   sample_.reading = r;
   for (int i = 0; i < size(); ++i) {
-    Pair& e = *pairs_[i];
+    Watched& e = *pairs_[i];
     const std::int64_t begin = now_ns();
-    const Stepped s =
-        e.stepper->step(r.t, r.q.data(), r.qd.data(), r.tau.data(), sample_.tau_ext_hat.data());
+    const StepResult s =
+        e.pair.step(r.t, r.q.data(), r.qd.data(), r.tau.data(), sample_.tau_ext_hat.data());
     const std::int64_t step = now_ns() - begin;
     e.figures.step_ns.add(step);
     if (s.status != Status::kOk && (e.started || s.status != Status::kStarted)) {
@@ -159,7 +157,7 @@ void LiveEstimation::compare(const Reading& r, const Joints& hat, LiveFigures& f
 
 void LiveEstimation::reset() noexcept {
   for (const auto& e : pairs_) {
-    e->stepper->reset();
+    e->pair.reset();
     e->started = false;
   }
 }

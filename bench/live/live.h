@@ -65,17 +65,17 @@ class LiveEstimation {
   std::int64_t samples() const noexcept { return samples_.load(std::memory_order_relaxed); }
 
  private:
-  struct Pair {
+  struct Watched {
     std::string name;
-    std::unique_ptr<Stepper> stepper;
-    LiveFigures figures;
+    Pair pair;
+    LiveFigures figures{};
     bool started = false;  // since the last reset
   };
   void find_force(const Reading& r, LiveFigures& f) noexcept;
   static void compare(const Reading& r, const Joints& hat, LiveFigures& f) noexcept;
 
   int dof_;
-  std::vector<std::unique_ptr<Pair>> pairs_;
+  std::vector<std::unique_ptr<Watched>> pairs_;
   LiveStream* stream_;
   const ArmForces* forces_;
   LiveSample sample_;

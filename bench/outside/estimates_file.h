@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/roster/stages.h"
+#include "bench/roster/pair.h"
 #include "mjcf/trace/trace.h"
 
 namespace tauext {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/outside/estimates_file.h"
-#include "bench/roster/stages.h"
+#include "bench/roster/pair.h"
 #include "bench/score/score.h"
 #include "bench/score/table.h"
 #include "mjcf/trace/trace.h"

@@ -7,7 +7,7 @@
 
 #include "bench/peers/observers.h"
 #include "bench/peers/textbook_ekf.h"
-#include "bench/roster/stages.h"
+#include "bench/roster/estimators.h"
 
 namespace tauext::peers {
 namespace {
@@ -25,9 +25,9 @@ KdlArm<N> arm_of(const void* arm) {
 }
 
 template <int N>
-EstimatorStage<N>* stage(std::string_view kind, const void* arm, const void* ekf, double w) {
+EstimatorStage<>* stage(std::string_view kind, const void* arm, const void* ekf, double w) {
   const KdlArm<N> kdl = arm_of<N>(arm);
-  const auto of = [](auto e) -> EstimatorStage<N>* {
+  const auto of = [](auto e) -> EstimatorStage<>* {
     return new EstimatorStageOf<decltype(e)>(std::move(e));
   };
   if (kind == KdlEkf<N>::kName)

@@ -7,7 +7,7 @@
 
 namespace tauext::peers {
 
-/// An EstimatorStage<N>* that the caller deletes.
+/// An EstimatorStage<>* that the caller deletes.
 /// @param n joints: 3, 6 or 7
 /// @param kind kName of an estimator in observers.h, or kdl_ekf
 /// @param arm TreeModel<N>::Parameters of a chain

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "bench/peers/kdl_module.h"
+#include "bench/roster/pair.h"
 #include "bench/roster/robots.h"
-#include "bench/roster/stages.h"
 #include "bench/score/detection_metrics.h"
 #include "bench/score/metrics.h"
 #include "bench/score/suite.h"
@@ -26,7 +26,7 @@ namespace {
 
 struct Entry {
   Peer peer;
-  std::unique_ptr<Runner> runner;
+  Runner runner;
   std::vector<double> rounds;  // [s]
 };
 
@@ -43,7 +43,7 @@ std::vector<Entry> entries_of(const std::string& module, const Robot& r, const T
   std::vector<Entry> all;
   const std::string of_w = fmt::format(":bandwidth={}", w);
   for (const char* const name : {"ekf", "ndob_wb", "mo1"})
-    all.push_back({{name, name}, r.runner(name + of_w, "", trace), {}});
+    all.push_back({{name, name}, {r.pair(name + of_w, "", trace), trace}, {}});
   const auto make = reinterpret_cast<MakeStage>(function_of(module, kMakeStage));
   const TreeModel<N> arm = tree_model<N>(model);
   for (int i = 0; i < N; ++i) {
@@ -54,10 +54,9 @@ std::vector<Entry> entries_of(const std::string& module, const Robot& r, const T
   for (const auto& [name, beside] :
        {std::pair("kdl_ekf", "ekf"), std::pair("kdl_ndob", "ndob_wb"),
         std::pair("kdl_momentum", "mo1"), std::pair("kdl_wrench", "mo1")}) {
-    std::unique_ptr<EstimatorStage<N>> stage(
-        static_cast<EstimatorStage<N>*>(make(N, name, &arm.parameters(), &ekf, w)));
-    all.push_back(
-        {{name, beside}, std::make_unique<RunnerOf<N>>(std::move(stage), nullptr, trace), {}});
+    std::unique_ptr<EstimatorStage<>> stage(
+        static_cast<EstimatorStage<>*>(make(N, name, &arm.parameters(), &ekf, w)));
+    all.push_back({{name, beside}, {Pair(std::move(stage), nullptr), trace}, {}});
   }
   return all;
 }
@@ -104,10 +103,10 @@ std::vector<Peer> compare(const std::string& module, const std::string& name,
   const Model model = r.load_for(s);
   const Trace trace = record(model, s);
   std::vector<Entry> all = entries(module, r, trace, model, bandwidth);
-  for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner->run(), s.score_from);
+  for (Entry& e : all) e.peer.rmse = rmse(trace, e.runner.run(), s.score_from);
   for (int i = 0; i < rounds; ++i) {
     if (progress) progress(1. * i / rounds);
-    for (Entry& e : all) e.rounds.push_back(batch_seconds(*e.runner));
+    for (Entry& e : all) e.rounds.push_back(batch_seconds(e.runner));
   }
   std::vector<Peer> peers;
   for (Entry& e : all) {

@@ -51,7 +51,7 @@ Trace record(const Robot& robot, const std::string& scenario, const std::string&
 Output estimated(const Robot& robot, const std::string& estimator, const Trace& run) {
   return unlocked([&] {
     robot.require_joints(run.dof());
-    return robot.runner(estimator, "", run)->run();
+    return robot.run(estimator, run);
   });
 }
 
@@ -73,7 +73,7 @@ Detections detected(const Robot& robot, const std::string& detector, const Trace
   DetectorSettings settings;
   if (!thresholds.empty())
     settings.thresholds =
-        trained_for(read_thresholds(thresholds), robot.name(), 0, estimator, detector, condition);
+        trained_for(read_thresholds(thresholds), robot, 0, estimator, detector, condition);
   return {robot.detect(detector, run, estimates, settings)};
 }
 

@@ -27,14 +27,14 @@ std::string verdict(const metrics::DetectionScore& s) {
 
 }  // namespace
 
-Replayed::Replayed(Setup setup, std::unique_ptr<Stepper> stepper, const RecordingContents& log)
+Replayed::Replayed(Setup setup, Pair pair, const RecordingContents& log)
     : setup_(std::move(setup)),
-      stepper_(std::move(stepper)),
+      pair_(std::move(pair)),
       tau_ext_(Eigen::VectorXd::Zero(log.dof)),
       errors_(log.has_truth ? static_cast<std::size_t>(log.dof) : 0) {}
 
 void Replayed::take(const RecordedSample& y) {
-  last_ = stepper_->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext_.data());
+  last_ = pair_.step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext_.data());
   counts_.add(last_.status, last_.joints);
   if (y.t >= setup_.score_from) {
     for (std::size_t j = 0; j < errors_.size(); ++j) {

@@ -26,7 +26,7 @@ struct Acting {
 /// grows with the log.
 class Replayed {
  public:
-  /// What it may be beside a stepper.
+  /// What it may be beside a pair.
   struct Setup {
     std::string estimator;              ///< its specification
     std::string detector;               ///< behind it; "" for none
@@ -34,7 +34,7 @@ class Replayed {
     double score_from = 0;              ///< [s] errors before it do not count
   };
   /// For a log that has these.
-  Replayed(Setup setup, std::unique_ptr<Stepper> stepper, const RecordingContents& log);
+  Replayed(Setup setup, Pair pair, const RecordingContents& log);
 
   /// The next sample.
   void take(const RecordedSample& y);
@@ -43,7 +43,7 @@ class Replayed {
   const std::string& detector() const { return setup_.detector; }    ///< "" for none
   bool finds_forces() const { return setup_.forces != nullptr; }     ///< whether that was asked
   const Eigen::VectorXd& tau_ext() const { return tau_ext_; }        ///< [N m] of the last sample
-  const Stepped& last() const { return last_; }                      ///< its status and mark
+  const StepResult& last() const { return last_; }                   ///< its status and mark
   const Acting& acting() const { return acting_; }                   ///< and what it means
   const StatusCounts& counts() const { return counts_; }             ///< of all samples
   /// Joint by joint, over samples with t >= score_from; empty without a truth.
@@ -61,9 +61,9 @@ class Replayed {
 
  private:
   Setup setup_;
-  std::unique_ptr<Stepper> stepper_;
+  Pair pair_;
   Eigen::VectorXd tau_ext_;
-  Stepped last_;
+  StepResult last_;
   Acting acting_;
   StatusCounts counts_;
   std::vector<metrics::Errors> errors_;

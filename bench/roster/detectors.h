@@ -21,71 +21,28 @@
 #include "estimators/concepts.h"
 #include "estimators/detectors/marking.h"
 #include "estimators/math/pack.h"
+#include "estimators/samples/columns.h"
 
 namespace tauext {
 
-/// What a detector sees, where it lies; with a Pack for Scalar, of several runs.
+/// What a detector sees; with a Pack for Scalar, of several runs.
 template <class Scalar = double>
-class DetectorInput {
- public:
-  /// The samples of an arm and their estimates, as many, which must outlive it.
-  template <int N, class Estimates>
-  DetectorInput(std::span<const Measurement<N, Scalar>> at, std::span<const Estimates> in)
-      : size_(at.size()), joints_(N), sample_(sizeof at[0]), estimate_(sizeof in[0]) {
-    if (size_ == 0) return;
-    t_ = &at[0].t;
-    qd_ = at[0].qd.data();
-    tau_ = at[0].tau.data();
-    tau_ext_ = in[0].tau_ext.data();
-    if constexpr (std::is_same_v<Scalar, double>) status_ = &in[0].status;
-  }
+struct DetectorInput {
+  SampleColumns<Scalar> samples;    ///< of the arm
+  const Scalar* tau_ext = nullptr;  ///< [N m] as many estimates, likewise
+  const Status* status = nullptr;   ///< of the estimates of one run
 
-  /// One sample.
-  DetectorInput(const Scalar& t, const JointVecView<Scalar>& qd, const JointVecView<Scalar>& tau,
-                const JointVecView<Scalar>& tau_ext, const Status& status)
-      : size_(1),
-        joints_(static_cast<int>(qd.size())),
-        sample_(0),
-        estimate_(0),
-        t_(&t),
-        qd_(qd.data()),
-        tau_(tau.data()),
-        tau_ext_(tau_ext.data()),
-        status_(&status) {}
-
-  std::size_t size() const { return size_; }  ///< samples
-  /// [s] of a sample, or of the first of several runs.
-  double t(std::size_t k) const {
-    const Scalar& t = *at(t_, sample_, k);
-    if constexpr (std::is_same_v<Scalar, double>)
-      return t;
-    else
-      return t[0];
-  }
-  /// [rad/s]
-  JointVecView<Scalar> qd(std::size_t k) const { return {at(qd_, sample_, k), joints_}; }
+  /// [rad/s] of sample k.
+  JointVecView<Scalar> qd(std::size_t k) const { return column(samples.qd, k); }
   /// [N m]
-  JointVecView<Scalar> tau(std::size_t k) const { return {at(tau_, sample_, k), joints_}; }
+  JointVecView<Scalar> tau(std::size_t k) const { return column(samples.tau, k); }
   /// [N m]
-  JointVecView<Scalar> tau_ext(std::size_t k) const {
-    return {at(tau_ext_, estimate_, k), joints_};
-  }
-  /// Of the estimate, of one run.
-  Status status(std::size_t k) const requires std::is_same_v<Scalar, double> {
-    return *at(status_, estimate_, k);
-  }
+  JointVecView<Scalar> estimate(std::size_t k) const { return column(tau_ext, k); }
 
  private:
-  template <class T>
-  static const T* at(const T* first, std::size_t bytes, std::size_t k) {
-    return reinterpret_cast<const T*>(reinterpret_cast<const char*>(first) + k * bytes);
+  JointVecView<Scalar> column(const Scalar* of, std::size_t k) const {
+    return {of + k * static_cast<std::size_t>(samples.joints), samples.joints};
   }
-
-  std::size_t size_;
-  int joints_;
-  std::size_t sample_, estimate_;  // [bytes] from one to the next
-  const Scalar *t_ = nullptr, *qd_ = nullptr, *tau_ = nullptr, *tau_ext_ = nullptr;
-  const Status* status_ = nullptr;
 };
 
 /// A detector, type-erased; with a Pack for Scalar, of several runs of one clock, of whose
@@ -111,15 +68,15 @@ class DetectorStageOf final : public DetectorStage<Scalar> {
   void reset() override { d_.reset(); }
   /// As DetectorStage says.
   void run(const DetectorInput<Scalar>& in, std::span<DetectionOf<Scalar>> out) override {
-    for (std::size_t k = 0; k < in.size(); ++k) {
+    for (std::size_t k = 0; k < in.samples.size; ++k) {
       if constexpr (std::is_same_v<Scalar, double>) {
-        if (!used(in.status(k))) {  // as detect() behind an estimator
-          if (in.status(k) == Status::kDiverged) d_.reset();
+        if (!used(in.status[k])) {  // as detect() behind an estimator
+          if (in.status[k] == Status::kDiverged) d_.reset();
           out[k] = {};
           continue;
         }
       }
-      out[k] = detect<Scalar>(d_, in.t(k), in.qd(k), in.tau(k), in.tau_ext(k));
+      out[k] = detect<Scalar>(d_, in.samples.t[k], in.qd(k), in.tau(k), in.estimate(k));
     }
   }
   JointVec<Scalar> statistic() const override {

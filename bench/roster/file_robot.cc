@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <stdexcept>
 
+#include "bench/roster/tree_robot.h"
 #include "mjcf/import/robot_file.h"
 #include "mjcf/plant/mjcf_file.h"
 #include "mjcf/plant/remedy/doubts.h"
@@ -17,12 +17,10 @@ namespace {
 
 static_assert(kMaxFileJoints <= kMostCoordinates);
 
-std::unique_ptr<const Robot> robot_from(int joints, const std::string& name, const Model& model) {
-  if (joints > kMaxFileJoints) {
-    throw std::invalid_argument(fmt::format(
-        "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
-  }
-  return detail::kFileRobots.at(static_cast<std::size_t>(joints) - 1)(name, model);
+void require_supported(int joints) {
+  if (joints <= kMaxFileJoints) return;
+  throw std::invalid_argument(fmt::format(
+      "{} joints: 1 to {} are supported; --lock REGEX fixes others", joints, kMaxFileJoints));
 }
 
 }  // namespace
@@ -38,7 +36,8 @@ std::unique_ptr<const Robot> file_robot(const std::string& name) {
     const ArmTree arm = tree_of(model);
     if (const std::string doubts = doubts_about(*model); is_robot_file(name) && !doubts.empty())
       say(fmt::format("{}: {}", path, doubts));
-    return robot_from(arm.dof(), name, model);
+    require_supported(arm.dof());
+    return detail::tree_robot(arm.dof(), name, model);
   } catch (const std::invalid_argument& e) {
     std::string why = e.what();
     if (is_robot_file(name)) {

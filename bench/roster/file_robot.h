@@ -3,26 +3,12 @@
 /// A robot that nobody compiled in: estimators on the model of an MJCF file or text.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 
 #include "bench/roster/robot.h"
-#include "mjcf/plant/model.h"
 
 namespace tauext {
-
-namespace detail {
-
-// of N joints; each is compiled for itself, from file_robot_of.cc.in
-template <int N>
-std::unique_ptr<const Robot> file_robot_of(const std::string& name, const Model& model);
-
-using MakeFileRobot = std::unique_ptr<const Robot> (*)(const std::string& name, const Model& model);
-// by joints, less one; null in a program without robots from files
-extern const std::array<MakeFileRobot, kMaxFileJoints> kFileRobots;
-
-}  // namespace detail
 
 /// The estimators and detectors that every arm has, at 30 rad/s, on the dynamics of a file of 1 to
 /// kMaxFileJoints hinges and slides (mjcf/plant/tree.h). Parameters of detectors in N m are those

@@ -17,6 +17,7 @@
 #include "mjcf/plant/coordinates.h"
 #include "mjcf/plant/simulated.h"
 #include "mjcf/plant/tree.h"
+#include "mjcf/record_plain.h"
 #include "mjcf/scenarios/generic.h"
 #include "mjcf/scenarios/scenario.h"
 #include "mjcf/trace/digest.h"
@@ -62,17 +63,20 @@ bool is_robot_file(std::string_view name) {
          path.ends_with(".json");
 }
 
-Robot::Robot(std::string name, int dof, const Model& file)
+Robot::Robot(std::string name, int dof, std::vector<EstimatorType> estimators, const Model& file)
     : name_(std::move(name)), dof_(dof), torques_(JointVec<>::Ones(dof)) {
-  if (!file) return;
-  file_ = simulated(file);
-  unfit_ = too_stiff(file_);
-  usual_torque_ = scale_of(file_).usual_torque;
-  constexpr double kUsualTorque = 1200;  // [N m] that detectors' defaults fit
-  torques_ = usual_torque_ / kUsualTorque;
-  const ArmTree arm = tree_of(file_);
-  fingerprint_ = fingerprint_of(arm);
-  for (int i = 0; i < dof; ++i) slides_ = slides_ || arm.slides(i);
+  if (file) {
+    file_ = simulated(file);
+    unfit_ = too_stiff(file_);
+    usual_torque_ = scale_of(file_).usual_torque;
+    constexpr double kUsualTorque = 1200;  // [N m] that detectors' defaults fit
+    torques_ = usual_torque_ / kUsualTorque;
+    const ArmTree arm = tree_of(file_);
+    fingerprint_ = fingerprint_of(arm);
+    for (int i = 0; i < dof; ++i) slides_ = slides_ || arm.slides(i);
+  }
+  for (EstimatorType& e : baseline_types(dof)) add_estimator(std::move(e));
+  for (EstimatorType& e : estimators) add_estimator(std::move(e));
 }
 
 std::string Robot::label() const {
@@ -186,6 +190,65 @@ void register_scenario_of(const Robot& r, const Scenario& s) {
   registered_for(r.name()).push_back(s);
 }
 
+std::vector<Trace> Robot::simulate(const Model& arm, std::span<const Scenario> scenarios,
+                                   const Recording& recording) const {
+  return simulate_plain(arm, scenarios, recording);
+}
+
+void Robot::add_estimator(EstimatorType type) {
+  for (const EstimatorType& e : estimators_)
+    if (e.name == type.name) detail::fail_taken("estimator", type.name, name_);
+  estimators_.push_back(std::move(type));
+}
+
+void Robot::add_specification(const std::string& text) {
+  for (const std::string& e : estimators())
+    if (e == text) detail::fail_taken("estimator", text, name_);
+  estimator(text, Trace());
+  specifications_.push_back(text);
+}
+
+const EstimatorType& Robot::estimator_type(std::string_view specification) const {
+  return find_known(estimators_, "estimator", name_of_specification(specification),
+                    [](const EstimatorType& e) { return e.name; });
+}
+
+std::vector<std::string> Robot::estimators() const {
+  std::vector<std::string> all;
+  for (const EstimatorType& e : estimators_) all.push_back(e.name);
+  all.insert(all.end(), specifications_.begin(), specifications_.end());
+  return all;
+}
+
+std::vector<std::string> Robot::tunable() const {
+  std::vector<std::string> all;
+  for (const EstimatorType& e : estimators_)
+    if (e.tunable) all.push_back(e.name);
+  return all;
+}
+
+const std::vector<FieldHelp>& Robot::estimator_fields(std::string_view name) const {
+  return estimator_type(name).fields;
+}
+
+std::unique_ptr<EstimatorStage<>> Robot::estimator(std::string_view specification,
+                                                   const Trace& trace) const {
+  const EstimatorType& e = estimator_type(specification);
+  if (e.copies_truth && !trace.has_truth())
+    throw std::invalid_argument(
+        fmt::format("estimator '{}' copies the truth: it needs columns tau_ext1..", e.name));
+  return detail::made(specification, e.fields,
+                      [&](const Specification& s) { return e.make(s, trace); });
+}
+
+std::unique_ptr<EstimatorStage<EstimatorType::Lanes>> Robot::estimator_of_runs(
+    std::string_view specification, const Trace& trace, SharedTerms* terms) const {
+  const EstimatorType& e = estimator_type(specification);
+  if (!e.make_runs) return nullptr;
+  return detail::made(specification, e.fields,
+                      [&](const Specification& s) { return e.make_runs(s, trace, terms); });
+}
+
 std::vector<std::string> Robot::detectors() const {
   std::vector<std::string> all;
   for (const DetectorType& d : detectors_) all.push_back(d.name);
@@ -233,26 +296,38 @@ const Calibration& Robot::calibration(std::string_view detector) const {
   throw unknown("calibratable detector", detector, calibratable());
 }
 
-std::unique_ptr<DetectorStage<>> Robot::detector_of(std::string_view specification,
-                                                    const DetectorSettings& settings) const {
-  if (specification.empty()) return nullptr;
+std::unique_ptr<DetectorStage<>> Robot::detector(std::string_view specification,
+                                                 const DetectorSettings& settings) const {
   const DetectorType& d = detector_type(specification);
   return detail::made(specification, d.fields,
                       [&](const Specification& s) { return d.make(s, settings, torques_); });
+}
+
+std::unique_ptr<DetectorStage<EstimatorType::Lanes>> Robot::detector_of_runs(
+    std::string_view specification, const DetectorSettings& settings) const {
+  return detail::made(specification, detector_fields(specification), [&](const Specification& s) {
+    return detail::detector_of_runs<kRuns>(s, settings, torques_);
+  });
+}
+
+Pair Robot::pair(std::string_view estimator, std::string_view detector, const Trace& trace,
+                 const DetectorSettings& settings) const {
+  if (trace.size() > 0) require_joints(trace.dof());
+  return {this->estimator(estimator, trace),
+          detector.empty() ? nullptr : this->detector(detector, settings)};
+}
+
+int Robot::runs_at_once() {
+  return kRuns;
 }
 
 std::vector<Detection> Robot::detect(std::string_view detector, const Trace& trace,
                                      const Output& estimates,
                                      const DetectorSettings& settings) const {
   require_joints(trace.dof());
-  const std::unique_ptr<DetectorStage<>> stage = detector_of(detector, settings);
   std::vector<Detection> all(trace.t.size());
-  for (int k = 0; k < trace.size(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const JointVec<> qd = trace.qd.col(k), tau = trace.tau.col(k),
-                     tau_ext = estimates.tau_ext.col(k);
-    stage->run({trace.t[at], qd, tau, tau_ext, estimates.status[at]}, {&all[at], 1});
-  }
+  this->detector(detector, settings)
+      ->run({columns_of(trace), estimates.tau_ext.data(), estimates.status.data()}, all);
   return all;
 }
 
@@ -260,20 +335,21 @@ void Robot::check(std::string_view estimator, std::string_view detector) const {
   Trace one;  // copies of the truth need a sample of it
   one.t = {0};
   one.q = one.qd = one.tau = one.tau_ext = Eigen::MatrixXd::Zero(dof_, 1);
-  stepper(estimator, detector, one, {});
+  pair(estimator, detector, one);
 }
 
 Supervisor Robot::supervisor(std::string_view estimator, std::string_view detector,
-                             const DetectorSettings& s) const {
+                             const Drives& drives, const DetectorSettings& s) const {
   if (needs_truth(estimator)) {
     throw std::invalid_argument(
         fmt::format("estimator '{}' copies the truth: it cannot stop a motor", estimator));
   }
   if (detector.empty()) throw std::invalid_argument("a detector is wanted that stops the motor");
-  const std::shared_ptr<Stepper> pair = stepper(estimator, detector, Trace(), s);
-  return [pair,
+  Trace measured;
+  measured.torque_at_instants = drives.elastic();
+  return [both = std::make_shared<Pair>(pair(estimator, detector, measured, s)),
           tau_ext = std::vector<double>(static_cast<std::size_t>(dof_))](const Sample& y) mutable {
-    return pair->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext.data()).detection.mark;
+    return both->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext.data()).detection.mark;
   };
 }
 

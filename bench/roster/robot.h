@@ -12,9 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "bench/roster/session/session.h"
+#include "bench/roster/detectors.h"
+#include "bench/roster/estimators.h"
+#include "bench/roster/pair.h"
 #include "bench/roster/specification.h"
-#include "bench/roster/stages.h"
 #include "bench/roster/thresholds.h"
 #include "mjcf/arm_forces.h"
 #include "mjcf/record.h"
@@ -37,7 +38,19 @@ bool is_robot_file(std::string_view name);
 /// another number of joints.
 class Robot {
  public:
-  virtual ~Robot() = default;
+  /// With these estimators, beside the baselines.
+  /// @param file the model, if it is from a file
+  /// @throws std::invalid_argument for a name that is taken
+  Robot(std::string name, int dof, std::vector<EstimatorType> estimators,
+        const Model& file = nullptr);
+  /// With one more.
+  /// @throws std::invalid_argument if its name is taken
+  void add_detector(const DetectorType& type);
+  /// Lists a specification among the estimators.
+  /// @throws std::invalid_argument if it means nothing here, or is listed already
+  void add_specification(const std::string& text);
+  /// [1] factor of each joint on the torques of detectors' defaults.
+  const JointVec<>& torques() const { return torques_; }
 
   const std::string& name() const { return name_; }  ///< by which robot() finds it
   /// Its name, or its file's without folder and, unless it is a .json or another robot is called
@@ -96,50 +109,45 @@ class Robot {
 
   /// simulate_plain() (mjcf/record_plain.h): the truth of runs of this arm, or of one that is
   /// changed from it.
-  virtual std::vector<Trace> simulate(const Model& arm, std::span<const Scenario> scenarios,
-                                      const Recording& recording) const = 0;
+  std::vector<Trace> simulate(const Model& arm, std::span<const Scenario> scenarios,
+                              const Recording& recording) const;
 
-  virtual std::vector<std::string> estimators() const = 0;  ///< by name
-  std::vector<std::string> detectors() const;               ///< by name
-  virtual std::vector<std::string> tunable() const = 0;     ///< estimators with the key `bandwidth`
-  std::vector<std::string> calibratable() const;            ///< detectors with thresholds from data
+  std::vector<std::string> estimators() const;    ///< by name, or specification
+  std::vector<std::string> detectors() const;     ///< by name
+  std::vector<std::string> tunable() const;       ///< estimators with the key `bandwidth`
+  std::vector<std::string> calibratable() const;  ///< detectors with thresholds from data
   /// The specifications of the detectors whose thresholds one takes: itself, those that it is made
   /// of, or none.
   std::vector<std::string> trained_parts(std::string_view detector) const;
 
   /// What can be set in an estimator or a detector.
-  virtual std::vector<FieldHelp> estimator_fields(std::string_view name) const = 0;
+  const std::vector<FieldHelp>& estimator_fields(std::string_view name) const;
   const std::vector<FieldHelp>& detector_fields(std::string_view name) const;  ///< of a detector
 
-  /// Binds an estimator, and a detector unless it is "", to a trace's samples.
+  /// An estimator, with a detector behind it unless that is "".
+  /// @param trace which it will see; an estimator that copies the truth copies this one's, and
+  /// where its torques were read at instants, estimators take them so; else it may be empty
   /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not
   /// have
-  virtual std::unique_ptr<Runner> runner(std::string_view estimator, std::string_view detector,
-                                         const Trace& trace,
-                                         const DetectorSettings& settings = {}) const = 0;
-
-  /// The same for a live run. The trace is what an estimator that copies the truth copies; else it
-  /// may be empty.
-  /// @throws std::invalid_argument for an estimator that needs a truth which the trace does not
-  /// have
-  virtual std::unique_ptr<Stepper> stepper(std::string_view estimator, std::string_view detector,
-                                           const Trace& trace,
-                                           const DetectorSettings& settings = {}) const = 0;
+  Pair pair(std::string_view estimator, std::string_view detector, const Trace& trace,
+            const DetectorSettings& settings = {}) const;
+  /// What an estimator makes of a trace.
+  Output run(std::string_view estimator, const Trace& trace) const {
+    return pair(estimator, "", trace).run(trace);
+  }
 
   /// Nothing, if the specifications of an estimator and of a detector (or "") are good ones: to be
   /// asked before any work begins.
   void check(std::string_view estimator, std::string_view detector) const;
 
   /// The pair as the one who stops the motor: at the first mark. It never sees a truth.
+  /// @param drives of the arm that it stops: where they are elastic, torques are read at instants
   /// @throws std::invalid_argument for an estimator that copies the truth
-  Supervisor supervisor(std::string_view estimator, std::string_view detector,
+  Supervisor supervisor(std::string_view estimator, std::string_view detector, const Drives& drives,
                         const DetectorSettings& settings = {}) const;
 
-  /// Traces, which must outlive it, for many estimators, and many detectors behind each.
-  virtual std::unique_ptr<Session> session(std::span<const Trace> traces) const = 0;
-  /// So many traces of one session take the least time each, if they have the same time stamps and
-  /// no sample is left out. A session of more does them one by one.
-  virtual int runs_at_once() const = 0;
+  /// So many runs are done at once, by stages of runs.
+  static int runs_at_once();
 
   /// What a detector says of estimates that an estimator made of the trace, sample by sample.
   std::vector<Detection> detect(std::string_view detector, const Trace& trace,
@@ -150,22 +158,25 @@ class Robot {
   /// The type that a detector's specification names.
   const DetectorType& detector_type(std::string_view specification) const;
 
- protected:
-  /// For whoever derives.
-  /// @param file the model, if it is from a file
-  /// @throws std::invalid_argument if that cannot be simulated, saying why not
-  Robot(std::string name, int dof, const Model& file = nullptr);
-
-  /// [1] factor of each joint on the torques of detectors' defaults.
-  const JointVec<>& torques() const { return torques_; }
-  /// @throws std::invalid_argument if its name is taken
-  void add_detector(const DetectorType& type);
-  /// Null for "".
-  std::unique_ptr<DetectorStage<>> detector_of(std::string_view specification,
-                                               const DetectorSettings& settings) const;
+  /// The stage of an estimator, for pair()'s trace.
+  /// @throws std::invalid_argument as pair()
+  std::unique_ptr<EstimatorStage<>> estimator(std::string_view specification,
+                                              const Trace& trace) const;
+  /// The same for as many runs as runs_at_once(), of which the trace is one; null where it cannot.
+  /// @param terms of these runs, or null
+  std::unique_ptr<EstimatorStage<EstimatorType::Lanes>> estimator_of_runs(
+      std::string_view specification, const Trace& trace, SharedTerms* terms) const;
+  /// The stage of a detector.
+  std::unique_ptr<DetectorStage<>> detector(std::string_view specification,
+                                            const DetectorSettings& settings) const;
+  /// The same for several runs; null where it cannot.
+  std::unique_ptr<DetectorStage<EstimatorType::Lanes>> detector_of_runs(
+      std::string_view specification, const DetectorSettings& settings) const;
 
  private:
   void require_fit() const;
+  void add_estimator(EstimatorType type);
+  const EstimatorType& estimator_type(std::string_view specification) const;
 
   std::string name_;
   int dof_;
@@ -174,7 +185,9 @@ class Robot {
   std::string fingerprint_;
   bool slides_ = false;
   Eigen::VectorXd usual_torque_;  // ArmScale::usual_torque [N m] of a file's robot; else empty
-  JointVec<> torques_;
+  JointVec<> torques_;            // [1] factor of each joint on those of detectors' defaults
+  std::vector<EstimatorType> estimators_;
+  std::vector<std::string> specifications_;  // that are listed beside them
   std::vector<DetectorType> detectors_;
   mutable std::once_flag listed_;
   mutable std::vector<Scenario> scenarios_;  // of a file's robot

@@ -10,11 +10,12 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <typeindex>
 #include <utility>
 
 #include "bench/roster/detector_list.h"
 #include "bench/roster/file_robot.h"
-#include "bench/roster/robot_of.h"
+#include "bench/roster/make_robot.h"
 #include "mjcf/import/robot_file.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/scenarios/generic.h"
@@ -106,6 +107,16 @@ std::string list_scale(const Robot& r) {
 
 namespace detail {
 
+std::vector<Registered>& registered_specifications() {
+  static std::vector<Registered> all;
+  return all;
+}
+
+std::shared_ptr<void>& registered_of(const std::type_info& functions) {
+  static std::map<std::type_index, std::shared_ptr<void>> all;
+  return all[functions];
+}
+
 void require_unused() {
   if (!in_use) return;
   throw std::logic_error("register at the begin of main(), before the robots are asked for");
@@ -116,6 +127,17 @@ void add_robot(MakeRobot make) {
 }
 
 }  // namespace detail
+
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string& name, const WallMoBot3& arm,
+                                        const Model& file) {
+  return detail::robot_of_roster(name, arm, file);
+}
+template <>
+std::unique_ptr<const Robot> make_robot(const std::string& name, const Testbed1& arm,
+                                        const Model& file) {
+  return detail::robot_of_roster(name, arm, file);
+}
 
 const std::vector<std::unique_ptr<const Robot>>& robots() {
   static const std::vector<std::unique_ptr<const Robot>> all = [] {

@@ -9,51 +9,20 @@
 #include <string_view>
 #include <type_traits>
 
-#include "bench/roster/baselines.h"
+#include "bench/roster/estimators.h"
+#include "bench/roster/printed_forms.h"
 #include "estimators/active_observer.h"
 #include "estimators/disturbance_kalman_filter.h"
-#include "estimators/ekf.h"
 #include "estimators/extended_state_observer.h"
 #include "estimators/higher_order_momentum_observer.h"
 #include "estimators/inverse_dynamics.h"
 #include "estimators/momentum_observer.h"
-#include "estimators/ndob.h"
 #include "estimators/ndob_inertia.h"
 #include "estimators/sliding_mode_observer.h"
 #include "estimators/testbed1.h"
 #include "estimators/wallmobot3.h"
 
 namespace tauext {
-
-// Forms as the paper prints them, to be compared with those that we stand for (kPrintedForm). What
-// has a kFixedTuning is no tunable estimator, whatever its Parameters can do.
-
-/// The testbed's EKF from x_0 = 0, as section 6.2 starts it, wherever the arm is.
-struct EkfZeroStart : Ekf<Testbed1> {
-  static constexpr const char* kName = "ekf_zero_start";
-  static constexpr bool kPrintedForm = true, kFixedTuning = true;
-  using Ekf::Ekf;
-  /// The paper's, but for the start.
-  static Parameters parameters() {
-    Parameters p = Parameters::paper();
-    p.start = Start::kZero;
-    return p;
-  }
-};
-
-/// The EKF with the printed sign(qd) for its friction.
-struct EkfRawSign : Ekf<Testbed1> {
-  static constexpr const char* kName = "ekf_raw_sign";
-  static constexpr bool kPrintedForm = true, kFixedTuning = true;
-  using Ekf::Ekf;
-};
-
-/// The NDOB with the printed sign(qd) for its friction.
-struct NdobRawSign : Ndob<Testbed1> {
-  static constexpr const char* kName = "ndob_raw_sign";
-  static constexpr bool kPrintedForm = true, kFixedTuning = true;
-  using Ndob::Ndob;
-};
 
 /// The NDOB's gain on the testbed, for which the paper prints none: X = 100 1/s theta_1, a pole of
 /// 100 rad/s. Its 10 ms are a tenth of a human's quickest push, and 1e-3 rad/s of velocity noise
@@ -62,49 +31,15 @@ inline Ndob<Testbed1>::Parameters testbed1_ndob() {
   return {.X = Vec<1>(100 * Testbed1::Parameters().theta1)};
 }
 
-/// [rad/s] of the estimators whose bandwidth is ours to choose: they are comparable with each
-/// other.
-inline constexpr double kRosterBandwidth = 30;
-
-/// The EKF with the Q and R of the sensors instead of the printed ones: what the filter can do.
-struct EkfHonest : Ekf<WallMoBot3> {
-  static constexpr const char* kName = "ekf_honest";
-  static constexpr bool kFixedTuning = true;
-  using Ekf::Ekf;
-};
-
-/// The class that an estimator of the roster only gives other parameters.
-template <class E>
-struct ComputesAs {
-  using type = E;  ///< itself, unless it says so here
-};
-/// That of ekf_honest, which has other covariances.
-template <>
-struct ComputesAs<EkfHonest> {
-  using type = Ekf<WallMoBot3>;  ///< the EKF
-};
-
-/// Builds an estimator of the roster; a specification changes its parameters.
-template <class E, RobotModel M>
-struct Make {
-  M model;                            ///< of the robot
-  typename E::Parameters parameters;  ///< unless a specification changes them
-  /// Builds one. The trace is for baselines, which copy its truth.
-  E operator()(const Trace&) const { return E(model, parameters); }
-};
 /// Builds E with these parameters.
 template <class E, RobotModel M>
-Make<E, M> with(const M& model, const typename E::Parameters& parameters) {
+RosterEntry<E, M> with(const M& model, const typename E::Parameters& parameters) {
   return {model, parameters};
 }
 
-/// Calls visit(make) for the estimators that every arm has; make(trace) builds one.
+/// Calls visit(entry) for the estimators that every arm has.
 template <RobotModel M, class Visit>
 void for_each_common_estimator(const M& model, Visit&& visit) {
-  constexpr int N = M::kDof;
-  visit([](const Trace&) { return Zero<N>(); });
-  visit([](const Trace& trace) { return Truth<N>(trace); });
-  visit([](const Trace& trace) { return DelayedTruth<N>(trace); });
   const auto at_bandwidth = [&]<class E>(std::type_identity<E>) {
     visit(with<E>(model, E::Parameters::for_bandwidth(model, kRosterBandwidth)));
   };
@@ -120,7 +55,7 @@ void for_each_common_estimator(const M& model, Visit&& visit) {
   at_bandwidth(std::type_identity<ExtendedStateObserver<M>>());
 }
 
-/// Calls visit(make) for every estimator of a robot that is not named below. The NDOB is there as
+/// Calls visit(entry) for every estimator of a robot that is not named below. The NDOB is there as
 /// ndob_wb: no diagonal X fits an arm of many joints, whose B couples them by its pose.
 template <RobotModel M, class Visit>
 void for_each_estimator(const M& model, Visit&& visit) {
@@ -130,7 +65,7 @@ void for_each_estimator(const M& model, Visit&& visit) {
   }
 }
 
-/// Calls visit(make) for every estimator of wallmobot3.
+/// Calls visit(entry) for every estimator of wallmobot3.
 template <class Visit>
 void for_each_estimator(const WallMoBot3& arm, Visit&& visit) {
   using M = WallMoBot3;
@@ -140,7 +75,7 @@ void for_each_estimator(const WallMoBot3& arm, Visit&& visit) {
   visit(with<Ndob<M>>(arm, Ndob<M>::Parameters::paper()));
 }
 
-/// Calls visit(make) for every estimator of testbed1.
+/// Calls visit(entry) for every estimator of testbed1.
 template <class Visit>
 void for_each_estimator(const Testbed1& arm, Visit&& visit) {
   using M = Testbed1;

@@ -123,6 +123,26 @@ void fail_choice(const std::string& key, const std::string& value,
       fmt::format("{}={}: it must be {}", key, value, fmt::join(known, " or ")));
 }
 
+std::optional<double> take_bandwidth(Specification& s) {
+  const auto key = std::find_if(s.keys.begin(), s.keys.end(),
+                                [](const auto& k) { return k.first == "bandwidth"; });
+  if (key == s.keys.end()) return std::nullopt;
+  const double w = number_of("bandwidth", key->second, kLeastBandwidth, kMostBandwidth);
+  s.keys.erase(key);
+  return w;
+}
+
+std::vector<FieldHelp> with_bandwidth(std::vector<FieldHelp> fields) {
+  FieldHelp bandwidth{"bandwidth", "rad/s", range_of(kLeastBandwidth, kMostBandwidth),
+                      "larger is faster, noisier; sets the others", ""};
+  std::erase_if(fields, [&](const FieldHelp& f) {
+    if (f.key == bandwidth.key) bandwidth.value = f.value;
+    return f.key == bandwidth.key;
+  });
+  fields.insert(fields.begin(), std::move(bandwidth));
+  return fields;
+}
+
 void refuse_keys(const Specification& s) {
   if (!s.keys.empty()) fail_unknown_key(s.keys.front().first);
 }

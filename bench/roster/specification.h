@@ -79,8 +79,8 @@ std::vector<double> numbers_of(const std::string& key, std::string_view text, in
 std::string text_of(const double* values, int n);
 
 template <class P, class T>
-void add_help(const Field<P, T>& f, const P* p, const std::string& prefix,
-              std::vector<FieldHelp>& out) {
+[[gnu::cold]] void add_help(const Field<P, T>& f, const P* p, const std::string& prefix,
+                            std::vector<FieldHelp>& out) {
   if constexpr (std::is_enum_v<T>) {
     FieldHelp help{prefix + f.key, "", "", f.effect, ""};
     for (const auto& c : choices(T{})) {
@@ -111,8 +111,8 @@ void add_help(const Nested<P, Inner>& n, const P* p, const std::string& prefix,
 
 // whether `key` was this field's; then it is set
 template <class P, class T>
-bool set_if(const Field<P, T>& f, const std::string& prefix, const std::string& key,
-            const std::string& value, P& p) {
+[[gnu::cold]] bool set_if(const Field<P, T>& f, const std::string& prefix, const std::string& key,
+                          const std::string& value, P& p) {
   if (key != prefix + f.key) return false;
   if constexpr (std::is_enum_v<T>) {
     std::vector<std::string> known;
@@ -148,7 +148,7 @@ bool set_if(const Nested<P, Inner>& n, const std::string& prefix, const std::str
 /// What can be set in P; nothing if it lists no fields.
 /// @param p what it begins with, if that is known
 template <class P>
-std::vector<FieldHelp> field_help(const P* p = nullptr) {
+[[gnu::cold]] std::vector<FieldHelp> field_help(const P* p = nullptr) {
   std::vector<FieldHelp> out;
   if constexpr (ListsFields<P>) {
     for_each_field<P>([&](const auto& f) { detail::add_help(f, p, "", out); });
@@ -159,7 +159,7 @@ std::vector<FieldHelp> field_help(const P* p = nullptr) {
 /// Sets the keys in p, in their order.
 /// @throws std::invalid_argument for an unknown key or a value out of range
 template <class P>
-void set_parameters(const KeyValues& keys, P& p) {
+[[gnu::cold]] void set_parameters(const KeyValues& keys, P& p) {
   for (const auto& item : keys) {
     bool found = false;
     if constexpr (ListsFields<P>) {
@@ -193,6 +193,10 @@ auto made(std::string_view text, const std::vector<FieldHelp>& fields, const Mak
   return explaining_keys(text, fields, [&] { return make(s); });
 }
 
+// what a specification says of `bandwidth` [rad/s], which it loses
+std::optional<double> take_bandwidth(Specification& s);
+// with that one first
+std::vector<FieldHelp> with_bandwidth(std::vector<FieldHelp> fields);
 // the keys that nothing knows
 void refuse_keys(const Specification& s);
 // a name of a robot that two would have

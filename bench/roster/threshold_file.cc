@@ -182,11 +182,10 @@ Thresholds read_thresholds(const std::string& path) {
   }
 }
 
-DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_name,
-                               double velocity_noise, const std::string& estimator,
-                               const std::string& detector, const std::string& condition) {
+DetectorThresholds trained_for(const Thresholds& t, const Robot& r, double velocity_noise,
+                               const std::string& estimator, const std::string& detector,
+                               const std::string& condition) {
   if (t.sets.empty() || detector.empty()) return {};
-  const Robot& r = robot(robot_name);
   const std::vector<std::string> parts = r.trained_parts(detector);
   if (parts.empty()) return {};
   DetectorThresholds known;
@@ -206,7 +205,7 @@ DetectorThresholds trained_for(const Thresholds& t, const std::string& robot_nam
   if (known.size() == parts.size()) return known;
   throw std::invalid_argument(fmt::format(
       "{}: has no thresholds for {}/{}+{}{}: {}; tauext-detect --calibrate makes more", t.path,
-      robot_name + (condition.empty() ? "" : " in " + condition), estimator, detector,
+      r.name() + (condition.empty() ? "" : " in " + condition), estimator, detector,
       parts.front() == detector ? "" : fmt::format(" (of {})", fmt::join(parts, " and ")),
       what_there_is(t, set, r, estimator)));
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "bench/roster/robot.h"
 #include "bench/roster/thresholds.h"
 
 namespace tauext {
@@ -34,7 +35,7 @@ Thresholds read_thresholds(const std::string& path);
 /// @param condition of the study, for which a set may be alone; "" for none
 /// @throws std::invalid_argument listing what was trained, if that pair was not on that robot
 /// @throws std::runtime_error if the robot's file has changed since
-DetectorThresholds trained_for(const Thresholds& thresholds, const std::string& robot,
+DetectorThresholds trained_for(const Thresholds& thresholds, const Robot& robot,
                                double velocity_noise, const std::string& estimator,
                                const std::string& detector, const std::string& condition = "");
 

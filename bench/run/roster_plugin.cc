@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tauext-gate: every estimator, detector and model of the roster, and what an arm from a file
 // has.
-#include <concepts>
-
 #include "bench/kit/kernels.h"
 #include "bench/roster/detector_list.h"
 #include "bench/roster/roster.h"
@@ -32,14 +30,8 @@ tauext::TreeModel<7> tree7() {
 template <class M>
 void add_model_and_estimators(tauext::Kernels& kernels, const std::string& robot, const M& arm) {
   kernels.add_model(robot, arm);
-  tauext::for_each_estimator(arm, [&](auto make) {
-    using E = decltype(make(tauext::Trace()));
-    // the baselines stand outside the competition, and some of them need a truth
-    if constexpr (!std::derived_from<E, tauext::DelayedTruth<M::kDof>> &&
-                  !std::same_as<E, tauext::Zero<M::kDof>>) {
-      kernels.add_estimator(robot, arm, make(tauext::Trace()));
-    }
-  });
+  tauext::for_each_estimator(
+      arm, [&](const auto& entry) { kernels.add_estimator(robot, arm, entry()); });
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "bench/roster/stages.h"
+#include "bench/roster/pair.h"
 #include "bench/score/score.h"
 #include "estimators/samples/clock.h"
 #include "mjcf/trace/trace.h"

@@ -137,12 +137,6 @@ std::vector<Entry> entries(const Selection& selection) {
   return all;
 }
 
-std::string for_drives(const Robot& robot, const std::string& estimator, const Drives& drives) {
-  if (!drives.elastic()) return estimator;
-  return with_key(estimator, "torque", "instant",
-                  robot.estimator_fields(name_of_specification(estimator)));
-}
-
 std::function<bool(const std::string&)> entry_filter(const std::string& expression) {
   try {
     return [wanted = std::regex(expression)](const std::string& name) {

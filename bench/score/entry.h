@@ -76,10 +76,6 @@ class Entry {
 /// there twice
 std::vector<Entry> entries(const Selection& selection = {});
 
-/// The specification of an estimator as these drives want it: where they are elastic, torque is
-/// read at instants, which an estimator in a loop has to be told.
-std::string for_drives(const Robot& robot, const std::string& estimator, const Drives& drives);
-
 /// Whether a name of an entry matches this regular expression somewhere; "" matches all.
 /// @throws std::invalid_argument if it is none
 std::function<bool(const std::string&)> entry_filter(const std::string& expression);

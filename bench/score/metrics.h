@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "bench/roster/stages.h"
+#include "bench/roster/pair.h"
 #include "bench/score/bandwidth.h"
 #include "bench/score/score.h"
 #include "mjcf/arm_forces.h"

@@ -17,7 +17,7 @@
 namespace tauext {
 namespace {
 
-double allocations_per_step(Runner& runner) {
+double allocations_per_step(Runner runner) {
   runner.batch();  // the first batch may fill caches of its own
   const auto before = allocations();
   runner.batch();
@@ -28,13 +28,6 @@ double allocations_per_step(Runner& runner) {
 struct NotRecorded : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-constexpr const char* kClosedLoop = "closed loop of ";
-
-// of the truth that an entry meets
-std::string key_of(const Entry& e) {
-  return e.closed_loop() ? kClosedLoop + e.name() : e.group();
-}
 
 // [N m] a joint that carries next to nothing is disturbed by those that carry much
 Eigen::VectorXd slack(const Robot& r) {
@@ -77,31 +70,37 @@ std::string failure(const Trace& ideal, const Output& out, double from,
   return "";
 }
 
+Suite::Truth::Truth(const Entry& e)
+    : robot(&e.robot()),
+      scenario(&e.scenario()),
+      estimator(e.closed_loop() ? e.estimator() : ""),
+      detector(e.closed_loop() ? e.detector() : "") {}
+
 DetectorSettings Suite::settings(const Entry& e) const {
-  return {.thresholds = trained_for(options_.thresholds, e.robot().name(),
+  return {.thresholds = trained_for(options_.thresholds, e.robot(),
                                     sensors_for(e.scenario(), options_.sensors).velocity_noise,
                                     e.estimator(), e.detector())};
 }
 
 void Suite::set_sensors(const Sensors& sensors) {
-  const auto closed_loop = [](const auto& kept) { return kept.first.starts_with(kClosedLoop); };
-  std::erase_if(ideal_, closed_loop);
-  std::erase_if(of_ideal_, closed_loop);
+  std::erase_if(ideal_, [](const auto& kept) { return kept.first.closed_loop(); });
+  std::erase_if(of_ideal_, [](const auto& kept) { return kept.first.first.closed_loop(); });
   if (sensors.ideal() != options_.sensors.ideal()) of_ideal_.clear();  // others are scored now
   noisy_.clear();
   of_noisy_.clear();
+  scores_.clear();
   options_.sensors = sensors;
 }
 
 const Trace& Suite::ideal(const Entry& e) {
-  const std::string key = key_of(e);
+  const Truth key(e);
   const auto it = ideal_.find(key);
   if (it != ideal_.end()) return it->second;
   const Scenario& s = e.scenario();
   Supervisor supervisor;
   if (e.closed_loop()) {
-    const std::string estimator = for_drives(e.robot(), e.estimator(), options_.recording.drives);
-    supervisor = e.robot().supervisor(estimator, e.detector(), settings(e));
+    supervisor =
+        e.robot().supervisor(e.estimator(), e.detector(), options_.recording.drives, settings(e));
   }
   Trace truth = [&] {
     try {
@@ -116,7 +115,7 @@ const Trace& Suite::ideal(const Entry& e) {
 }
 
 const Trace& Suite::noisy(const Entry& e) {
-  const std::string key = key_of(e);
+  const Truth key(e);
   const auto it = noisy_.find(key);
   if (it != noisy_.end()) return it->second;
   Sensors sensors = sensors_for(e.scenario(), options_.sensors);
@@ -124,23 +123,22 @@ const Trace& Suite::noisy(const Entry& e) {
   return noisy_.emplace(key, measure(ideal(e), sensors)).first->second;
 }
 
-const Suite::Estimate& Suite::estimate(const Entry& e, const Trace& trace, Estimates& made) {
-  if (estimated_ != e.group()) of_ideal_.clear(), of_noisy_.clear();
-  estimated_ = e.group();
-  const std::string key = key_of(e) + "/" + e.estimator();
+const Output& Suite::estimate(const Entry& e, const Trace& trace, Outputs& made) {
+  const std::pair key(Truth(e), e.estimator());
+  for (Outputs* all : {&of_ideal_, &of_noisy_})
+    if (!all->empty() && all->begin()->first.first.scenario != key.first.scenario) all->clear();
   const auto it = made.find(key);
-  if (it != made.end()) return it->second;
-  Estimate m{e.robot().runner(e.estimator(), "", trace)->run(), kNoValue};
-  if (&trace == &scored(e)) m.force_rmse = force_rmse(e, m.output);
-  return made.emplace(key, std::move(m)).first->second;
+  return it != made.end() ? it->second
+                          : made.emplace(key, e.robot().run(e.estimator(), trace)).first->second;
 }
 
-double Suite::force_rmse(const Entry& e, const Output& out) {
+void Suite::add_force_metric(const Entry& e, const Output& out, Score& to) {
   const Trace& trace = scored(e);
-  if (trace.force.cols() == 0) return kNoValue;
-  auto& arm = forces_[e.robot().name()];
+  if (trace.force.cols() == 0) return;
+  auto& arm = forces_[&e.robot()];
   if (!arm) arm = e.robot().forces_at(kEndEffector, false);
-  return metrics::force_rmse(*arm, trace, out.tau_ext, e.scenario().score_from);
+  const double rmse = metrics::force_rmse(*arm, trace, out.tau_ext, e.scenario().score_from);
+  if (!std::isnan(rmse)) to.set(Metric::kForce, rmse);
 }
 
 bool Suite::is_ideal(const Entry& e) const {
@@ -151,16 +149,16 @@ const Trace& Suite::scored(const Entry& e) {
   return is_ideal(e) ? ideal(e) : noisy(e);
 }
 
-std::unique_ptr<Runner> Suite::runner(const Entry& e, const Trace& trace) const {
-  return e.robot().runner(e.estimator(), e.detector(), trace, settings(e));
+Pair Suite::pair(const Entry& e, const Trace& trace) const {
+  return e.robot().pair(e.estimator(), e.detector(), trace, settings(e));
 }
 
-std::unique_ptr<Runner> Suite::runner(const Entry& e) {
-  return runner(e, scored(e));
+Runner Suite::runner(const Entry& e) {
+  return {pair(e, scored(e)), scored(e)};
 }
 
 Suite::Run Suite::run(const Entry& e) {
-  Run r{scored(e), runner(e)->run(), {}};
+  Run r{scored(e), pair(e, scored(e)).run(scored(e)), {}};
   if (!e.detector().empty()) {
     r.detections = e.robot().detect(e.detector(), r.trace, r.output, settings(e));
   }
@@ -178,8 +176,26 @@ std::string Suite::error(const Entry& e, const Output& of_ideal, const Output& o
   return rejected.empty() ? "" : "under sensor noise: " + rejected;
 }
 
-Score Suite::score(const Entry& e) {
+const Score& Suite::of_estimator(const Entry& e) {
+  const Output& of_ideal = estimate(e, ideal(e), of_ideal_);
+  const Output& of_noisy = estimate(e, noisy(e), of_noisy_);
+  const auto [kept, is_new] = scores_.try_emplace({Truth(e), e.estimator()});
+  Score& score = kept->second;
+  if (!is_new) return score;
+  const Output& out = is_ideal(e) ? of_ideal : of_noisy;
+  const Trace& trace = scored(e);
   const Scenario& s = e.scenario();
+  score.error = error(e, of_ideal, of_noisy);
+  score.counts = out.counts;
+  score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
+  add_error_metrics(trace, out, s.score_from, score);
+  add_force_metric(e, out, score);
+  add_noise_metric(trace, of_ideal, of_noisy, s.score_from, score);
+  add_response_metrics(trace, out, s, score);
+  return score;
+}
+
+Score Suite::score(const Entry& e) {
   try {
     ideal(e);
   } catch (const NotRecorded& why) {  // it costs its own rows
@@ -187,31 +203,20 @@ Score Suite::score(const Entry& e) {
     none.error = why.what();
     return none;
   }
-  const Estimate& of_ideal = estimate(e, ideal(e), of_ideal_);
-  const Estimate& of_noisy = estimate(e, noisy(e), of_noisy_);
-  const Estimate& of_scored = is_ideal(e) ? of_ideal : of_noisy;
-
-  Score score;
-  score.error = error(e, of_ideal.output, of_noisy.output);
-  const Trace& trace = scored(e);
-  Output out = of_scored.output;
-  score.counts = out.counts;
-  score.set(Metric::kLeftOut, static_cast<double>(out.counts.left_out()));
-  add_error_metrics(trace, out, s.score_from, score);
-  if (!std::isnan(of_scored.force_rmse)) score.set(Metric::kForce, of_scored.force_rmse);
-  add_noise_metric(trace, of_ideal.output, of_noisy.output, s.score_from, score);
-  add_response_metrics(trace, out, s, score);
+  Score score = of_estimator(e);
   if (!e.detector().empty()) {
-    const std::vector<Detection> said = e.robot().detect(e.detector(), trace, out, settings(e));
-    for (const Detection& d : said) out.marks.push_back(d.mark);
+    const Trace& trace = scored(e);
+    Output out = estimate(e, trace, is_ideal(e) ? of_ideal_ : of_noisy_);
+    const std::vector<Detection> all = e.robot().detect(e.detector(), trace, out, settings(e));
+    for (const Detection& d : all) out.marks.push_back(d.mark);
     add_detection_metrics(trace, out, score);
-    add_score_metrics(said, score);
+    add_score_metrics(all, score);
   }
   if (e.closed_loop()) {
     add_reaction_metrics(ideal(e), ideal(e.with_detector("")), score);
   }
   if (allocations_are_counted())
-    score.set(Metric::kAllocs, allocations_per_step(*runner(e, ideal(e))));
+    score.set(Metric::kAllocs, allocations_per_step({pair(e, ideal(e)), ideal(e)}));
   return score;
 }
 

@@ -3,9 +3,11 @@
 /// Scoring: every entry is judged on a recorded trace before anything is timed.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/roster/robot.h"
@@ -59,7 +61,7 @@ class Suite {
   Run run(const Entry& entry);
 
   /// A runner over the trace that was scored, for the clock.
-  std::unique_ptr<Runner> runner(const Entry& entry);
+  Runner runner(const Entry& entry);
 
   const SuiteOptions& options() const { return options_; }  ///< as constructed, but for sensors
 
@@ -69,27 +71,33 @@ class Suite {
 
  private:
   DetectorSettings settings(const Entry& entry) const;
-  std::unique_ptr<Runner> runner(const Entry& entry, const Trace& trace) const;
+  Pair pair(const Entry& entry, const Trace& trace) const;
   std::string error(const Entry& entry, const Output& of_ideal, const Output& of_noisy);
   const Trace& ideal(const Entry& entry);
   const Trace& noisy(
       const Entry& entry);  // by the sensors, or by the noise probe if they are ideal
-  // what an estimator makes of a trace, without a detector
-  struct Estimate {
-    Output output;
-    double force_rmse;  // [N]; NaN where the trace has no force, or is not scored
+  // whose truth an entry meets: its scenario's, or where its marks stop the motor, its own
+  struct Truth {
+    explicit Truth(const Entry& entry);
+    bool closed_loop() const { return !detector.empty(); }
+    friend auto operator<=>(const Truth&, const Truth&) = default;
+
+    const Robot* robot;
+    const Scenario* scenario;
+    std::string estimator, detector;  // of a closed loop; else ""
   };
-  using Estimates = std::map<std::string, Estimate>;  // by trace and estimator
-  const Estimate& estimate(const Entry& entry, const Trace& trace, Estimates& made);
-  double force_rmse(const Entry& entry, const Output& output);
+  using Outputs = std::map<std::pair<Truth, std::string>, Output>;  // by estimator, too
+  const Output& estimate(const Entry& entry, const Trace& trace, Outputs& made);
+  const Score& of_estimator(const Entry& entry);
+  void add_force_metric(const Entry& entry, const Output& output, Score& to);
   bool is_ideal(const Entry& entry) const;
   const Trace& scored(const Entry& entry);
 
   SuiteOptions options_;
-  std::map<std::string, Trace> ideal_, noisy_;  // by group; a closed loop's by name
-  std::string estimated_;                       // the group of
-  Estimates of_ideal_, of_noisy_;
-  std::map<std::string, std::unique_ptr<const ArmForces>> forces_;  // by robot
+  std::map<Truth, Trace> ideal_, noisy_;
+  Outputs of_ideal_, of_noisy_;                            // of one scenario
+  std::map<std::pair<Truth, std::string>, Score> scores_;  // without a detector
+  std::map<const Robot*, std::unique_ptr<const ArmForces>> forces_;
 };
 
 }  // namespace tauext

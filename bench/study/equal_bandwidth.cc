@@ -51,7 +51,7 @@ Trace run_of(const Robot& r, const char* name, const ModelError& error = {}) {
 }
 
 Output estimate(const Robot& r, const std::string& specification, const Trace& t) {
-  return r.runner(specification, "", t)->run();
+  return r.run(specification, t);
 }
 
 // the runs that all estimators share
@@ -89,9 +89,9 @@ double measured_bandwidth(const SharedRuns& runs, const std::string& specificati
 }
 
 double measured_cpu(const SharedRuns& runs, const std::string& specification) {
-  const auto runner = runs.robot.runner(specification, "", runs.free);
+  Runner runner(runs.robot.pair(specification, "", runs.free), runs.free);
   double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 200; ++i) best = std::min(best, batch_seconds(*runner));
+  for (int i = 0; i < 200; ++i) best = std::min(best, batch_seconds(runner));
   return 1e9 * best / Runner::kBatch;
 }
 

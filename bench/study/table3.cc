@@ -6,7 +6,7 @@
 #include <chrono>
 #include <memory>
 
-#include "bench/roster/stages.h"
+#include "bench/roster/pair.h"
 #include "bench/score/metrics.h"
 #include "estimators/ekf.h"
 #include "estimators/ndob.h"
@@ -42,9 +42,8 @@ std::string simulation_times() {
   const double simulation =
       seconds_of([&] { trace = record(load_robot("wallmobot3"), scenario("wallmobot3", "step")); });
   const auto estimation = [&](auto estimator) {
-    RunnerOf<3> runner(std::make_unique<EstimatorStageOf<decltype(estimator)>>(estimator), nullptr,
-                       trace);
-    return seconds_of([&] { runner.run(); });
+    Pair pair(std::make_unique<EstimatorStageOf<decltype(estimator)>>(estimator), nullptr);
+    return seconds_of([&] { pair.run(trace); });
   };
   using EkfOfArm = Ekf<WallMoBot3>;
   using NdobOfArm = Ndob<WallMoBot3>;
@@ -58,8 +57,7 @@ std::string simulation_times() {
 
 template <class E>
 std::array<StepResponse, 3> responses(const Trace& trace, const E& estimator) {
-  RunnerOf<3> runner(std::make_unique<EstimatorStageOf<E>>(estimator), nullptr, trace);
-  const Output out = runner.run();
+  const Output out = Pair(std::make_unique<EstimatorStageOf<E>>(estimator), nullptr).run(trace);
   std::array<StepResponse, 3> r;
   for (int j = 0; j < 3; ++j)
     r[j] = step_response(trace.t, trace.tau_ext.row(j), out.tau_ext.row(j));

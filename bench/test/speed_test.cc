@@ -12,8 +12,8 @@
 #include "bench/live/histogram.h"
 #include "bench/live/live.h"
 #include "bench/peers/textbook_ekf.h"
+#include "bench/roster/pair.h"
 #include "bench/roster/robots.h"
-#include "bench/roster/stages.h"
 #include "estimators/ekf.h"
 #include "estimators/ndob.h"
 #include "estimators/runs/runs.h"
@@ -24,45 +24,52 @@ namespace {
 
 using peers::TextbookEkf;
 
-double seconds_of_a_batch(Runner& r) {
+using Batch = std::function<void()>;
+
+double seconds_of(const Batch& batch) {
   const auto start = std::chrono::steady_clock::now();
-  r.batch();
+  batch();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 // median over pairs of time(a) / time(b)
-double median_ratio(Runner& a, Runner& b) {
+double median_ratio(const Batch& a, const Batch& b) {
   constexpr int kPairs = 301;
-  a.batch(), b.batch();
+  a(), b();
   std::vector<double> r;
   for (int i = 0; i < kPairs; ++i) {
-    const double time_a = seconds_of_a_batch(a);
-    r.push_back(time_a / seconds_of_a_batch(b));
+    const double time_a = seconds_of(a);
+    r.push_back(time_a / seconds_of(b));
   }
   std::nth_element(r.begin(), r.begin() + kPairs / 2, r.end());
   return r[kPairs / 2];
 }
 
-using Make = std::function<std::unique_ptr<Runner>()>;
+using Make = std::function<Batch()>;  // each at another place in memory
 
 // the first of up to five that reaches the limit, else the last: a neighbour on the machine can
-// spoil one for a while, a place in memory a runner for its life (a ratio of 2.0 where 60 others
-// were 2.8), so each attempt has runners at other places; a slower estimator spoils them all
+// spoil one for a while, a place in memory a batch for its life (a ratio of 2.0 where 60 others
+// were 2.8), so each attempt has batches at other places; a slower estimator spoils them all
 double ratio(const Make& a, const Make& b, double limit) {
-  std::vector<std::unique_ptr<Runner>> kept;
+  std::vector<Batch> kept;
   double r = 0;
   for (int attempt = 0; attempt < 5 && r < limit; ++attempt) {
-    Runner& first = *kept.emplace_back(a());
-    Runner& second = *kept.emplace_back(b());
-    r = median_ratio(first, second);
+    kept.push_back(a()), kept.push_back(b());
+    r = median_ratio(kept[kept.size() - 2], kept.back());
   }
   return r;
+}
+
+Batch batch_of(Pair pair, const Trace& trace) {
+  return [runner = std::make_shared<Runner>(std::move(pair), trace)] { runner->batch(); };
 }
 
 class Speed : public testing::Test {
  protected:
   Make runner(const char* estimator) const {
-    return [this, estimator] { return robot("wallmobot3").runner(estimator, "", trace_); };
+    return [this, estimator] {
+      return batch_of(robot("wallmobot3").pair(estimator, "", trace_), trace_);
+    };
   }
   Trace trace_ = record(load_robot("wallmobot3"), scenario("wallmobot3", "sine"));
 };
@@ -70,9 +77,9 @@ class Speed : public testing::Test {
 TEST_F(Speed, TheEkfIsEightTimesFasterThanTheDenseTextbookForm) {
   using Textbook = TextbookEkf<double>;
   const Make textbook = [&] {
-    return std::make_unique<RunnerOf<3>>(std::make_unique<EstimatorStageOf<Textbook>>(
-                                             Textbook(Ekf<WallMoBot3>::Parameters::paper())),
-                                         nullptr, trace_);
+    auto stage = std::make_unique<EstimatorStageOf<Textbook>>(
+        Textbook(Ekf<WallMoBot3>::Parameters::paper()));
+    return batch_of({std::move(stage), nullptr}, trace_);
   };
   const double r = ratio(textbook, runner("ekf"), 9);
   std::printf("textbook / ekf: %.2f\n", r);
@@ -83,7 +90,7 @@ TEST_F(Speed, TheTestbedsEkfTakesLessThanHalfOfWallmobot3s) {
   // which takes up to 180 ns: so one joint stays below 80
   const Scenario& s = scenario("testbed1", "model_check");
   const Trace trace = record(load_for("testbed1", s), s);
-  const Make one = [&] { return robot("testbed1").runner("ekf", "", trace); };
+  const Make one = [&] { return batch_of(robot("testbed1").pair("ekf", "", trace), trace); };
   const double r = ratio(runner("ekf"), one, 2.3);
   std::printf("wallmobot3's ekf / testbed1's: %.2f\n", r);
   EXPECT_GE(r, 2.3);
@@ -111,22 +118,21 @@ TEST_F(Speed, EveryOtherEstimatorKeepsItsDistanceToTheEkf) {
 
 // kRuns of an estimator at once over samples of one, each a little later than the last
 template <ForRuns E>
-class AtOnce final : public Runner {
+class AtOnce {
  public:
   AtOnce(const typename E::Parameters& p, const Trace& trace) : runs_(WallMoBot3(), p) {
-    for (int k = 0; k < kBatch; ++k) {
+    for (int k = 0; k < Runner::kBatch; ++k) {
       for (int i = 0; i < kRuns; ++i) put(trace.measurement<3>(k + 10 * i), i, samples_[k]);
     }
   }
-  Output run() override { return {}; }
-  void batch() override {
+  void batch() {
     runs_.reset();
     for (const auto& y : samples_) sum_ += runs_.update(y).tau_ext[0][0];
   }
 
  private:
   Runs<E> runs_;
-  std::vector<typename Runs<E>::Sample> samples_{kBatch};
+  std::vector<typename Runs<E>::Sample> samples_{Runner::kBatch};
   double sum_ = 0;
 };
 
@@ -135,8 +141,9 @@ TEST_F(Speed, RunsAtOnceTakeLessThanARunAlone) {
   GTEST_SKIP() << "built without AVX2 (TAUEXT_ARCH): a register holds two runs";
 #endif
   const auto check = [&]<typename E>(const char* name, double least) {
-    const Make at_once = [&] {
-      return std::make_unique<AtOnce<E>>(E::Parameters::paper(), trace_);
+    const Make at_once = [&]() -> Batch {
+      const auto all = std::make_shared<AtOnce<E>>(E::Parameters::paper(), trace_);
+      return [all] { all->batch(); };
     };
     const double r = kRuns * ratio(runner(name), at_once, least / kRuns);
     std::printf("%s / one of %d at once: %.2f\n", name, kRuns, r);

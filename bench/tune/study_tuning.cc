@@ -61,7 +61,7 @@ TrainingRuns::TrainingRuns(const study::StudyRuns& runs, const study::Condition&
 std::vector<study::EstimatedRuns> TrainingRuns::seen_by(const std::string& estimator) const {
   std::vector<study::EstimatedRuns> all;
   for (const std::vector<Trace>& batch : batches_) {
-    all.push_back({batch, believer_->session(batch)});
+    all.push_back({batch, make_session(*believer_, batch)});
     for (const std::string& why : all.back().session->estimate(estimator)) {
       if (!why.empty()) return {};
     }
@@ -79,7 +79,7 @@ double TrainingRuns::recall(const std::vector<study::EstimatedRuns>& seen, const
   t.sets = {calibrate_on(*believer_, std::span(seen).first(free_), o)};
   t.sets.front().robot = robot_.name(), t.sets.front().fingerprint = robot_.fingerprint();
   const Asked asked{p.detector,
-                    study::judged_with(trained_for(t, robot_.name(), 0, p.estimator, p.detector))};
+                    study::judged_with(trained_for(t, robot_, 0, p.estimator, p.detector))};
   std::vector<study::RegionCount> counts(region_classes().size());
   for (std::size_t i = free_; i < seen.size(); ++i) {
     const auto answers =

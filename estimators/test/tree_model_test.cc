@@ -142,23 +142,20 @@ TEST(TreeModel, SaysWhereItIsSingular) {
 }
 
 TEST(RunTerms, AreComputedOnceAtASampleAndAlwaysElsewhere) {
-  std::vector<Measurement<1>> samples(5);
-  for (int k = 0; k < 5; ++k) samples[static_cast<std::size_t>(k)].q[0] = k;
-  RunTerms<1> terms(samples);
+  const std::array<double, 5> q{0, 1, 2, 3, 4}, qd{};
+  RunTerms<1> terms({.joints = 1, .size = 5, .q = q.data(), .qd = qd.data()});
   int computed = 0;
-  const auto ask = [&](RunTerms<1>::At& at, double q, double qd = 0) {
-    return terms
-        .dynamics(at, Vec<1>(q), Vec<1>(qd),
-                  [&] {
-                    ++computed;
-                    return Dynamics<1>{Mat<1>(q), Vec<1>(qd)};
-                  })
-        .B(0, 0);
+  const auto ask = [&](RunTerms<1>::At& at, double x, double speed = 0) {
+    const auto compute = [&] {
+      ++computed;
+      return Dynamics<1>{Mat<1>(x), Vec<1>(speed)};
+    };
+    return terms.dynamics(at, Vec<1>(x), Vec<1>(speed), compute).B(0, 0);
   };
   RunTerms<1>::At first = 0, second = 0;
-  for (const double q : {0., 1., 2., 3., 4.}) EXPECT_EQ(ask(first, q), q);
+  for (const double x : q) EXPECT_EQ(ask(first, x), x);
   EXPECT_EQ(computed, 5);
-  for (const double q : {0., 0., 1., 4.}) EXPECT_EQ(ask(second, q), q) << "two left out";
+  for (const double x : {0., 0., 1., 4.}) EXPECT_EQ(ask(second, x), x) << "two left out";
   EXPECT_EQ(computed, 5);
   EXPECT_EQ(ask(second, 4, 0.1), 4) << "another speed";
   EXPECT_EQ(ask(second, 0.5), 0.5) << "no sample";

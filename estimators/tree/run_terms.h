@@ -5,12 +5,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "estimators/concepts.h"
 #include "estimators/math/lanes.h"
+#include "estimators/samples/columns.h"
 
 namespace tauext {
 
@@ -23,8 +22,8 @@ class RunTerms {
   /// Where in the run who asks is; each has one of its own.
   using At = std::size_t;
 
-  /// @param samples of the run, which must outlive it
-  explicit RunTerms(std::span<const Measurement<N, Scalar>> samples) : samples_(samples) {}
+  /// @param samples of the run, of N joints
+  explicit RunTerms(const SampleColumns<Scalar>& samples) : samples_(samples) {}
 
   /// compute(), or what it gave at this sample before; where (q [rad], qd [rad/s]) is none of the
   /// next samples, always compute(). It stays until the next question.
@@ -42,8 +41,8 @@ class RunTerms {
   /// The same of friction().
   template <class Compute>
   const VecN& friction(At& at, const VecN& qd, const Compute& compute) noexcept {
-    return answer(
-        friction_, at, [&](const auto& y) { return same(y.qd, qd); }, compute);
+    const auto here = [&](At k) { return same(qd, samples_.qd, k); };
+    return answer(friction_, at, here, compute);
   }
 
  private:
@@ -54,24 +53,25 @@ class RunTerms {
     Value elsewhere;
   };
 
-  static bool same(const VecN& a, const VecN& b) noexcept {
+  // whether x is column k
+  static bool same(const VecN& x, const Scalar* columns, At k) noexcept {
     using tauext::all;
-    for (int j = 0; j < N; ++j) {
-      if (!all(a[j] == b[j])) return false;
+    for (At j = 0; j < N; ++j) {
+      if (!all(x[static_cast<Eigen::Index>(j)] == columns[k * N + j])) return false;
     }
     return true;
   }
-  static auto is_at(const VecN& q, const VecN& qd) noexcept {
-    return [&](const auto& y) { return same(y.q, q) && same(y.qd, qd); };
+  auto is_at(const VecN& q, const VecN& qd) const noexcept {
+    return [&](At k) { return same(q, samples_.q, k) && same(qd, samples_.qd, k); };
   }
 
   template <class Value, class Here, class Compute>
   const Value& answer(Answers<Value>& answers, At& at, const Here& here,
                       const Compute& compute) noexcept {
-    for (At k = at; k < samples_.size() && k < at + kAhead; ++k) {
-      if (!here(samples_[k])) continue;
+    for (At k = at; k < samples_.size && k < at + kAhead; ++k) {
+      if (!here(k)) continue;
       at = k;
-      answers.known.resize(samples_.size()), answers.at.resize(samples_.size());
+      answers.known.resize(samples_.size), answers.at.resize(samples_.size);
       if (!answers.known[k]) answers.known[k] = true, answers.at[k] = compute();
       return answers.at[k];
     }
@@ -80,7 +80,7 @@ class RunTerms {
 
   static constexpr At kAhead = 64;  // an estimator may have left out so many
 
-  std::span<const Measurement<N, Scalar>> samples_;
+  SampleColumns<Scalar> samples_;
   Answers<Dynamics<N, Scalar>> dynamics_, momentum_dynamics_;
   Answers<VecN> friction_;
 };

@@ -155,7 +155,7 @@ TEST(Regions, OurOwnDynamicsMakeTheSameTruthAsMuJoCo) {
   s.regions[1].meeting = Meeting::kGrazing;
   s.regions[1].depth = 5e-3, s.regions[1].rise = 0.03;
   const std::vector<Scenario> all(3, s);
-  const std::vector<Trace> ours = simulate_plain(model, all, 3, tree_motion<3>);
+  const std::vector<Trace> ours = simulate_plain(model, all);
   const Trace truth = simulate(model, s);
   for (const Trace& t : ours) EXPECT_LT(difference(truth, t), 1e-9);
   EXPECT_GT(*std::max_element(truth.contact_force.begin(), truth.contact_force.end()), 50);

@@ -21,12 +21,12 @@ inline Trace record_of(const std::string& robot, const std::string& name) {
 
 inline Output run_by_name(const std::string& robot_name, const std::string& estimator,
                           const Trace& trace, const std::string& detector = "") {
-  return robot(robot_name).runner(estimator, detector, trace)->run();
+  return robot(robot_name).pair(estimator, detector, trace).run(trace);
 }
 
 template <class E>
 Output run_of(const E& estimator, const Trace& trace) {
-  return RunnerOf<E::kDof>(std::make_unique<EstimatorStageOf<E>>(estimator), nullptr, trace).run();
+  return Pair(std::make_unique<EstimatorStageOf<E>>(estimator), nullptr).run(trace);
 }
 
 // largest |error| of joint 1 over the samples that count

@@ -158,7 +158,7 @@ TEST_P(Testbed, ButtonIsEstimatedWhileMovingWithPeaksWhereItStartsAndStops) {
 TEST_P(Testbed, CollisionIsMarkedAtOnceAndStopsTheMotor) {
   const Scenario& s = scenario("testbed1", "collision");
   const Trace t = simulate(load_for("testbed1", s), s, {}, {},
-                           robot("testbed1").supervisor(GetParam(), "pan_tompkins"));
+                           robot("testbed1").supervisor(GetParam(), "pan_tompkins", {}));
   int contact = 0;
   while (!t.contact[contact]) ++contact;
   ASSERT_GT(t.stopped_at, 0);

@@ -32,13 +32,13 @@ TEST(Live, EstimatesAndMarksAreThoseOfTheSuite) {
   const Trace trace = blow();
   const Robot& r = robot("wallmobot3");
   for (const std::string& e : r.estimators()) {
-    const Output expected = r.runner(e, "pan_tompkins", trace)->run();
-    const auto stepper = r.stepper(e, "pan_tompkins", trace);
-    stepper->reset();
+    const Output expected = r.pair(e, "pan_tompkins", trace).run(trace);
+    Pair pair = r.pair(e, "pan_tompkins", trace);
+    pair.reset();
     int k = 0;
     for (const Reading& y : readings_of(trace)) {
       Vec<3> tau_ext;
-      const Stepped s = stepper->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext.data());
+      const StepResult s = pair.step(y.t, y.q.data(), y.qd.data(), y.tau.data(), tau_ext.data());
       ASSERT_EQ(tau_ext, Vec<3>(expected.tau_ext.col(k))) << e << " at " << y.t;
       ASSERT_EQ(s.detection.mark, expected.marks[k] != 0) << e << " at " << y.t;
       ASSERT_EQ(s.status, expected.status[k]);
@@ -72,7 +72,7 @@ TEST(Live, FiguresAreTheMetrics) {
   LiveEstimation estimation(r, {"mo1", "truth"}, "", {}, trace, nullptr);
   for (const Reading& y : readings_of(trace)) estimation.take(y);
   Score score;
-  add_error_metrics(trace, r.runner("mo1", "", trace)->run(), trace.t[0], score);
+  add_error_metrics(trace, r.run("mo1", trace), trace.t[0], score);
   EXPECT_NEAR(estimation.figures(0).rmse(), *score.get(Metric::kRmse), 1e-9);
   EXPECT_EQ(estimation.figures(0).largest_error, *score.get(Metric::kMax));
   EXPECT_EQ(estimation.figures(1).rmse(), 0);

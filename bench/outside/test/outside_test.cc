@@ -147,7 +147,7 @@ TEST(OutsideSensor, IsComparedAsTorques) {
   trace.tau_ext.resize(0, 0);
   take_sensor(r, trace);
   EXPECT_LT((trace.tau_ext_of_driver - truth).cwiseAbs().maxCoeff(), 1e-6);
-  const Output out = r.runner("mo2", "", trace)->run();
+  const Output out = r.run("mo2", trace);
   const Row row = score_outside({&trace, "log", &r, nullptr, 1}, {"mo2", "", out});
   EXPECT_GT(row.score.get(Metric::kMakerCorrelation).value(), 0.99);
   EXPECT_NEAR(row.score.get(Metric::kMakerGain).value(), 1, 0.01);

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/roster/session/session.h"
+#include "bench/roster/session/answers.h"
 #include "estimators/detectors/marking.h"
 
 namespace tauext::detail {

@@ -4,35 +4,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bench/roster/session/answers.h"
 #include "bench/roster/thresholds.h"
-#include "estimators/types.h"
+#include "mjcf/trace/trace.h"
 
 namespace tauext {
 
-/// What a detector said of one run, from a time on.
-struct Answers {
-  /// A fiducial mark.
-  struct Mark {
-    double t;         ///< [s]
-    Contact contact;  ///< what for
-  };
-  /// [s] from one rise through a level to the next, at least
-  static constexpr double kApart = 0.2;
-
-  std::vector<Mark> marks;                 ///< all there are
-  std::vector<std::vector<double>> rises;  ///< [s] where the score rose through each level
-  long samples = 0;                        ///< that were looked at
-  long alarmed = 0;                        ///< of them, with a score of 1 or more
-};
-
 /// A detector that is asked.
 struct Asked {
-  std::string_view detector;  ///< specification
+  std::string detector;       ///< specification
   DetectorSettings settings;  ///< how it is set
 };
 
@@ -61,5 +47,13 @@ class Session {
   /// with a metric.
   virtual std::vector<Eigen::MatrixXd> covariance(const Asked& detector, double from) = 0;
 };
+
+class Robot;
+
+/// Of a robot, over traces, both of which must outlive it. So many traces as Robot::runs_at_once()
+/// take the least time each, if they have the same time stamps and no sample is left out; more are
+/// done one by one.
+/// @throws std::invalid_argument for traces of another number of joints
+std::unique_ptr<Session> make_session(const Robot& robot, std::span<const Trace> traces);
 
 }  // namespace tauext

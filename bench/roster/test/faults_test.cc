@@ -48,12 +48,12 @@ struct Run {
 Run run(const Robot& robot, const std::string& estimator, const Samples& samples) {
   Run out{Eigen::MatrixXd(robot.dof(), samples.size()), {}, 0, {}};
   for (const std::string& d : robot.detectors()) {
-    const auto stepper = robot.stepper(estimator, d, {}, {});
+    Pair pair = robot.pair(estimator, d, {});
     out.status.clear();
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const Sample& y = samples[k];
-      const Stepped s =
-          stepper->step(y.t, y.q.data(), y.qd.data(), y.tau.data(), out.tau_ext.col(k).data());
+      const StepResult s =
+          pair.step(y.t, y.q.data(), y.qd.data(), y.tau.data(), out.tau_ext.col(k).data());
       out.status.push_back(s.status);
       out.joints += s.joints != 0;
       out.marks[d] += s.detection.mark;

@@ -54,7 +54,7 @@ TEST_P(FileRobot, EveryEstimatorFindsALoadInMotion) {
   const Trace trace = record(r.load_for(s), s);
   for (const std::string& e : r.estimators()) {
     if (is_baseline(e)) continue;
-    const Output out = r.runner(e, "", trace)->run();
+    const Output out = r.run(e, trace);
     Score score;
     add_error_metrics(trace, out, 2, score);
     EXPECT_LT(*score.get(Metric::kRmse), 0.02) << e;  // of 5 N m
@@ -80,11 +80,11 @@ TEST_P(FileRobot, NoStepAllocates) {
   Eigen::VectorXd out(n);
   for (const std::string& e : r.estimators()) {
     if (is_baseline(e)) continue;
-    const auto stepper = r.stepper(e, "contact_classifier", Trace());
-    stepper->step(0, q.data(), qd.data(), tau.data(), out.data());
+    Pair pair = r.pair(e, "contact_classifier", Trace());
+    pair.step(0, q.data(), qd.data(), tau.data(), out.data());
     EXPECT_EQ(allocations_of([&] {
                 for (int k = 1; k < 10; ++k) {
-                  stepper->step(1e-3 * k, q.data(), qd.data(), tau.data(), out.data());
+                  pair.step(1e-3 * k, q.data(), qd.data(), tau.data(), out.data());
                 }
               }),
               0u)

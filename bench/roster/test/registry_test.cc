@@ -62,7 +62,7 @@ TEST_F(Registry, TakesAnEstimatorAndADetectorOfNewNamesWhichHaveTheirKeys) {
   EXPECT_TRUE(holds(r->estimators(), "own"));
   EXPECT_TRUE(holds(r->tunable(), "own"));
   EXPECT_TRUE(holds(r->detectors(), "own_detector"));
-  EXPECT_NO_THROW(r->stepper("own:bandwidth=90:max_gap=0.1", "own_detector:threshold=3", Trace()));
+  EXPECT_NO_THROW(r->pair("own:bandwidth=90:max_gap=0.1", "own_detector:threshold=3", Trace()));
 }
 
 TEST_F(Registry, RefusesAnEstimatorOfATakenName) {
@@ -105,7 +105,7 @@ TEST_F(Registry, ListsASpecificationAsARowThatIsRunAsItSays) {
   EXPECT_FALSE(is_baseline(all.back()));
 
   const double q = 0.1, qd = 0.2, tau = 120;
-  const auto steps = [&](Stepper& s) {
+  const auto steps = [&](Pair s) {
     double out = 0;
     for (int k = 0; k < 50; ++k) s.step(1e-3 * k, &q, &qd, &tau, &out);
     return out;
@@ -115,7 +115,7 @@ TEST_F(Registry, ListsASpecificationAsARowThatIsRunAsItSays) {
   for (int k = 0; k < 50; ++k) {
     expected = by_hand.update({1e-3 * k, Vec<1>(q), Vec<1>(qd), Vec<1>(tau)}).tau_ext;
   }
-  EXPECT_EQ(steps(*r->stepper(all.back(), "", Trace())), expected[0]);
+  EXPECT_EQ(steps(r->pair(all.back(), "", Trace())), expected[0]);
 }
 
 TEST_F(Registry, RefusesASpecificationThatIsUnknownOrTakenOrOutOfRange) {

@@ -66,7 +66,7 @@ const Robot& wallmobot3() {
 }
 
 Eigen::MatrixXd by_name(const std::string& specification) {
-  return wallmobot3().runner(specification, "", trace())->run().tau_ext;
+  return wallmobot3().run(specification, trace()).tau_ext;
 }
 
 template <class E>
@@ -93,8 +93,8 @@ TEST(Specification, OfABandwidthGivesTheEstimatesOfThatDesignToTheBit) {
 TEST(Specification, SetsTheBandwidthOfEveryTunableEstimator) {
   const std::vector<std::string> tunable = wallmobot3().tunable();
   std::size_t count = 0;
-  for_each_estimator(kArm, [&](auto make) {
-    using E = decltype(make(Trace()));
+  for_each_estimator(kArm, [&](const auto& entry) {
+    using E = decltype(entry());
     if (std::count(tunable.begin(), tunable.end(), E::kName) == 0) return;
     if constexpr (requires { E::Parameters::for_bandwidth(kArm, 70.); }) {
       EXPECT_EQ(by_name(at_bandwidth(E::kName, 70)),
@@ -113,6 +113,18 @@ TEST(Specification, TunableEstimatorsAreThoseOfBothRobotsThatHaveAFormulaForABan
       "dkf_adaptive",     "smo", "aob", "eso", "ekf",     "ndob"};
   EXPECT_EQ(wallmobot3().tunable(), tunable);
   EXPECT_EQ(robot("testbed1").tunable(), tunable);
+}
+
+TEST(Specification, OfATraceWhoseTorqueIsReadAtInstantsNeedNotSayIt) {
+  Trace instants = trace();
+  instants.torque_at_instants = true;
+  const auto by_trace = [&](const char* e) { return wallmobot3().run(e, instants).tau_ext; };
+  for (const std::string e : {"mo2", "ekf", "mo2:bandwidth=50"}) {
+    EXPECT_EQ(by_trace(e.c_str()), by_name(e + ":torque=instant")) << e;
+    EXPECT_NE(by_trace(e.c_str()), by_name(e)) << e;
+  }
+  EXPECT_EQ(by_trace("mo2:torque=held"), by_name("mo2")) << "what it says counts";
+  EXPECT_EQ(by_trace("zero"), by_name("zero")) << "which has no such key";
 }
 
 TEST(Specification, ChangesWhatItNamesOfTheRostersOwnParameters) {
@@ -170,7 +182,7 @@ TEST(Specification, ThatMeansNothingSaysWhatWouldListingUnitsAndLimits) {
 // ---- detectors, behind mo1
 
 const Output& estimates() {
-  static const Output out = wallmobot3().runner("mo1", "", trace())->run();
+  static const Output out = wallmobot3().run("mo1", trace());
   return out;
 }
 

@@ -33,7 +33,7 @@ std::map<std::string, Answer> answers(const Robot& robot, const Trace& trace, do
   std::map<std::string, Answer> all;
   for (const char* name : {"inverse_dynamics", "mo1", "mo2", "mo3", "ndob_wb", "dkf",
                            "dkf_adaptive", "smo", "aob", "eso", "ekf:bandwidth=30"}) {
-    const Output out = robot.runner(name, "", trace)->run();
+    const Output out = robot.run(name, trace);
     Score score;
     add_error_metrics(trace, out, 0, score);
     all[name] = {*score.get(Metric::kRmse) / step, out.tau_ext.maxCoeff() / step - 1};

@@ -2,11 +2,19 @@
 // What ci/bench prints first: the suite of tauext-bench, with Google Benchmark's flags alone. It
 // compiles in a third of the time of tauext-bench.
 #include <CLI/CLI.hpp>
+#include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "bench/program/program.h"
+#include "bench/roster/tree_robot.h"
 #include "bench/run/suite/benchmark_flags.h"
 #include "bench/run/suite/suite_run.h"
+
+std::unique_ptr<const tauext::Robot> tauext::detail::tree_robot(int, const std::string&,
+                                                                const Model&) {
+  throw std::invalid_argument("tauext-first-table is without robots from files: tauext-bench");
+}
 
 int main(int argc, char** argv) {
   tauext::BenchmarkFlags flags(argc, argv);

@@ -48,9 +48,9 @@ void run_entry(benchmark::State& state, Suite& suite, Row& row, const SuiteHooks
     state.SkipWithError(row.score.error.c_str());
     return;
   }
-  const auto runner = suite.runner(row.entry);
+  Runner runner = suite.runner(row.entry);
   for (auto _ : state) {
-    runner->batch();
+    runner.batch();
     benchmark::ClobberMemory();
   }
   for (const auto& [key, value] : row.score.by_key()) state.counters[key] = value;

@@ -84,15 +84,5 @@ TEST(Entry, IsResolvedOrRefused) {
   EXPECT_THROW(Entry("testbed1", "hold", "ekf", "ear"), std::invalid_argument);
 }
 
-TEST(Entry, InALoopElasticDrivesReadTorqueAtInstants) {
-  const Robot& r = robot("wallmobot3");
-  EXPECT_EQ(for_drives(r, "mo2", {}), "mo2");
-  EXPECT_EQ(for_drives(r, "mo2", {.coulomb = 0.01}), "mo2") << "rigid";
-  EXPECT_EQ(for_drives(r, "mo2", {.stiffness = 200}), "mo2:torque=instant");
-  EXPECT_EQ(for_drives(r, "mo2:bandwidth=50", {.stiffness = 200}),
-            "mo2:bandwidth=50:torque=instant");
-  EXPECT_EQ(for_drives(r, "zero", {.stiffness = 200}), "zero") << "which has no such key";
-}
-
 }  // namespace
 }  // namespace tauext::test

@@ -123,8 +123,8 @@ TEST(Suite, APerfectStopHasARecallOfOne) {
 }
 
 TEST(Suite, ATruthCannotStopAMotor) {
-  EXPECT_THROW(robot("testbed1").supervisor("truth", "pan_tompkins"), std::invalid_argument);
-  EXPECT_THROW(robot("testbed1").supervisor("ekf", "ear"), std::invalid_argument);
+  EXPECT_THROW(robot("testbed1").supervisor("truth", "pan_tompkins", {}), std::invalid_argument);
+  EXPECT_THROW(robot("testbed1").supervisor("ekf", "ear", {}), std::invalid_argument);
 }
 
 TEST(Suite, AnErrorOfTheLoadcellIsAnErrorOfTheEstimate) {

@@ -91,8 +91,8 @@ class DetectionStudy::Study {
   // an estimator, the detectors that are tried behind it, and the cell of the first of them
   struct Behind {
     std::string estimator;
-    std::vector<std::string> detectors;
-    std::size_t cell;
+    std::vector<Asked> detectors;
+    std::size_t cell = 0;
   };
   struct Tried {
     const Condition* condition;
@@ -111,10 +111,12 @@ class DetectionStudy::Study {
     models_.try_emplace(plant_of(c), nullptr);
     for (Behind& b : tried.behind) {
       b.cell = cells_.size();
-      for (const std::string& d : b.detectors) {
-        settings(c, b.estimator, d);  // which may throw, before it takes its time
-        cells_.push_back(
-            {.condition = c.name, .estimator = b.estimator, .detector = d, .Ts = 1e-3 * c.every});
+      for (Asked& d : b.detectors) {
+        d.settings = settings(c, b.estimator, d.detector);
+        cells_.push_back({.condition = c.name,
+                          .estimator = b.estimator,
+                          .detector = d.detector,
+                          .Ts = 1e-3 * c.every});
       }
     }
     tried_.push_back(std::move(tried));
@@ -127,8 +129,8 @@ class DetectionStudy::Study {
     const auto add = [&](const std::string& e, const std::string& d) {
       auto at =
           std::find_if(all.begin(), all.end(), [&](const Behind& b) { return b.estimator == e; });
-      if (at == all.end()) at = all.insert(at, {e, {}, 0});
-      at->detectors.push_back(d);
+      if (at == all.end()) at = all.insert(at, {e, {}});
+      at->detectors.push_back({d, {}});
     };
     bool tuned = false;
     for (const TunedRow& p : o.tuned) {
@@ -149,7 +151,7 @@ class DetectionStudy::Study {
 
   DetectorSettings settings(const Condition& c, const std::string& e, const std::string& d) const {
     const double noise = c.degradation.sensors.velocity_noise;
-    return judged_with(trained_for(thresholds_, runs_.robot, noise, e, d, c.name));
+    return judged_with(trained_for(thresholds_, robot(runs_.robot), noise, e, d, c.name));
   }
 
   // pieces of jobs of one plant and kind
@@ -199,13 +201,12 @@ class DetectionStudy::Study {
             std::map<std::size_t, Cell>& sums) const {
     const Condition& c = *t.condition;
     const std::vector<Trace> seen = views.by(c.degradation.sensors, c.every);
-    const std::unique_ptr<Session> session = believers_.at(c.believed)->session(seen);
+    const std::unique_ptr<Session> session = make_session(*believers_.at(c.believed), seen);
     for (const Behind& b : t.behind) {
       const std::vector<std::string> why = session->estimate(b.estimator);
-      std::vector<Asked> asked;
-      for (const std::string& d : b.detectors) asked.push_back({d, settings(c, b.estimator, d)});
       std::size_t cell = b.cell;
-      for (const std::vector<Answers>& of_runs : session->answers(asked, kLevels, kScoreFrom)) {
+      for (const std::vector<Answers>& of_runs :
+           session->answers(b.detectors, kLevels, kScoreFrom)) {
         for (std::size_t i = 0; i < jobs.size(); ++i) {
           Cell adds = counted(jobs[i], of_runs[i], views.contact_force(i), moved[i]);
           adds.failed_runs = !why[i].empty();

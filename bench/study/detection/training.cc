@@ -173,7 +173,7 @@ class Training {
     const auto work = [&](int batch) {
       source_.show(batch, [&](const Seen& s) {
         std::unique_ptr<Session> own;
-        if (s.estimated == nullptr) own = s.robot.session(s.traces);
+        if (s.estimated == nullptr) own = make_session(s.robot, s.traces);
         for (auto& [e, by_detector] : result_.sets[s.set].by_estimator) {
           if (own) require_estimates(s, e, own->estimate(e));
           for (auto& [d, trained] : by_detector) visit(s, d, own ? *own : *s.estimated, trained);

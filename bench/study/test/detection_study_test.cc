@@ -231,7 +231,7 @@ TEST(Calibration, OnRecordingsTakesTheLargestAndTriesItOnTheOthers) {
     EXPECT_EQ(h.alarms, 1) << h.detector << ": the loud one, by those of the quiet ones";
   }
   EXPECT_NE(all.trained_on.find("quiet.csv, loud.csv, as_quiet.csv"), std::string::npos);
-  EXPECT_EQ(trained_for(all, "wallmobot3", 0, "mo1", "threshold").at("threshold").threshold,
+  EXPECT_EQ(trained_for(all, robot("wallmobot3"), 0, "mo1", "threshold").at("threshold").threshold,
             of(all));
 }
 

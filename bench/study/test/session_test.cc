@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -37,9 +36,8 @@ std::vector<Trace> blows(int runs) {
 }
 
 std::vector<Asked> all_detectors(const Robot& r) {
-  static std::map<std::string, std::vector<std::string>> names;
   std::vector<Asked> all;
-  for (const std::string& d : names[r.name()] = r.detectors()) all.push_back({d, judged_with({})});
+  for (const std::string& d : r.detectors()) all.push_back({d, judged_with({})});
   return all;
 }
 
@@ -59,7 +57,7 @@ void expect_alike(const std::vector<Trace>& traces, const std::vector<std::strin
                   const std::string& of = "wallmobot3") {
   const Robot& r = robot(of);
   const std::vector<Asked> detectors = all_detectors(r);
-  const std::unique_ptr<Session> all = r.session(traces);
+  const std::unique_ptr<Session> all = make_session(r, traces);
   int marks = 0;
   for (const std::string& e : estimators) {
     const std::vector<std::string> why = all->estimate(e);
@@ -71,7 +69,7 @@ void expect_alike(const std::vector<Trace>& traces, const std::vector<std::strin
     ASSERT_EQ(largest.size(), traces.size());
     for (std::size_t i = 0; i < traces.size(); ++i) {
       SCOPED_TRACE(e + ", run " + std::to_string(i));
-      const std::unique_ptr<Session> one = r.session({&traces[i], 1});
+      const std::unique_ptr<Session> one = make_session(r, {&traces[i], 1});
       EXPECT_EQ(why[i], one->estimate(e).front());
       const auto alone = one->answers(detectors, kLevels, kScoreFrom);
       for (std::size_t d = 0; d < detectors.size(); ++d) {
@@ -162,14 +160,14 @@ TEST(Session, CountsWhereAScoreRisesThroughALevel) {
 TEST(Session, RefusesTracesOfAnotherArm) {
   const std::vector<Trace> traces = blows(1);
   const Robot& other = robot("testbed1");
-  EXPECT_THROW(other.session(traces), std::invalid_argument);
+  EXPECT_THROW(make_session(other, traces), std::invalid_argument);
   EXPECT_THROW(other.detect("threshold", traces.front(), {}, {}), std::invalid_argument);
 }
 
 TEST(Session, OfRunsThatASensorSpoilsSaysWhy) {
   std::vector<Trace> traces = blows(2);
   traces[1].q.setConstant(std::numeric_limits<double>::quiet_NaN());
-  const std::unique_ptr<Session> all = robot("wallmobot3").session(traces);
+  const std::unique_ptr<Session> all = make_session(robot("wallmobot3"), traces);
   const std::vector<std::string> why = all->estimate("mo1");
   EXPECT_EQ(why[0], "");
   EXPECT_EQ(why[1].find("30000 of 30000 samples left out: 30000 bad measurement"), 0u) << why[1];

@@ -51,13 +51,13 @@ TEST(Calibration, ASpecificationThatWasTrainedHasItsOwnThresholds) {
   ThresholdSet set{.robot = "wallmobot3"};
   set.by_estimator["mo1"] = {{"high_pass", trained(1)}, {"high_pass:w=60", trained(2)}};
   const Thresholds all{.sets = {set}};
-  const auto of = [&](const std::string& robot, const std::string& e, const std::string& d) {
-    return trained_for(all, robot, 0, e, d);
+  const auto of = [&](const std::string& name, const std::string& e, const std::string& d) {
+    return trained_for(all, robot(name), 0, e, d);
   };
   EXPECT_EQ(of("wallmobot3", "mo1", "high_pass").at("high_pass").threshold[0], 1);
   EXPECT_EQ(of("wallmobot3", "mo1", "high_pass:w=60").at("high_pass").threshold[0], 2);
   EXPECT_TRUE(of("wallmobot3", "mo1", "").empty());
-  EXPECT_TRUE(trained_for({}, "wallmobot3", 0, "mo1", "high_pass").empty());  // no file
+  EXPECT_TRUE(trained_for({}, robot("wallmobot3"), 0, "mo1", "high_pass").empty());  // no file
   const std::string behind_it = "behind this estimator it has those of high_pass, high_pass:w=60;";
   for (const auto& [robot, e, d, why] :
        {std::tuple{"wallmobot3", "mo1", "high_pass:w=90", behind_it},
@@ -77,7 +77,7 @@ TEST(Calibration, AClassifierHasTheThresholdsOfWhatItIsMadeOf) {
   set.by_estimator["mo2"] = {{"pan_tompkins", trained(1)}};
   const Thresholds all{.sets = {set}};
   const auto of = [&](const std::string& e) {
-    return trained_for(all, "wallmobot3", 0, e, "contact_classifier");
+    return trained_for(all, robot("wallmobot3"), 0, e, "contact_classifier");
   };
   EXPECT_EQ(of("mo1").at("pan_tompkins").threshold[0], 1);
   EXPECT_EQ(of("mo1").at("clamping").threshold[0], 2);
@@ -105,8 +105,8 @@ TEST(Calibration, AClassifierAloneIsTrainedAsAmongOthers) {
   o.detectors = {"contact_classifier", "clamping"};
   const Thresholds alone = calibrate(o);
   for (const std::string d : {"contact_classifier", "clamping"}) {
-    const auto of = trained_for(alone, "wallmobot3", 0, "mo2", d);
-    for (const auto& [part, trained] : trained_for(all, "wallmobot3", 0, "mo2", d))
+    const auto of = trained_for(alone, robot("wallmobot3"), 0, "mo2", d);
+    for (const auto& [part, trained] : trained_for(all, robot("wallmobot3"), 0, "mo2", d))
       EXPECT_EQ(of.at(part).threshold, trained.threshold) << part;
   }
   EXPECT_EQ(alone.sets.front().by_estimator.at("mo2").size(), 2);

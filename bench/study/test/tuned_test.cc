@@ -47,7 +47,9 @@ TEST(Tuned, AFileHoldsPairsAndThresholdsOfConditions) {
   EXPECT_EQ(back.made_by, "tauext-tune hard; tauext-tune light");
   const auto threshold = [&](const char* condition, const char* e, const char* d,
                              const char* part) {
-    return trained_for(back.thresholds, "wallmobot3", 0, e, d, condition).at(part).threshold[0];
+    return trained_for(back.thresholds, robot("wallmobot3"), 0, e, d, condition)
+        .at(part)
+        .threshold[0];
   };
   EXPECT_EQ(threshold("hard", "mo2:bandwidth=50", "high_pass:w=40", "high_pass"), 7);
   EXPECT_EQ(threshold("light", "mo2:bandwidth=50", "high_pass:w=40", "high_pass"), 9);
@@ -57,8 +59,8 @@ TEST(Tuned, AFileHoldsPairsAndThresholdsOfConditions) {
   // thresholds for one condition are for no other
   for (const char* condition : {"", "typical"})
     EXPECT_NE(error_of([&] {
-                trained_for(back.thresholds, "wallmobot3", 0, "mo2:bandwidth=50", "high_pass:w=40",
-                            condition);
+                trained_for(back.thresholds, robot("wallmobot3"), 0, "mo2:bandwidth=50",
+                            "high_pass:w=40", condition);
               }).find("it is for wallmobot3 in hard, wallmobot3 in light;"),
               std::string::npos);
   std::filesystem::remove(path);

@@ -64,7 +64,7 @@ TEST(StudyTuning, LeavesThresholdsForItsPairsInThatCondition) {
   EXPECT_EQ(t.margin, 1.1);
   for (const study::TunedRow& r : tuned_once().rows) {
     const DetectorThresholds known =
-        trained_for(t, "wallmobot3", 1e-4, r.estimator, r.detector, "light");
+        trained_for(t, robot("wallmobot3"), 1e-4, r.estimator, r.detector, "light");
     EXPECT_EQ(known.size(), r.detector.starts_with("contact") ? 2u : 1u);
     for (const auto& [name, trained] : known) EXPECT_GT(trained.threshold.minCoeff(), 0) << name;
   }

@@ -144,7 +144,7 @@ TEST(Ties, OfSeveralRunsAreThoseOfEachRun) {
   Measurement<2, Lanes> y;
   for (int i = 0; i < kWidth; ++i)
     put<2, kWidth>({.q = Vec<2>(0.4 * i, -1.1), .qd = Vec<2>(0.7, 0.3 - i)}, i, y);
-  RunTerms<2, Lanes> terms({&y, 1});
+  RunTerms<2, Lanes> terms({.joints = 2, .size = 1, .q = y.q.data(), .qd = y.qd.data()});
   for (const auto& runs : {arm.with<Lanes>(), arm.with<Lanes>().within(terms)}) {
     for (int asked = 1; asked <= 2; ++asked) {  // the second time from memory
       const auto both = runs.dynamics(y.q, y.qd), momentum = runs.momentum_dynamics(y.q, y.qd);
