@@ -155,9 +155,8 @@ Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
   return thresholds;
 }
 
-// of the file; or trained, if nothing else is said as these conditions want it
-Thresholds thresholds_of(const Flags& f, const std::vector<std::string>& conditions) {
-  if (!f.thresholds.empty()) return read_thresholds(f.thresholds);
+// as these conditions want it, if nothing else is asked for
+Thresholds calibrated(const Flags& f, const std::vector<std::string>& conditions) {
   Progress progress("calibrating");
   return study::calibrate_for(conditions, calibration_of(f, progress));
 }
@@ -168,7 +167,7 @@ int run_calibration(const Flags& f) {
         "--calibrate {}: the name of a file of thresholds ends in .json", f.calibrate_to));
   AtomicFile{f.calibrate_to};  // an unwritable path should not cost a run
   bool usable = true;
-  write_thresholds(f.logs.empty() ? thresholds_of(f, {}) : calibrated_on_logs(f, usable),
+  write_thresholds(f.logs.empty() ? calibrated(f, {}) : calibrated_on_logs(f, usable),
                    f.calibrate_to);
   if (f.calibrate_to != "-") say(f.calibrate_to + ": thresholds");
   return usable ? kGood : kAnswerIsNo;
@@ -192,10 +191,10 @@ void write_study(const Flags& f, const study::StudyAbout& about,
 }
 
 // unless conditions are named: those of --quick; or those that the file of thresholds is for
-std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs) {
+std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& runs,
+                                       const Thresholds& t) {
   std::vector<std::string> all = f.quick ? runs.quick : runs.honest;
   if (!f.quick && !f.thresholds.empty()) {
-    const Thresholds t = read_thresholds(f.thresholds);
     all.clear();
     for (const study::Condition& c : runs.conditions)
       if (study::are_for(t, robot(runs.robot), c.name)) all.push_back(c.name);
@@ -208,15 +207,18 @@ int run_study(Flags& f) {
   table_format(f.format);
   if (f.quick && !f.study.conditions.empty())
     throw std::invalid_argument("--quick stands for --conditions: not both");
-  if (!f.thresholds.empty()) f.study.tuned = study::read_tuned(f.thresholds).rows;
-  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot));
+  study::TunedStudy file;
+  if (!f.thresholds.empty()) file = study::read_tuned(f.thresholds);
+  f.study.tuned = file.rows;
+  f.study.conditions = conditions_of(f, study::touched_runs(f.study.robot), file.thresholds);
   study::check_study(f.study);  // before calibration takes its time
   const bool part = !f.shard.empty();
   const study::Shard shard = part ? study::shard_of(f.shard) : study::Shard();
   if (part && (f.out.empty() || f.out == "-"))
     throw std::invalid_argument("--shard needs --out FILE, to which the part goes");
   if (!f.out.empty() && !part) AtomicFile{f.out};
-  const Thresholds thresholds = thresholds_of(f, f.study.conditions);
+  const Thresholds thresholds =
+      f.thresholds.empty() ? calibrated(f, f.study.conditions) : file.thresholds;
   study::StudyAbout about = study::about(f.study, thresholds);
   about.context = provenance(fmt::format("seeds from {}", f.study.first_seed));
   const study::DetectionStudy study(f.study, thresholds);
