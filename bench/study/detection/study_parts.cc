@@ -262,16 +262,20 @@ Shard shard_of(const std::string& text) {
 }
 
 StudyAbout about(const StudyOptions& o, const Thresholds& thresholds) {
-  return {touched_runs(o.robot).robot,
+  // all that there are, so that none is forgotten; the cells say which pairs are tried, and the
+  // last three change no count
+  const auto& [robot, conditions, estimators, detectors, tuned, blows, pushes, clampings, regions,
+               hours, first_seed, threads, progress, stop] = o;
+  return {touched_runs(robot).robot,
           thresholds.trained_on,
           thresholds.margin,
-          {{"conditions", o.conditions},
-           {"collisions", o.blows},
-           {"pushes", o.brisk_pushes},
-           {"clampings", o.clampings},
-           {"regions", o.regions},
-           {"hours", o.hours},
-           {"seed", o.first_seed},
+          {{"conditions", conditions},
+           {"collisions", blows},
+           {"pushes", pushes},
+           {"clampings", clampings},
+           {"regions", regions},
+           {"hours", hours},
+           {"seed", first_seed},
            {"thresholds", fmt::format("{:016x}", fnv1a(thresholds_json(thresholds)))}},
           {}};
 }
