@@ -11,24 +11,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/trace/byte_order.h"
+
 namespace tauext {
 namespace {
 
 constexpr std::uint32_t kSync = 0xEDA1DA01;
+constexpr std::endian kBig = std::endian::big;
 constexpr std::size_t kHeader = 28;                  // sync, number (8), time (8), two lengths
 constexpr std::uint32_t kLongestMessage = 1u << 26;  // [bytes] 64 MiB; ours have some hundred
-
-template <int Bytes>
-std::uint64_t big_endian(const unsigned char* p) {
-  std::uint64_t value = 0;
-  for (int i = 0; i < Bytes; ++i) value = value << 8 | p[i];
-  return value;
-}
-
-template <int Bytes>
-void put_big_endian(std::uint64_t value, std::string& to) {
-  for (int i = Bytes - 1; i >= 0; --i) to += static_cast<char>(value >> 8 * i & 0xFF);
-}
 
 }  // namespace
 
@@ -89,9 +80,8 @@ void LogEvents::read_more(std::size_t bytes) {
 // size of the good event that begins here; 0 if none does
 std::size_t LogEvents::next_event() {
   const unsigned char* p = buffer_.data() + begin_;
-  if (big_endian<4>(p) != kSync) return 0;
-  const auto channel = static_cast<std::uint32_t>(big_endian<4>(p + 20));
-  const auto message = static_cast<std::uint32_t>(big_endian<4>(p + 24));
+  if (from_bytes(p, 4, kBig) != kSync) return 0;
+  const auto channel = from_bytes(p + 20, 4, kBig), message = from_bytes(p + 24, 4, kBig);
   if (channel == 0 || channel > kLongestChannel || message > kLongestMessage) return 0;
   const std::size_t length = kHeader + channel + message;
   // before anything is read: a forged length would have the rest of the file in memory, again and
@@ -109,15 +99,15 @@ bool LogEvents::believable(std::size_t length) {
   fill(length + 4);
   const unsigned char* const p = buffer_.data() + begin_;
   const bool last = end_ - begin_ < length + 4;
-  if (last || big_endian<4>(p + length) == kSync) return true;
+  if (last || from_bytes(p + length, 4, kBig) == kSync) return true;
   constexpr unsigned char kHead[] = {0xED, 0xA1, 0xDA, 0x01};
   return std::search(p + kHeader, p + length, std::begin(kHead), std::end(kHead)) == p + length;
 }
 
 LogEvent LogEvents::event() const {
   const unsigned char* const p = buffer_.data() + begin_;
-  const auto channel = big_endian<4>(p + 20), message = big_endian<4>(p + 24);
-  return {static_cast<std::int64_t>(big_endian<8>(p + 12)),
+  const auto channel = from_bytes(p + 20, 4, kBig), message = from_bytes(p + 24, 4, kBig);
+  return {static_cast<std::int64_t>(from_bytes(p + 12, 8, kBig)),
           {reinterpret_cast<const char*>(p + kHeader), channel},
           {reinterpret_cast<const std::byte*>(p + kHeader + channel), message}};
 }
@@ -127,11 +117,9 @@ void LogEvents::fail(const char* what) const {
 }
 
 void LogBuffer::append(std::string_view channel, std::int64_t utime, Bytes message) {
-  put_big_endian<4>(kSync, bytes_);
-  put_big_endian<8>(events_++, bytes_);
-  put_big_endian<8>(static_cast<std::uint64_t>(utime), bytes_);
-  put_big_endian<4>(channel.size(), bytes_);
-  put_big_endian<4>(message.size(), bytes_);
+  bytes_ += to_bytes(kSync, 4, kBig) + to_bytes(events_++, 8, kBig) +
+            to_bytes(static_cast<std::uint64_t>(utime), 8, kBig) +
+            to_bytes(channel.size(), 4, kBig) + to_bytes(message.size(), 4, kBig);
   bytes_ += channel;
   for (const std::byte b : message) bytes_ += static_cast<char>(b);
 }

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "mjcf/trace/byte_order.h"
+
 namespace tauext {
 namespace {
 
@@ -13,24 +15,22 @@ class Cursor {
  public:
   explicit Cursor(Bytes rest) : rest_(rest) {}
 
-  std::uint64_t big_endian(std::size_t bytes) {
-    std::uint64_t value = 0;
-    for (const std::byte b : take(bytes)) value = value << 8 | std::to_integer<std::uint64_t>(b);
-    return value;
+  std::uint64_t number(std::size_t size) {
+    const Bytes bytes = take(size);
+    return from_bytes(bytes.data(), bytes.size(), std::endian::big);
   }
-  std::int32_t int32() { return static_cast<std::int32_t>(big_endian(4)); }
   void skip(std::size_t bytes) { take(bytes); }
 
   // a time or a number, whose differences and sums cannot overflow
   std::int64_t time() {
     constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
-    const std::uint64_t value = big_endian(8);
+    const std::uint64_t value = number(8);
     if (value > kLargest) reject(Reject::kWrongTime);
     return static_cast<std::int64_t>(value);
   }
   // t [s], which says the same as the utime [us] before it
   void same_time_in_seconds(std::int64_t utime) {
-    const double t = std::bit_cast<double>(big_endian(8));
+    const double t = std::bit_cast<double>(number(8));
     constexpr double kRounding = 1e-5;  // [s]
     if (!(std::abs(t - static_cast<double>(utime) * 1e-6) <= kRounding)) {
       reject(Reject::kWrongTime);
@@ -39,7 +39,7 @@ class Cursor {
 
   // a count that the message claims
   std::int32_t count(std::int32_t least, std::int32_t most) {
-    const std::int32_t n = int32();
+    const auto n = static_cast<std::int32_t>(number(4));
     if (n < least || n > most) reject(Reject::kWrongCount);
     return reject_ == Reject::kNone ? n : 0;
   }
@@ -152,7 +152,7 @@ const char* describe(Reject reject) noexcept {
 }
 
 std::int64_t hash_of(Bytes message) noexcept {
-  return message.size() < 8 ? 0 : static_cast<std::int64_t>(Cursor(message).big_endian(8));
+  return message.size() < 8 ? 0 : static_cast<std::int64_t>(Cursor(message).number(8));
 }
 
 Stamp stamp_of(Bytes message) noexcept {

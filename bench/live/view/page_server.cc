@@ -21,6 +21,7 @@
 
 #include "bench/live/view/page_client.h"
 #include "bench/report/assets.h"
+#include "mjcf/trace/byte_order.h"
 
 namespace tauext::live {
 namespace {
@@ -96,11 +97,8 @@ class PageServer::Server {
   void put(std::string_view channel, Bytes message) {
     const std::lock_guard lock(mutex_);
     if (pending_.size() > kMostWaiting) return;  // nobody could take it
-    const auto length = [this](std::size_t n, int bytes) {
-      for (int i = 0; i < bytes; ++i) pending_ += static_cast<char>(n >> (8 * i) & 0xff);
-    };
-    length(channel.size(), 2);
-    length(message.size(), 4);
+    pending_ += to_bytes(channel.size(), 2);
+    pending_ += to_bytes(message.size(), 4);
     pending_.append(channel);
     pending_.append(reinterpret_cast<const char*>(message.data()), message.size());
   }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/known.h"
 
 namespace tauext {
@@ -73,7 +74,7 @@ class CdrText {
   template <class Unsigned>
   void put(Unsigned n) {
     while ((bytes_.size() - kHead) % sizeof n != 0) bytes_ += '\0';
-    for (std::size_t i = 0; i < sizeof n; ++i) bytes_ += static_cast<char>(n >> (8 * i) & 0xff);
+    bytes_ += to_bytes(n, sizeof n);
   }
   void put(const std::string& text) {
     put(static_cast<std::uint32_t>(text.size() + 1));

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 
 namespace tauext {
@@ -17,12 +18,6 @@ namespace {
 constexpr const char* kDouble = std::endian::native == std::endian::little ? "<f8" : ">f8";
 constexpr std::uint64_t kMostZip = 0xFFFFFFFF;  // [bytes] beyond which a ZIP needs 64 bits
 constexpr std::size_t kMostArrays = 65535;      // likewise
-
-std::string little(std::uint64_t number, int count) {
-  std::string bytes;
-  for (int i = 0; i < count; ++i) bytes += static_cast<char>(number >> 8 * i & 255);
-  return bytes;
-}
 
 std::size_t width_of(const NpyArray& a) {
   return a.columns == 0 ? 1 : a.columns;
@@ -56,7 +51,7 @@ std::string header_of(const NpyArray& a, const std::vector<std::string>& fields)
   constexpr std::size_t kBegin = 10, kAlign = 64;
   text.resize((kBegin + text.size() + kAlign) / kAlign * kAlign - kBegin, ' ');
   text.back() = '\n';
-  return "\x93NUMPY" + little(1, 2) + little(text.size(), 2) + text;
+  return "\x93NUMPY" + to_bytes(1, 2) + to_bytes(text.size(), 2) + text;
 }
 
 // what is the same in the local header of a member and in the directory
@@ -67,15 +62,15 @@ struct Member {
 
   std::string common() const {
     constexpr int kVersion = 20, kFlags = 0, kStored = 0, kTime = 0, kDay = 33;  // 1980-01-01
-    return little(kVersion, 2) + little(kFlags, 2) + little(kStored, 2) + little(kTime, 2) +
-           little(kDay, 2) + little(crc, 4) + little(size, 4) + little(size, 4) +
-           little(name.size(), 2) + little(0, 2);
+    return to_bytes(kVersion, 2) + to_bytes(kFlags, 2) + to_bytes(kStored, 2) + to_bytes(kTime, 2) +
+           to_bytes(kDay, 2) + to_bytes(crc, 4) + to_bytes(size, 4) + to_bytes(size, 4) +
+           to_bytes(name.size(), 2) + to_bytes(0, 2);
   }
   std::string local() const { return "PK\3\4" + common() + name + header; }
   std::string entry() const {
     constexpr std::uint64_t kUnix = 3, kMode = 0600;
-    return "PK\1\2" + little(kUnix << 8 | 20, 2) + common() + little(0, 6) +
-           little(kMode << 16, 4) + little(offset, 4) + name;
+    return "PK\1\2" + to_bytes(kUnix << 8 | 20, 2) + common() + to_bytes(0, 6) +
+           to_bytes(kMode << 16, 4) + to_bytes(offset, 4) + name;
   }
 };
 
@@ -124,10 +119,10 @@ void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
     directory += m.entry();
     at += local.size() + data.size();
   }
-  const std::string count = little(arrays.size(), 2);
+  const std::string count = to_bytes(arrays.size(), 2);
   file.write(directory);
-  file.write("PK\5\6" + little(0, 4) + count + count + little(directory.size(), 4) + little(at, 4) +
-             little(0, 2));
+  file.write("PK\5\6" + to_bytes(0, 4) + count + count + to_bytes(directory.size(), 4) +
+             to_bytes(at, 4) + to_bytes(0, 2));
   file.commit();
 }
 

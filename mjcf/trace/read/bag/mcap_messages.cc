@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 
@@ -31,9 +32,7 @@ class Fields {
  public:
   Fields(const ByteFile& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
 
-  std::uint64_t number(int size) {
-    return little_endian(reinterpret_cast<const unsigned char*>(take(size).data()), size);
-  }
+  std::uint64_t number(std::size_t size) { return from_bytes(take(size).data(), size); }
   std::string_view text() { return take(number(4)); }
   std::string_view rest() { return bytes_; }
 

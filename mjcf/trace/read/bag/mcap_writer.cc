@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/read/text/unpacked_file.h"
 #ifdef TAUEXT_ARCHIVE
 #include <archive.h>
@@ -33,10 +34,7 @@ constexpr const char* kZstd = "zstd";
 // fields of a record, the low byte of a number first
 class RecordText {
  public:
-  RecordText& number(std::uint64_t x, int size) {
-    for (int i = 0; i < size; ++i) bytes_ += static_cast<char>(x >> 8 * i & 255);
-    return *this;
-  }
+  RecordText& number(std::uint64_t x, std::size_t size) { return raw(to_bytes(x, size)); }
   RecordText& text(std::string_view s) { return number(s.size(), 4).raw(s); }
   RecordText& raw(std::string_view s) {
     bytes_ += s;
@@ -50,13 +48,6 @@ class RecordText {
  private:
   std::string bytes_;
 };
-
-// into memory that is there, of a message's head
-void append_little(std::uint64_t x, int size, std::string& to) {
-  char bytes[8];
-  for (int i = 0; i < size; ++i) bytes[i] = static_cast<char>(x >> 8 * i & 255);
-  to.append(bytes, static_cast<std::size_t>(size));
-}
 
 #if defined(TAUEXT_ARCHIVE) && defined(TAUEXT_ZLIB)
 
@@ -170,15 +161,16 @@ void McapWriter::write(std::size_t topic, double t, std::string_view message) {
   const double whole = std::floor(t);
   const std::uint64_t ns = static_cast<std::uint64_t>(whole) * 1'000'000'000 +
                            static_cast<std::uint64_t>(std::llround((t - whole) * 1e9));
-  append_little(ns, 8, chunk_.indices[topic]);
-  append_little(chunk_.bytes.size(), 8, chunk_.indices[topic]);
+  const std::string time = to_bytes(ns, 8);
+  chunk_.indices[topic] += time;
+  chunk_.indices[topic] += to_bytes(chunk_.bytes.size(), 8);
   std::string& to = chunk_.bytes;
-  append_little(kind::kMessage, 1, to);
-  append_little(kHead + message.size(), 8, to);
-  append_little(topic, 2, to);
-  append_little(channels_[topic].messages++, 4, to);
-  append_little(ns, 8, to);  // logged
-  append_little(ns, 8, to);  // published
+  to += kind::kMessage;
+  to += to_bytes(kHead + message.size(), 8);
+  to += to_bytes(topic, 2);
+  to += to_bytes(channels_[topic].messages++, 4);
+  to += time;  // logged
+  to += time;  // published
   to += message;
   chunk_.times.take(ns);
   if (to.size() >= kFullChunk) flush();

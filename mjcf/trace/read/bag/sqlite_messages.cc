@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/text/byte_file.h"
 
@@ -34,9 +35,7 @@ void refuse_cut_off(const ByteFile& file) {
   const std::size_t size = std::min<std::uint64_t>(file.size(), header.size());
   file.read(0, header.data(), size);
   const auto number = [&](int at, int bytes) {
-    std::uint64_t n = 0;
-    for (int i = at; i < at + bytes; ++i) n = n << 8 | header[i];
-    return n;
+    return from_bytes(&header[at], bytes, std::endian::big);
   };
   const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
   const std::uint64_t whole = number(24, 4) == number(92, 4) ? page * number(28, 4) : header.size();

@@ -21,6 +21,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mjcf/trace/byte_order.h"
 #include "mjcf/trace/child/confined.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/numpy/npy_header.h"
@@ -207,7 +208,7 @@ std::size_t rows_in(const std::vector<MatArray>& arrays) {
 
 // the parts of the child's answer
 void put(std::string& to, std::size_t n) {
-  to.append(reinterpret_cast<const char*>(&n), sizeof n);
+  to += to_bytes(n, sizeof n);
 }
 void put(std::string& to, const std::string& text) {
   put(to, text.size());
@@ -218,9 +219,8 @@ void require(bool whole) {
   if (!whole) throw std::runtime_error("libmatio's answer is not whole");
 }
 std::size_t taken_count(std::string_view& from) {
-  std::size_t n = 0;
-  require(from.size() >= sizeof n);
-  std::memcpy(&n, from.data(), sizeof n);
+  require(from.size() >= sizeof(std::size_t));
+  const std::size_t n = from_bytes(from.data(), sizeof n);
   from.remove_prefix(sizeof n);
   return n;
 }
@@ -269,16 +269,15 @@ void refuse_damage(const ByteFile& file) {
   std::array<unsigned char, kHead> head{};
   if (!file.has(0, kHead)) file.fail("is cut off");
   file.read(0, head.data(), kHead);
-  const bool big = head[126] == 'M';
-  if (head[big ? 124 : 125] != 1) return;  // HDF5, which looks for itself
+  const std::endian order = head[126] == 'M' ? std::endian::big : std::endian::little;
+  if (from_bytes(head.data() + 124, 2, order) >> 8 != 1) return;  // HDF5, which looks for itself
   for (std::uint64_t at = kHead; at < file.size();) {
     std::array<unsigned char, kTag> tag{};
     if (!file.has(at, kTag)) file.fail("is cut off");
     file.read(at, tag.data(), kTag);
-    if (big) std::reverse(tag.begin(), tag.begin() + 4), std::reverse(tag.begin() + 4, tag.end());
-    const std::uint64_t size = little_endian(tag.data() + 4, 4);
+    const std::uint64_t size = from_bytes(tag.data() + 4, 4, order);
     if (!file.has(at + kTag, size)) file.fail("is cut off");
-    const std::uint64_t kind = little_endian(tag.data(), 4);
+    const std::uint64_t kind = from_bytes(tag.data(), 4, order);
     if (kind != kMatrix && kind != kCompressed) file.fail("is damaged: it has more than variables");
     if (kind == kCompressed) compare_checksum(file, at + kTag, size);
     at += kTag + size;

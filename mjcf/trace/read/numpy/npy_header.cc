@@ -191,9 +191,7 @@ NpyHeader read_npy_header(std::string_view bytes, const std::string& what) {
     fail("begins as no NumPy array of version 1 to 3 does");
   const std::size_t length = bytes[6] == 1 ? 2 : 4;
   if (bytes.size() < kBegin + length) fail("is cut off in its header");
-  std::size_t size = 0;
-  for (std::size_t i = length; i > 0; --i)
-    size = size << 8 | static_cast<unsigned char>(bytes[kBegin + i - 1]);
+  const std::size_t size = from_bytes(bytes.data() + kBegin, length);
   if (size > kMostText)
     fail(fmt::format("has a header of {} bytes, of at most {}", size, kMostText));
   if (bytes.size() < kBegin + length + size) fail("is cut off in its header");

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mjcf/trace/byte_order.h"
+
 namespace tauext {
 
 /// What NumPy's '<f8' says.
@@ -29,8 +31,8 @@ struct NpyNumber {
 
   /// Integers beyond 2^53 are rounded.
   double value(const unsigned char* bytes) const {
-    std::uint64_t bits = 0;
-    for (int i = 0; i < size; ++i) bits = bits << 8 | bytes[big ? i : size - 1 - i];
+    const std::uint64_t bits =
+        from_bytes(bytes, size, big ? std::endian::big : std::endian::little);
     if (kind == 'b') return bits != 0;
     if (kind == 'u') return static_cast<double>(bits);
     if (kind == 'i') {

@@ -10,13 +10,6 @@
 
 namespace tauext {
 
-/// The unsigned number in so many bytes, the lowest first.
-inline std::uint64_t little_endian(const unsigned char* bytes, int count) {
-  std::uint64_t number = 0;
-  for (int i = count - 1; i >= 0; --i) number = number << 8 | bytes[i];
-  return number;
-}
-
 /// A regular file, which is claimed (input_file.h).
 class ByteFile {
  public:
