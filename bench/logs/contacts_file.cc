@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
@@ -16,6 +14,7 @@
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/recording.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -31,12 +30,6 @@ constexpr ContactKind kKinds[] = {
 
 constexpr double kRounded = 0.1;  // [s] by which a label may pass the end of its recording
 
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t from = s.find_first_not_of(kBlank);
-  return from == s.npos ? "" : s.substr(from, s.find_last_not_of(kBlank) + 1 - from);
-}
-
 // apart by this; what stands in "" may have it, too
 std::vector<std::string> fields_of(std::string_view line, char separator) {
   std::vector<std::string> fields(1);
@@ -50,13 +43,8 @@ std::vector<std::string> fields_of(std::string_view line, char separator) {
       fields.back() += c;
     }
   }
-  for (std::string& f : fields) f = std::string(trimmed(f));
+  for (std::string& f : fields) f = std::string(without_blanks(f));
   return fields;
-}
-
-bool is_number(std::string_view s, double& value) {
-  const auto [at, error] = std::from_chars(s.data(), s.data() + s.size(), value);
-  return error == std::errc() && at == s.data() + s.size() && std::isfinite(value);
 }
 
 std::string not_read(const std::vector<std::string>& files) {
@@ -112,11 +100,9 @@ void ContactsFile::read(const std::string& text) {
   std::ptrdiff_t at[4]{};                  // where file, start, end and kind stand
   std::string_view rest(text);
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  while (!rest.empty()) {
-    const std::string_view one = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+  for (const std::string_view one : split(rest, '\n')) {
     ++line;
-    if (trimmed(one).empty() || one.front() == '#') continue;
+    if (without_blanks(one).empty() || one.front() == '#') continue;
     if (names.empty()) {
       for (const char c : {';', '\t'})
         if (one.find(c) != one.npos) separator = c;
@@ -144,10 +130,11 @@ void ContactsFile::read(const std::string& text) {
     const bool is_free = field(1).empty() && field(2).empty();
     if (log != nullptr) log->named = true, log->free = is_free ? line : log->free;
     if (is_free) continue;
-    LabelledContact c{.line = line};
-    if (!is_number(field(1), c.from) || !is_number(field(2), c.to))
+    const auto from = finite_number_in(field(1)), to = finite_number_in(field(2));
+    if (!from || !to)
       fail(line, fmt::format("'{}' to '{}' are no times [s]", printable_name(field(1)),
                              printable_name(field(2))));
+    LabelledContact c{.from = *from, .to = *to, .line = line};
     if (c.to < c.from)
       fail(line, fmt::format("ends at {} s, before its start at {} s", c.to, c.from));
     try {

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -18,6 +17,7 @@
 
 #include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -139,9 +139,7 @@ void add_robot_flags(CLI::App& app, std::string& robot, std::string& lock) {
 }
 
 std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size()) return "";
+  if (number_in<std::uint64_t>(text)) return "";
   return fmt::format("{} is not a whole number from 0 to {}", text,
                      std::numeric_limits<std::uint64_t>::max());
 }

@@ -18,6 +18,7 @@
 #include "bench/study/equal_bandwidth.h"
 #include "bench/study/pareto.h"
 #include "mjcf/trace/atomic_file.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -83,35 +84,29 @@ std::string run_seeds(const StudyFlags& f, const SuiteOptions& suite) {
 }
 
 // one, or the ends of a range
-void add_seeds(const std::string& part, const char* flag, std::vector<std::uint64_t>& to) {
+void add_seeds(std::string_view part, const char* flag, std::vector<std::uint64_t>& to) {
   constexpr std::size_t kMost = 10'000;
   const std::size_t dash = part.find('-');
-  const std::string first = part.substr(0, dash),
-                    last = dash == part.npos ? first : part.substr(dash + 1);
-  for (const std::string& end : {first, last}) {
-    if (const std::string why = whole_number(end); !why.empty())
-      throw std::invalid_argument(
-          fmt::format("{}: '{}' is no seed, nor a range like 1-30", flag, part));
-  }
-  const std::uint64_t from = std::stoull(first), until = std::stoull(last);
-  if (until < from)
+  const std::string_view first = part.substr(0, dash),
+                         last = dash == part.npos ? first : part.substr(dash + 1);
+  const auto from = number_in<std::uint64_t>(first), until = number_in<std::uint64_t>(last);
+  if (!from || !until)
+    throw std::invalid_argument(
+        fmt::format("{}: '{}' is no seed, nor a range like 1-30", flag, part));
+  if (*until < *from)
     throw std::invalid_argument(fmt::format("{}: '{}' ends before it begins; {}-{} has these seeds",
                                             flag, part, last, first));
-  if (until - from >= kMost || to.size() + (until - from) >= kMost)
+  if (*until - *from >= kMost || to.size() + (*until - *from) >= kMost)
     throw std::invalid_argument(
         fmt::format("{}: with '{}' they are more than {}; take fewer", flag, part, kMost));
-  for (std::uint64_t n = 0; n <= until - from; ++n) to.push_back(from + n);
+  for (std::uint64_t n = 0; n <= *until - *from; ++n) to.push_back(*from + n);
 }
 
 }  // namespace
 
 std::vector<std::uint64_t> seeds_of(const std::string& text, const char* flag) {
   std::vector<std::uint64_t> all;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    add_seeds(text.substr(at, end - at), flag, all);
-    at = end + 1;
-  }
+  for (const std::string_view part : split(text, ',')) add_seeds(part, flag, all);
   std::vector<std::uint64_t> sorted = all;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())

@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <random>
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "mjcf/trace/file_claims.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace fs = std::filesystem;
@@ -61,14 +61,10 @@ std::string temporary_name(const fs::path& path) {
 pid_t owner_of(const std::string& name, const std::string& begin) {
   constexpr std::string_view kEnd = "-0123456789abcdef.part";
   if (!name.starts_with(begin) || name.size() < begin.size() + kEnd.size()) return 0;
-  pid_t process = 0;
-  const auto [end, bad] =
-      std::from_chars(name.data() + begin.size(), name.data() + name.size(), process);
-  const std::string_view rest(end, static_cast<std::size_t>(name.data() + name.size() - end));
-  const bool fits = bad == std::errc() && rest.size() == kEnd.size() && rest[0] == '-' &&
-                    rest.ends_with(".part") &&
-                    rest.substr(1, 16).find_first_not_of("0123456789abcdef") == rest.npos;
-  return fits ? process : 0;
+  const std::size_t end = name.size() - kEnd.size();
+  const bool fits = name[end] == '-' && name.ends_with(".part") &&
+                    name.find_first_not_of("0123456789abcdef", end + 1) == end + 17;
+  return fits ? number_in<pid_t>(name.substr(begin.size(), end - begin.size())).value_or(0) : 0;
 }
 
 // what processes that were killed have left beside a path

@@ -5,12 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <stdexcept>
 
 #include "mjcf/trace/known.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -50,12 +49,6 @@ std::string escaped(const std::string& text, std::string_view special, const cha
   return out;
 }
 
-bool is_number(const std::string& text) {
-  double x = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(x);
-}
-
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   return '"' + escaped(text, "\"", "\"") + '"';
@@ -63,7 +56,7 @@ std::string csv_field(const std::string& text) {
 
 std::string json_value(const std::string& text) {
   if (text == "-" || text == "never" || text.empty()) return "null";
-  return is_number(text) ? text : '"' + escaped(text, "\"\\", "\\") + '"';
+  return finite_number_in(text) ? text : '"' + escaped(text, "\"\\", "\\") + '"';
 }
 
 // a name for programs: "title_unit" without what no key should hold

@@ -3,30 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::gate {
 namespace {
 
 constexpr const char* kHeader = "# tauext golden metrics 2";
 constexpr const char* kEnd = "# end";
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == '\t') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
 
 // fails with what is wrong with a line
 struct At {
@@ -35,24 +22,20 @@ struct At {
   [[noreturn]] void fail(const std::string& what) const {
     throw std::runtime_error(fmt::format("{}: line {}: {}", path, line, what));
   }
-  double number(const std::string& text) const {
-    double x = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x)) {
-      fail(fmt::format("'{}' is no number", text));
-    }
-    return x;
+  double number(std::string_view text) const {
+    if (const auto x = finite_number_in(text)) return *x;
+    fail(fmt::format("'{}' is no number", text));
   }
 };
 
 void read_columns(const std::string& line, const At& at, Golden& g) {
-  const std::vector<std::string> f = fields_of(line);
+  const std::vector<std::string_view> f = split(line, '\t');
   if (f.size() < 3 || f[0] != "entry") at.fail("the names of the columns were expected");
   g.seeds.assign(f.begin() + 2, f.end());
 }
 
 void read_metric(const std::string& line, const At& at, Golden& g) {
-  const std::vector<std::string> f = fields_of(line);
+  const std::vector<std::string_view> f = split(line, '\t');
   if (f.size() != g.seeds.size() + 2) {
     at.fail(fmt::format("{} columns, where {} are named", f.size(), g.seeds.size() + 2));
   }

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "mjcf/trace/input_file.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::gate {
 namespace {
@@ -125,12 +125,8 @@ double a_step(std::int64_t instructions) {
 }
 
 std::uint64_t whole_count(const std::string& text, const std::string& path) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw std::runtime_error(fmt::format("{}: '{}' is no count", path, text));
-  }
-  return value;
+  if (const auto value = number_in<std::uint64_t>(text)) return *value;
+  throw std::runtime_error(fmt::format("{}: '{}' is no count", path, text));
 }
 
 std::string counts_path(const std::string& folder, const Key& key) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +12,7 @@
 
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/known.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::gate {
 namespace {
@@ -38,11 +38,9 @@ Acceptance acceptance_of(const std::string& line, const std::string& where) {
         fmt::format("{}: {} columns, and must be layer, subject, at most, base and reason", where,
                     fields.size()));
   }
-  Acceptance a{fields[0], fields[1], 0, fields[3], fields[4]};
-  const std::string& at_most = fields[2];
-  const char* const end = at_most.data() + at_most.size();
-  const auto [stop, error] = std::from_chars(at_most.data(), end, a.at_most);
-  if (error != std::errc() || stop != end) refuse_at_most(at_most, where);
+  const auto at_most = number_in<double>(fields[2]);
+  if (!at_most) refuse_at_most(fields[2], where);
+  const Acceptance a{fields[0], fields[1], *at_most, fields[3], fields[4]};
   check_acceptance(a, where);
   return a;
 }

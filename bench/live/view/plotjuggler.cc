@@ -7,13 +7,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
 
 #include "lcmtypes/emitter.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::live {
 namespace {
@@ -73,9 +73,7 @@ std::string json_of(std::string_view channel, Bytes message) {
 
 PlotJuggler::PlotJuggler(const std::string& to) : to_(to) {
   const std::size_t colon = to.rfind(':');
-  int port = 0;
-  const char* const end = to.data() + to.size();
-  if (colon != to.npos && std::from_chars(to.data() + colon + 1, end, port).ptr != end) port = 0;
+  const int port = colon == to.npos ? 0 : number_in<int>(to.substr(colon + 1)).value_or(0);
   if (colon == 0 || port < 1 || port > 65535)
     throw std::invalid_argument(fmt::format("--plotjuggler {}: HOST:PORT, like {}", to, kUsual));
   addrinfo hints{}, *found = nullptr;

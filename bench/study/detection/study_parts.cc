@@ -7,9 +7,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -25,6 +23,7 @@
 #include "mjcf/trace/digest.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::study {
 namespace {
@@ -248,15 +247,10 @@ class Part {
 }  // namespace
 
 Shard shard_of(const std::string& text) {
-  Shard s;
-  const char *const end = text.data() + text.size(), *const slash =
-                                                         std::find(text.data(), end, '/');
-  const auto index = std::from_chars(text.data(), slash, s.index);
-  const bool two = slash != end && index.ptr == slash && index.ec == std::errc();
-  const auto count = two ? std::from_chars(slash + 1, end, s.count) : index;
-  if (two && count.ptr == end && count.ec == std::errc() && s.index >= 1 && s.index <= s.count &&
-      s.count <= 1'000'000)
-    return s;
+  const std::vector<std::string_view> parts = split(text, '/');
+  const auto index = number_in<int>(parts.front()), count = number_in<int>(parts.back());
+  if (parts.size() == 2 && index >= 1 && count >= index && count <= 1'000'000)
+    return {*index, *count};
   throw std::invalid_argument(
       fmt::format("--shard {}: I/N, the I-th of N parts, like 2/7", printable(text)));
 }

@@ -63,7 +63,7 @@ bool matches(const std::string& name, const std::regex& expression, std::smatch&
 }
 
 // the number in the first group that has matched, by which joints are in order
-int number_in(const std::smatch& match) {
+int joint_number(const std::smatch& match) {
   for (std::size_t i = 1; i < match.size(); ++i) {
     if (match[i].matched) return std::atoi(match[i].str().c_str());
   }
@@ -120,7 +120,7 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
       const std::string& name = columns[static_cast<std::size_t>(i)];
       std::smatch match;
       if (name.size() > kLongestName || !matches(name, expression, match, quantity, path)) continue;
-      numbered.emplace_back(number_in(match), i);
+      numbered.emplace_back(joint_number(match), i);
     }
     std::sort(numbered.begin(), numbered.end());
     // a preset leaves the order to others, unless q has one by now

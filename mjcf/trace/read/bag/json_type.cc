@@ -7,12 +7,12 @@
 #endif
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
+
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -118,9 +118,8 @@ class JsonWalk {
   bool Null() { return take(std::numeric_limits<double>::quiet_NaN()); }
   bool Bool(bool x) { return take(x ? 1 : 0); }
   bool RawNumber(const Ch* text, rapidjson::SizeType size, bool) {
-    double x = 0;
-    const auto [end, error] = std::from_chars(text, text + size, x);
-    return error == std::errc() && end == text + size ? take(x) : fail(kNoJson);
+    const auto x = number_in<double>({text, size});
+    return x ? take(*x) : fail(kNoJson);
   }
   // numbers come as they are written
   bool Int(int) { return fail(kNoJson); }

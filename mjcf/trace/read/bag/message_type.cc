@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -15,6 +14,7 @@
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/numpy/npy_header.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 
@@ -71,13 +71,6 @@ constexpr NumberType kNumberTypes[] = {
     {"float64", {'f', 8}},
 };
 
-std::string_view without_blanks(std::string_view s) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const auto begin = s.find_first_not_of(kBlanks);
-  return begin == s.npos ? s.substr(0, 0)
-                         : s.substr(begin, s.find_last_not_of(kBlanks) + 1 - begin);
-}
-
 bool is_word(std::string_view s, std::string_view others) {
   return !s.empty() && std::all_of(s.begin(), s.end(), [&](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
@@ -95,9 +88,8 @@ bool read_type(std::string_view text, DefinedField& f) {
     f.array = true;
     f.count = -1;
     if (!size.empty() && !size.starts_with("<=")) {
-      const auto [end, error] = std::from_chars(size.begin(), size.end(), f.count);
-      if (error != std::errc() || end != size.end() || f.count < 1 || f.count > INT32_MAX)
-        return false;
+      f.count = number_in<std::int64_t>(size).value_or(0);
+      if (f.count < 1 || f.count > INT32_MAX) return false;
     }
   }
   f.type = short_type_name(text.substr(0, text.find("<=")));
@@ -131,10 +123,8 @@ Definitions read_definitions(const std::string& root, std::string_view text) {
     if (at->second.empty()) at->second = fields;
     fields.clear();
   };
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = without_blanks(text.substr(0, std::min(end, text.find('#'))));
-    text.remove_prefix(std::min(end + 1, text.size()));
+  for (std::string_view line : split(text, '\n')) {
+    line = without_blanks(line.substr(0, line.find('#')));
     if (line.find_first_not_of('=') == line.npos) continue;
     if (line.starts_with("IDL:"))
       throw std::runtime_error(fmt::format("{} is defined in IDL, which is not read",

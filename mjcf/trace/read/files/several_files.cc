@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -33,16 +33,9 @@ void add_words(SkippedRows& to, const SkippedRows& from, const std::string& file
 }
 
 struct Part {
-  long number;
+  long number;  // 0: it has none
   std::string name;
 };
-
-// 0: it is none
-long number_in(const std::string& text) {
-  long number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? number : 0;
-}
 
 std::vector<Part> parts_of(const std::string& folder, const std::string& expression) {
   std::vector<Part> all;
@@ -53,7 +46,7 @@ std::vector<Part> parts_of(const std::string& folder, const std::string& express
     std::smatch match;
     constexpr std::size_t kLongest = 255;
     if (name.size() > kLongest || !std::regex_match(name, match, wanted)) continue;
-    all.push_back({match.size() > 1 ? number_in(match[1].str()) : 0, name});
+    all.push_back({match.size() > 1 ? number_in<long>(match[1].str()).value_or(0) : 0, name});
   }
   if (error)
     throw std::runtime_error(fmt::format(
