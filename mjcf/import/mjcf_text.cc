@@ -25,6 +25,7 @@
 #include "mjcf/import/xml.h"
 #include "mjcf/trace/input_file.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -53,11 +54,7 @@ class Import {
             attribute == detail::kPlace)
           continue;
         std::istringstream words(a->Value());
-        for (std::string word; words >> word;) {
-          std::transform(word.begin(), word.end(), word.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-          visit(e, a->Name(), word);
-        }
+        for (std::string word; words >> word;) visit(e, a->Name(), in_small_letters(word));
       }
       return true;
     });

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +17,7 @@
 #include "mjcf/import/masses/body_masses.h"
 #include "mjcf/import/masses/inertia.h"
 #include "mjcf/trace/printable.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace {
@@ -133,12 +133,6 @@ RobotFile robot_of(const Json& json, const std::string& path) {
 }
 
 namespace fs = std::filesystem;
-
-std::string in_small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // of a command line
 std::string file_word(const std::string& path) {

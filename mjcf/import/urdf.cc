@@ -24,6 +24,7 @@
 #include "mjcf/import/measured_terms.h"
 #include "mjcf/import/schema.h"
 #include "mjcf/import/xml.h"
+#include "mjcf/trace/text.h"
 
 namespace tauext::detail {
 namespace {
@@ -83,12 +84,6 @@ const KeptOfUrdf* known_of(std::string_view element) {
   const auto* const k = std::find_if(std::begin(kUrdf), std::end(kUrdf),
                                      [&](const Kept& of) { return of.element == element; });
   return k == std::end(kUrdf) ? nullptr : k;
-}
-
-std::string in_small_letters(std::string_view name) {
-  std::string small(name);
-  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return small;
 }
 
 // a second one would be overlooked

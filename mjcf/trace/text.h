@@ -4,10 +4,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -46,6 +48,13 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
     if (end == text.npos) return parts;
     text.remove_prefix(end + 1);
   }
+}
+
+/// The text with small letters for A to Z.
+inline std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return small;
 }
 
 }  // namespace tauext

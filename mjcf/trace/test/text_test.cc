@@ -55,5 +55,9 @@ TEST(Text, PartsAreOneMoreThanSeparators) {
   EXPECT_EQ(split("", ','), Parts{""});
 }
 
+TEST(Text, SmallLettersStandForCapitalOnes) {
+  EXPECT_EQ(in_small_letters("AZaz-09_\xC3\x84"), "azaz-09_\xC3\x84");
+}
+
 }  // namespace
 }  // namespace tauext::test
