@@ -54,8 +54,11 @@ namespace detail {
 // whether t, q and qd can be in s, rad and rad/s
 class UnitDoubt {
  public:
-  explicit UnitDoubt(int joints)
-      : least_(VectorXd::Constant(joints, kNever)), most_(-least_), joints_(joints) {}
+  UnitDoubt(int joints, double velocity_delay)
+      : least_(VectorXd::Constant(joints, kNever)),
+        most_(-least_),
+        joints_(joints),
+        velocity_delay_(velocity_delay) {}
 
   // the next sample
   void take(const Sample& s) {
@@ -78,7 +81,7 @@ class UnitDoubt {
   // whether q and qd cannot both be
   bool contradicts() const {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-      if (is_wrong(j)) return true;
+      if (is_wrong(j) || is_late(j)) return true;
     }
     return false;
   }
@@ -100,6 +103,15 @@ class UnitDoubt {
       say(fmt::format("{}: {}: {}", path, what, remedy));
       break;
     }
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      if (is_wrong(j) || !is_late(j)) continue;
+      const double late = joints_[j].late();
+      say(fmt::format(
+          "{}: qd{} comes {:.0f} ms {} the motion of q{}: are both stamped by one clock, "
+          "and is qd new in each sample?",
+          path, j + 1, 1000 * std::abs(late), late > 0 ? "after" : "before", j + 1));
+      break;
+    }
     const VectorXd size = least_.cwiseAbs().cwiseMax(most_.cwiseAbs());
     for (Eigen::Index j = 0; j < size.size(); ++j) {
       if (!(size[j] > kTwoTurns)) continue;
@@ -117,12 +129,19 @@ class UnitDoubt {
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  // sums over windows of the motion by qd (x) and by q (y)
+  // sums over windows of the motion by qd (x) and by q (y), and of how qd changes in them (a)
   struct Joint {
     double x = 0, y = 0;                      // of the window
+    double from = 0;                          // [rad/s] qd at its begin
     double xx = 0, xy = 0, yy = 0, path = 0;  // of |x|
+    double xa = 0, ya = 0, aa = 0;
 
     double alike() const { return std::abs(xy) / std::sqrt(xx * yy); }
+    // [s] of qd behind q, where y = x + late a
+    double late() const { return (ya - xa) / aa; }
+    // [rad^2] of y, without and with that
+    double rest() const { return xx - 2 * xy + yy; }
+    double rest_of_late() const { return std::max(rest() - late() * (ya - xa), 1e-9 * yy); }
   };
 
   static bool rests(const Joint& sum) { return sum.xx < 1e-6 * sum.yy; }
@@ -145,6 +164,18 @@ class UnitDoubt {
     return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
 
+  // whether qd is that of another time than q, beyond chance and beyond a filter's delay
+  bool is_late(std::size_t j) const {
+    constexpr double kLate = 0.015;             // [s] less may be a filter's
+    constexpr double kWorth = 2.25, kSure = 6;  // [1] of mean squares, of standard errors
+    constexpr double kFewest = 20;              // windows
+    const Joint& sum = joints_[j];
+    if (windows_ < kFewest || !(sum.aa > 0) || std::abs(sum.late() - velocity_delay_) < kLate)
+      return false;
+    const double rest = sum.rest_of_late(), error = std::sqrt(rest / windows_ / sum.aa);
+    return sum.rest() > kWorth * rest && std::abs(sum.late()) > kSure * error;
+  }
+
   // takes the first samples, whose median step tells what a gap is
   void settle() {
     std::vector<double> steps;
@@ -153,6 +184,8 @@ class UnitDoubt {
     std::nth_element(steps.begin(), middle, steps.end());
     longest_ = 5 * *middle;
     last_ = first_.front();
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      joints_[j].from = last_.qd[static_cast<Eigen::Index>(j)];
     for (std::size_t k = 1; k < first_.size(); ++k) take_step(first_[k]);
     first_.clear();
   }
@@ -165,12 +198,17 @@ class UnitDoubt {
       joints_[j].x += x, joints_[j].y += y;
       joints_[j].path += std::abs(x);
     }
-    last_ = s;
+    const Sample before = std::exchange(last_, s);
     if (s.t - window_ < kWindow && h <= longest_) return;
     window_ = s.t;
-    for (Joint& sum : joints_) {
+    ++windows_;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      const auto at = static_cast<Eigen::Index>(j);
+      Joint& sum = joints_[j];
+      const double a = (h <= longest_ ? s : before).qd[at] - sum.from;
       sum.xx += sum.x * sum.x, sum.xy += sum.x * sum.y, sum.yy += sum.y * sum.y;
-      sum.x = sum.y = 0;
+      sum.xa += sum.x * a, sum.ya += sum.y * a, sum.aa += a * a;
+      sum.x = sum.y = 0, sum.from = s.qd[at];
     }
   }
 
@@ -180,6 +218,8 @@ class UnitDoubt {
 
   VectorXd least_, most_;
   std::vector<Joint> joints_;
+  double velocity_delay_;      // [s] of qd, where the reader makes it of q
+  double windows_ = 0;         // so many
   std::vector<Sample> first_;  // until they are kFirst, or all
   Sample last_;
   std::int64_t samples_ = 0;
@@ -213,7 +253,7 @@ struct LogReader::Impl {
           ": [current] needs `gain` [N m/A], a number for each drive, in the map of columns");
     if (contents.without_gravity && !o.has_robot)
       throw std::runtime_error(path + ": [tau_without_gravity] needs a robot, which adds gravity");
-    doubt = std::make_unique<detail::UnitDoubt>(contents.dof);
+    doubt = std::make_unique<detail::UnitDoubt>(contents.dof, contents.velocity_delay);
     if (o.contacts == nullptr) return;
     labels.emplace(*o.contacts, path), labels_file = o.contacts;
     own_labels = std::exchange(contents.has_contact, true);

@@ -20,16 +20,16 @@ struct Read {
   RecordedLog log;
   std::string messages;
 };
-Read read_sine(double q, double qd, double t, double gap = 0) {
+Read read_sine(double q, double qd, double t, double gap = 0, double late = 0) {
   const std::string path =
       (std::filesystem::temp_directory_path() / fmt::format("tauext_read_log_{}.csv", ::getpid()))
           .string();
   std::ofstream file(path);
   file << "t,q1,qd1,tau1\n";
   for (int k = 0; k < 2000; ++k) {
-    const double s = 0.001 * k, late = k > 1000 ? gap : 0;
-    file << fmt::format("{},{},{},0\n", t * s + late, q * 0.5 * std::sin(3 * s),
-                        qd * 1.5 * std::cos(3 * s));
+    const double s = 0.001 * k, later = k > 1000 ? gap : 0;
+    file << fmt::format("{},{},{},0\n", t * s + later, q * 0.5 * std::sin(3 * s),
+                        qd * 1.5 * std::cos(3 * (s - late)));
   }
   file.close();
   testing::internal::CaptureStderr();
@@ -68,6 +68,19 @@ TEST(ReadAnyLog, NothingIsLearntFromQAndQdThatContradictEachOther) {
   EXPECT_NE(messages_of(1, 0, 1).find("q1 moves, and qd1 says that it rests"), std::string::npos);
   EXPECT_FALSE(read_sine(1e-4, 0, 1).log.contradicts) << "a joint at rest trembles";
   EXPECT_FALSE(read_sine(1, 1, 1, 5000).log.contradicts) << "over a gap qd says nothing";
+}
+
+TEST(ReadAnyLog, AVelocityOfAnotherTimeThanThePositionIsNamed) {
+  for (const double late : {0.02, 0.05, -0.03}) {
+    const Read found = read_sine(1, 1, 1, 0, late);
+    EXPECT_TRUE(found.log.contradicts) << late;
+    EXPECT_NE(
+        found.messages.find(fmt::format("qd1 comes {:.0f} ms {} the motion of q1",
+                                        1000 * std::abs(late), late > 0 ? "after" : "before")),
+        std::string::npos)
+        << found.messages;
+  }
+  EXPECT_FALSE(read_sine(1, 1, 1, 0, 0.01).log.contradicts) << "as a filter's may be";
 }
 
 // 1 kHz whose first sample came 0.9 ms early, of an encoder with steps of 1e-4 rad

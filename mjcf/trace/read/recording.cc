@@ -239,8 +239,10 @@ struct RecordingReader::Impl {
     rows->read_only(layout.columns());
     skipped.unit = rows->unit();
     if (map.join() > 0) joined.emplace(path, map.join(), layout.names, pace(), skipped);
-    contents = {layout.dof,          layout.instants,    layout.currents,    layout.without_gravity,
-                layout.tau_ext >= 0, layout.driver >= 0, layout.contact >= 0};
+    contents = {layout.dof,          layout.instants,
+                layout.currents,     layout.without_gravity,
+                layout.tau_ext >= 0, layout.driver >= 0,
+                layout.contact >= 0, layout.qd < 0 ? 2 / map.velocity_filter() : 0};
     if (layout.qd < 0) {
       skipped.notes.push_back(fmt::format(
           "no qd: it is made of q by two poles at {:g} rad/s and a difference (velocity_filter)",

@@ -53,6 +53,7 @@ struct RecordingContents {
   bool has_truth = false;           ///< whether it knows tau_ext
   bool has_driver = false;          ///< whether it knows the maker's estimate
   bool has_contact = false;         ///< whether it has labels
+  double velocity_delay = 0;        ///< [s] of a qd that is made of q; 0 of one that is measured
 };
 
 /// A recording of any kind, sample by sample, in memory that does not grow with it.
