@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "bench/logs/lcm_trace.h"
@@ -89,7 +90,10 @@ class TorqueCheck {
   // @param by_flag whether --torque has put their `torque` into them
   TorqueCheck(const Robot& r, const RecordingContents& log,
               const std::vector<std::string>& estimators, bool by_flag)
-      : estimates_(2, Eigen::VectorXd::Zero(log.dof)), weigher_(log.dof) {
+      : estimates_(2, Eigen::VectorXd::Zero(log.dof)),
+        least_(Eigen::VectorXd::Constant(log.dof, std::numeric_limits<double>::infinity())),
+        most_(-least_),
+        weigher_(log.dof) {
     for (const std::string& e : estimators) {
       const auto fields = r.estimator_fields(name_of_specification(e));
       if (std::none_of(fields.begin(), fields.end(),
@@ -115,20 +119,30 @@ class TorqueCheck {
           observers_[i].step(y.t, y.q.data(), y.qd.data(), y.tau.data(), estimates_[i].data());
       ok = ok && s.status == Status::kOk;
     }
-    if (ok) weigher_.take(estimates_[0].data(), estimates_[1].data());
+    if (!ok) return;
+    weigher_.take(estimates_[0].data(), estimates_[1].data());
+    least_ = least_.cwiseMin(y.tau), most_ = most_.cwiseMax(y.tau);
   }
 
-  void report(const Regularity& log) const {
+  // false if estimates are off by that, as they would not be by the other reading
+  bool report(const Regularity& log) const {
     const double samples = static_cast<double>(std::max<std::int64_t>(log.samples - 1, 1));
     const auto w = weigher_.weight(kBandwidth, (log.to - log.from) / samples);
+    bool good = true;
     for (const bool instant : {false, true}) {
       if (!w || takers_[instant].empty() || !w->contradicts(instant)) continue;
+      const auto& [now, other] =
+          instant ? std::tie(w->instant, w->held) : std::tie(w->held, w->instant);
+      // half as large again, and by more than matters
+      const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 1e-3 * (most_ - least_).array();
+      good = good && (now.array().sqrt() <= much).all();
       constexpr const char* kHow[] = {"held from each t", "read at each t"};
       say(fmt::format(
           "tau seems to be {} (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken as {}; "
           "use {}",
           kHow[!instant], w->weight, w->sure, kHow[instant], remedy(instant)));
     }
+    return good;
   }
 
  private:
@@ -153,6 +167,7 @@ class TorqueCheck {
   std::array<bool, 2> flag_will_do_{true, true};
   std::vector<Pair> observers_;
   std::vector<Eigen::VectorXd> estimates_;
+  Eigen::VectorXd least_, most_;  // [N m] of tau
   TorqueWeigher weigher_;
 };
 
@@ -272,7 +287,7 @@ int replay(Flags& f) {
         fmt::format("--score_from {}: the log ends at {} s", f.score_from, samples.to));
   bool good = log.usable() && (!fit || fits(*fit, f.log));
   for (const Replayed& c : all) good = report_status(c, log) && good;
-  torque.report(samples);
+  good = torque.report(samples) && good;
   out->commit();
   std::FILE* const to = f.out == "-" ? stderr : stdout;
   if (!contents.has_truth)

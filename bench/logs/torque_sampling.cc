@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tauext {
 
@@ -21,18 +22,24 @@ void TorqueWeigher::take(const double* held, const double* instant) {
 }
 
 std::optional<TorqueWeight> TorqueWeigher::weight(double bandwidth, double step) const {
-  if (count_ < 1000) return std::nullopt;
+  constexpr std::int64_t kFewest = 200;
+  if (count_ < kFewest) return std::nullopt;
   const double dependent = std::max(1., 2 / (bandwidth * step));
   const auto count = static_cast<double>(count_);
   double weighted = 0, weights = 0;
-  for (const auto& [dd, ad, aa] : sums_) {
+  Eigen::VectorXd held(static_cast<Eigen::Index>(sums_.size())), instant = held;
+  for (std::size_t j = 0; j < sums_.size(); ++j) {
+    const auto& [dd, ad, aa] = sums_[j];
+    held[static_cast<Eigen::Index>(j)] = aa / count;
+    instant[static_cast<Eigen::Index>(j)] = std::max(aa - 2 * ad + dd, 0.) / count;
     if (dd == 0) continue;
     const double weight = ad / dd, rest = std::max(aa - ad * weight, 1e-12 * aa) / count;
     const double certain = dd / (rest * dependent);
     weighted += certain * weight, weights += certain;
   }
   if (!(weights > 0)) return std::nullopt;
-  return TorqueWeight{weighted / weights, 3 / std::sqrt(weights)};
+  return TorqueWeight{weighted / weights, 3 / std::sqrt(weights), std::move(held),
+                      std::move(instant)};
 }
 
 }  // namespace tauext

@@ -4,6 +4,7 @@
 /// without contact.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -15,6 +16,8 @@ namespace tauext {
 struct TorqueWeight {
   double weight = 0;  ///< [1] 0 if tau is held, 1 if it is read at instants; neither: cannot tell
   double sure = 0;    ///< [1] three standard errors
+  Eigen::VectorXd held;     ///< [(N m)^2] mean square of the estimate by `held`, joint by joint
+  Eigen::VectorXd instant;  ///< [(N m)^2] likewise of the other
   /// Whether that contradicts the reading that was assumed, beyond doubt.
   bool contradicts(bool assumed_instant) const;
 };
@@ -31,7 +34,7 @@ class TorqueWeigher {
   /// one that was used.
   void take(const double* held, const double* instant);
 
-  /// Nothing where there were fewer than 1000 samples, or no joint moves.
+  /// Nothing where there were fewer than 200 samples, or no joint moves.
   /// @param bandwidth [rad/s] of the observer
   /// @param step [s] from one sample to the next
   std::optional<TorqueWeight> weight(double bandwidth, double step) const;

@@ -41,7 +41,7 @@ TEST(TorqueWeight, SaysNothingWhereTheLogDoesNot) {
     ASSERT_TRUE(w);
     EXPECT_FALSE(w->contradicts(false) || w->contradicts(true)) << w->weight;
   }
-  EXPECT_FALSE(weight_of(1, 0.1, 999)) << "too short";
+  EXPECT_FALSE(weight_of(1, 0.1, 199)) << "too short";
 }
 
 }  // namespace
