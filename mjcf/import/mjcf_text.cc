@@ -484,18 +484,18 @@ class Import {
 
   // the last <compiler> is obeyed; newer MuJoCo's default is that a range limits
   void set_compiler(XMLElement& root) {
-    bool said = false;
+    bool limits_are_set = false;
     std::string folder;
     each(root, [&](XMLElement& e) {
       if (name_of(e) != "compiler") return true;
-      said = said || e.Attribute("autolimits") != nullptr;
+      limits_are_set = limits_are_set || e.Attribute("autolimits") != nullptr;
       for (const char* const name : {"assetdir", "meshdir"}) {
         if (e.Attribute(name) != nullptr) folder = text(e, name);
         e.DeleteAttribute(name);
       }
       return true;
     });
-    if (!said) root.InsertNewChildElement("compiler")->SetAttribute("autolimits", true);
+    if (!limits_are_set) root.InsertNewChildElement("compiler")->SetAttribute("autolimits", true);
     set_mesh_paths(root, fs::absolute(path_).parent_path() / folder);
   }
 

@@ -9,7 +9,7 @@
 
 namespace tauext {
 
-/// What a detector said of one run, from a time on.
+/// What a detector made of one run, from a time on.
 struct Answers {
   /// A fiducial mark.
   struct Mark {
