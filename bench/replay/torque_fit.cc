@@ -43,7 +43,7 @@ double mean_square(const VectorXd& y) {
 }  // namespace
 
 TorqueFit::TorqueFit(const ArmTree& arm, bool at_instants, bool gravity_added)
-    : arm_(arm), gravity_added_(gravity_added), n_(arm.dof()), maker_(arm, at_instants) {
+    : arm_(arm), gravity_added_(gravity_added), n_(arm.dof()), windows_(arm, at_instants) {
   for (int a = 0; a < n_; ++a)
     for (int b = a + 1; b < n_; ++b) alike_.emplace_back(a, b);
 }
@@ -52,11 +52,11 @@ void TorqueFit::take(const Sample& y, bool contact, const VectorXd& tau_ext) {
   std::erase_if(alike_, [&](const auto& pair) {
     return y.tau[pair.first] != y.tau[pair.second];  // bit for bit, as no two sensors are
   });
-  maker_.take(y, tau_ext.size() > 0 ? VectorXd(y.tau - tau_ext) : y.tau, contact);
+  windows_.take(y, tau_ext.size() > 0 ? VectorXd(y.tau - tau_ext) : y.tau, contact);
 }
 
 void TorqueFit::take(const Trace& log) {
-  maker_.interrupt(log.torque_at_instants);
+  windows_.interrupt(log.torque_at_instants);
   for (int k = 0; k < log.size(); ++k)
     take({log.t[static_cast<std::size_t>(k)], log.q.col(k), log.qd.col(k), log.tau.col(k)},
          !log.contact.empty() && log.contact[static_cast<std::size_t>(k)] != 0,
@@ -68,7 +68,7 @@ TorqueFit::Poses TorqueFit::poses(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
   const double stiction = kStiction * arm_.joints[leader].dry;
   Poses all;
-  for (const ArmWindow& w : maker_.windows()) {
+  for (const ArmWindow& w : windows_.windows()) {
     const double g = std::abs(w.gravity[j]);
     if (g < kMinTorqueShare * arm_.usual_torque[j] || std::abs(w.model[j] - w.gravity[j]) > 0.2 * g)
       continue;
@@ -242,7 +242,7 @@ std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
 // and no rotor feels in which pose the others are
 std::string TorqueFit::by_drive_unit() const {
   constexpr double kStrong = 1.8, kMaxOfRotor = 0.05;  // [1] of the model, of what a rotor leaves
-  const Windows windows = thinned(maker_.windows(), kMost);
+  const Windows windows = thinned(windows_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
     const Poses carries = poses(j);
     if (carries.held.size() + carries.others.size() >= kMinWindows) continue;
@@ -276,7 +276,7 @@ std::string TorqueFit::by_gravity_of_file() const {
   ArmTree heavy = arm_;
   heavy.gravity = Vec<3>(0, 0, -kGravity);
   const WindowMaker maker(heavy, false);
-  const Windows windows = thinned(maker_.windows(), kMost);
+  const Windows windows = thinned(windows_.windows(), kMost);
   ArmWindows with_gravity;
   for (const ArmWindow* w : windows) with_gravity.push_back(maker.window(w->motion, w->tau));
   const Windows others = thinned(with_gravity, kMost);
@@ -295,7 +295,7 @@ std::string TorqueFit::by_gravity_of_file() const {
 std::string TorqueFit::by_copies() const {
   for (const auto& [a, b] : alike_) {
     const auto varies = [a = a](const ArmWindow& w) { return w.tau[a]; };
-    const VectorXd tau = each(thinned(maker_.windows(), kMost), varies);
+    const VectorXd tau = each(thinned(windows_.windows(), kMost), varies);
     if (tau.maxCoeff() > tau.minCoeff())
       return fmt::format(
           "tau of joints {} and {} is the same, bit for bit: name the columns in a map (--columns)",
@@ -307,7 +307,7 @@ std::string TorqueFit::by_copies() const {
 // a channel that says the same all the time, though the arm moves
 std::string TorqueFit::by_rest() const {
   std::vector<int> dead;
-  const Windows windows = thinned(maker_.windows(), kMost);
+  const Windows windows = thinned(windows_.windows(), kMost);
   for (int j = 0; j < n_; ++j) {
     const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
                    model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
@@ -324,7 +324,7 @@ std::string TorqueFit::by_rest() const {
 // of joints whose motion takes a torque that varies: less that, tau varies more than it does
 std::string TorqueFit::by_another_motion() const {
   std::vector<int> joints;
-  const Windows windows = thinned(maker_.windows(), kMost);
+  const Windows windows = thinned(windows_.windows(), kMost);
   const VectorXd load = VectorXd::Ones(static_cast<Eigen::Index>(windows.size()));
   for (int j = 0; j < n_; ++j) {
     const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
@@ -342,7 +342,7 @@ std::string TorqueFit::by_another_motion() const {
 }
 
 bool TorqueFit::is_long_enough() const {
-  return maker_.windows().size() >= kMinWindows;
+  return windows_.windows().size() >= kMinWindows;
 }
 
 TorqueFit::Judgement TorqueFit::judge() const {
@@ -355,14 +355,14 @@ TorqueFit::Judgement TorqueFit::judge() const {
       return {why + ". Or it carries a load", false};
   const std::string or_else =
       ". Or else its masses are not those of the file, or it carries a load";
-  const FoundReading reading = better_reading(arm_, maker_);
+  const FoundReading reading = better_reading(arm_, windows_);
   if (reading.varied) return {reading.words, true};
   const std::vector<SlowJoint> joints = slow_joints();
   const Cause gravity = by_gravity(joints);
   if (gravity.varied) return {gravity.words, true};
   for (const std::string& why : {gravity.words, reading.words})
     if (!why.empty()) return {why + or_else, false};
-  if (std::string why = found_delay(arm_, maker_); !why.empty()) return {why, false};
+  if (std::string why = found_delay(arm_, windows_); !why.empty()) return {why, false};
   if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
   if (std::string why = by_another_motion(); !why.empty()) return {why, false};
   if (std::string why = by_drive_unit(); !why.empty()) return {why, false};

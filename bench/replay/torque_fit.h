@@ -86,7 +86,7 @@ class TorqueFit {
   ArmTree arm_;
   bool gravity_added_;
   int n_;  // joints
-  WindowMaker maker_;
+  WindowMaker windows_;
   std::vector<std::pair<int, int>> alike_;  // joints whose tau has never differed
 };
 
