@@ -26,6 +26,14 @@
 namespace tauext {
 namespace {
 
+template <class Type, class Wanted>
+std::vector<std::string> names_of(const std::vector<Type>& types, const Wanted& wanted) {
+  std::vector<std::string> all;
+  for (const Type& t : types)
+    if (wanted(t)) all.push_back(t.name);
+  return all;
+}
+
 // scenarios that somebody added to a file's robot
 std::vector<Scenario>& registered_for(const std::string& robot) {
   static std::map<std::string, std::vector<Scenario>> all;
@@ -214,17 +222,13 @@ const EstimatorType& Robot::estimator_type(std::string_view specification) const
 }
 
 std::vector<std::string> Robot::estimators() const {
-  std::vector<std::string> all;
-  for (const EstimatorType& e : estimators_) all.push_back(e.name);
+  std::vector<std::string> all = names_of(estimators_, [](const auto&) { return true; });
   all.insert(all.end(), specifications_.begin(), specifications_.end());
   return all;
 }
 
 std::vector<std::string> Robot::tunable() const {
-  std::vector<std::string> all;
-  for (const EstimatorType& e : estimators_)
-    if (e.tunable) all.push_back(e.name);
-  return all;
+  return names_of(estimators_, [](const EstimatorType& e) { return e.tunable; });
 }
 
 const std::vector<FieldHelp>& Robot::estimator_fields(std::string_view name) const {
@@ -250,16 +254,11 @@ std::unique_ptr<EstimatorStage<EstimatorType::Lanes>> Robot::estimator_of_runs(
 }
 
 std::vector<std::string> Robot::detectors() const {
-  std::vector<std::string> all;
-  for (const DetectorType& d : detectors_) all.push_back(d.name);
-  return all;
+  return names_of(detectors_, [](const auto&) { return true; });
 }
 
 std::vector<std::string> Robot::calibratable() const {
-  std::vector<std::string> all;
-  for (const DetectorType& d : detectors_)
-    if (d.calibration) all.push_back(d.name);
-  return all;
+  return names_of(detectors_, [](const DetectorType& d) { return d.calibration.has_value(); });
 }
 
 void Robot::add_detector(const DetectorType& type) {
