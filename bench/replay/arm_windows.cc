@@ -20,27 +20,28 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using VectorN = ArmWindow::VectorN;
 
-// x of the least squares of y - C x, where the last two of x are friction, which is not below 0
-VectorXd explained(const MatrixXd& C, const VectorXd& y) {
+// x of the least squares of y - C x, where the last of x, so many, are not below 0
+VectorXd explained(const MatrixXd& C, const VectorXd& y, Index positive) {
   const MatrixXd G = C.transpose() * C;
   const VectorXd b = C.transpose() * y;
-  const Index n = C.cols(), free = n - 2;
+  const Index n = C.cols(), free = n - positive;
   VectorXd best = VectorXd::Zero(n);
   double most = 0;  // of the squares that it takes away
-  for (const auto& friction : {std::vector<Index>{free, free + 1}, {free}, {free + 1}, {}}) {
+  for (unsigned some = (1U << positive); some-- > 0;) {
     std::vector<Index> columns(static_cast<std::size_t>(free));
     std::iota(columns.begin(), columns.end(), 0);
-    columns.insert(columns.end(), friction.begin(), friction.end());
+    for (Index i = 0; i < positive; ++i)
+      if ((some >> i & 1U) != 0) columns.push_back(free + i);
     if (columns.empty()) continue;
     const MatrixXd part = G(columns, columns);
     const VectorXd x = part.completeOrthogonalDecomposition().solve(b(columns));
     const double squares = x.dot(b(columns));
-    if ((x.tail(static_cast<Index>(friction.size())).array() < 0).any() || !(squares > most))
-      continue;
+    const Index bounded = static_cast<Index>(columns.size()) - free;
+    if ((x.tail(bounded).array() < 0).any() || !(squares > most)) continue;
     most = squares;
     best.setZero();
     best(columns) = x;
-    if (friction.size() == 2) break;  // no other is better
+    if (bounded == positive) break;  // no other is better
   }
   return best;
 }
@@ -155,18 +156,50 @@ std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t mos
   return some;
 }
 
-double misfit(const std::vector<const ArmWindow*>& windows, int j, const VectorXd& y,
-              const MatrixXd& others) {
-  if (windows.empty()) return 0;
-  MatrixXd C(y.size(), others.cols() + 2);
-  C.leftCols(others.cols()) = others;
+WindowFit fit(const std::vector<const ArmWindow*>& windows, int joint, const VectorXd& y,
+              const MatrixXd& any, const MatrixXd& positive) {
+  const Index bounded = positive.cols() + 2, n = any.cols() + bounded;
+  if (windows.empty()) return {VectorXd::Zero(n - 2), {}, 0};
+  MatrixXd C(y.size(), n);
+  if (any.cols() > 0) C.leftCols(any.cols()) = any;
+  if (positive.cols() > 0) C.middleCols(any.cols(), positive.cols()) = positive;
   for (Index i = 0; i < y.size(); ++i) {
     const ArmWindow& w = *windows[static_cast<std::size_t>(i)];
-    C.row(i).tail(2) << w.direction[j], w.speed[j];
+    C.row(i).tail(2) << w.direction[joint], w.speed[joint];
   }
-  const auto kept = best_fifths(y - C * explained(C, y));
-  const VectorXd rest = y - C * explained(C(kept, Eigen::indexing::all), y(kept));
-  return rest(best_fifths(rest)).squaredNorm() / static_cast<double>(kept.size());
+  const auto kept = best_fifths(y - C * explained(C, y, bounded));
+  const VectorXd x = explained(C(kept, Eigen::indexing::all), y(kept), bounded);
+  WindowFit found{x.head(n - 2), y - C * x};
+  const auto best = best_fifths(found.residual);
+  found.mean_square = found.residual(best).squaredNorm() / static_cast<double>(best.size());
+  return found;
+}
+
+double misfit(const std::vector<const ArmWindow*>& windows, int j, const VectorXd& y,
+              const MatrixXd& others) {
+  return fit(windows, j, y, others).mean_square;
+}
+
+void undo_noise(WindowFit& fit, double s) {
+  const double smaller = std::min(1., std::abs(s));
+  fit.mean_square /= smaller * smaller + 1e-9;
+}
+
+double independent(const VectorXd& residual) {
+  const Index n = residual.size() - 1;
+  if (n < 1) return 0;
+  const double most = 3 * std::sqrt(residual.squaredNorm() / static_cast<double>(n + 1));
+  const VectorXd y = residual.array().min(most).max(-most);  // outliers
+  const double alike = y.head(n).dot(y.tail(n)) / std::max(y.squaredNorm(), 1e-300);
+  const double r = std::clamp(alike, 0., 0.98);
+  return static_cast<double>(n) * (1 - r) / (1 + r);
+}
+
+VectorXd rotor_torque(const std::vector<const ArmWindow*>& windows, int joint) {
+  return each(windows, [joint](const ArmWindow& w) {
+    const Index last = w.motion.cols() - 1, qd = 1 + (w.motion.rows() - 1) / 2 + joint;
+    return (w.motion(qd, last) - w.motion(qd, 0)) / (w.motion(0, last) - w.motion(0, 0));
+  });
 }
 
 double factor(const std::vector<const ArmWindow*>& windows, int j, const VectorXd& y) {

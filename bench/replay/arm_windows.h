@@ -63,11 +63,41 @@ class WindowMaker {
 /// At most that many of the windows, from all of the recording.
 std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t most);
 
-/// [(N m)^2] The mean square of y [N m], a number of each window, without the fifth of the windows
-/// that fits worst (outliers, and touches that nobody labelled), and without what friction of joint
-/// j explains, and any multiples of the columns of `others`.
+/// What explains a number y [N m] of each window: `any` multiple of some columns, multiples of
+/// others that are not below 0, and what friction a joint may have.
+struct WindowFit {
+  Eigen::VectorXd multiples;  ///< of the columns of `any`, then of `positive`
+  Eigen::VectorXd residual;   ///< [N m] what is left of y
+  double mean_square = 0;     ///< [(N m)^2] of it, without the fifth of the windows that is largest
+};
+
+/// The least squares. The fifth of the windows that fits worst (outliers, and touches that nobody
+/// labelled) does not count.
+WindowFit fit(const std::vector<const ArmWindow*>& windows, int joint, const Eigen::VectorXd& y,
+              const Eigen::MatrixXd& any = {}, const Eigen::MatrixXd& positive = {});
+
+/// Its mean square, by friction and any multiples of `others`.
 double misfit(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y,
               const Eigen::MatrixXd& others = {});
+
+/// [1] A cause is named if it makes the rest of a joint 1.5 times smaller (mean square: 2.25),
+inline constexpr double kMinImprovement = 2.25;
+/// and if its likelihood is e^12 times that of the model alone, as a hundred causes are tried.
+inline constexpr double kSure = 12;
+/// [1] of how a torque varies, in mean squares: less matters to nobody.
+inline constexpr double kNegligible = 1e-6;
+inline constexpr std::size_t kFewestWindows = 20;  ///< from which causes can be told
+
+/// Makes a fit's mean square what it would be if a factor s below 1 of the model did not make the
+/// speed's noise, which is in the model, smaller.
+void undo_noise(WindowFit& fit, double s);
+
+/// How many of these residuals count as independent, by their first autocorrelation.
+double independent(const Eigen::VectorXd& residual);
+
+/// [N m/(kg m^2)] The torque that accelerates a rotor of 1 kg m^2, in each window: its mean
+/// acceleration.
+Eigen::VectorXd rotor_torque(const std::vector<const ArmWindow*>& windows, int joint);
 
 /// [1] by which y is the model's torque of joint j, with any friction.
 double factor(const std::vector<const ArmWindow*>& windows, int j, const Eigen::VectorXd& y);

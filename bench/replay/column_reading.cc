@@ -5,10 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -34,6 +32,9 @@ struct Found {
   VectorXd unexplained;  // Search::unexplained of it
 };
 
+// what the file may lack of each joint
+enum class Beside { kFriction, kLoad, kLoadAndRotor };
+
 class Search {
  public:
   Search(const ArmTree& arm, const WindowMaker& recording)
@@ -50,7 +51,7 @@ class Search {
   }
 
   // [1] of each joint's torque, in mean squares
-  VectorXd unexplained(const ColumnReading& reading, bool load = false) const {
+  VectorXd unexplained(const ColumnReading& reading, Beside beside = Beside::kFriction) const {
     ArmWindows other;
     const bool moves = is_other_motion(reading);
     other.reserve(own_.size());
@@ -61,8 +62,10 @@ class Search {
       const VectorXd tau = each(windows, [j](const ArmWindow& w) { return w.tau[j]; });
       const VectorXd left =
           each(windows, [j](const ArmWindow& w) { return w.tau[j] - w.model[j]; });
-      const MatrixXd others = MatrixXd::Ones(left.size(), load ? 1 : 0);
-      share[j] = misfit(windows, j, left, others) / (power(tau) + little_power(j));
+      const MatrixXd load = MatrixXd::Ones(left.size(), beside == Beside::kFriction ? 0 : 1);
+      const MatrixXd rotor =
+          beside == Beside::kLoadAndRotor ? MatrixXd(rotor_torque(own_, j)) : MatrixXd();
+      share[j] = fit(windows, j, left, load, rotor).mean_square / (power(tau) + little_power(j));
     }
     return share;
   }
@@ -245,84 +248,10 @@ std::string words(const ColumnReading& r) {
   return fmt::format("{}", fmt::join(all, "; and "));
 }
 
-// Those that both neighbours touch, with the neighbours; all of as many steps as most of them, as
-// where samples jitter some have fewer.
-std::vector<std::array<const ArmWindow*, 3>> in_threes(const ArmWindows& windows) {
-  std::vector<std::array<const ArmWindow*, 3>> all;
-  std::map<Index, int> counts;
-  for (const ArmWindow& w : windows) ++counts[w.steps.cols()];
-  const auto usual =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  const auto touch = [&](const ArmWindow& a, const ArmWindow& b) {
-    return a.motion(0, a.motion.cols() - 1) == b.motion(0, 0) && a.steps.cols() == usual->first &&
-           b.steps.cols() == usual->first;
-  };
-  for (std::size_t i = 1; i + 1 < windows.size(); ++i)
-    if (touch(windows[i - 1], windows[i]) && touch(windows[i], windows[i + 1]))
-      all.push_back({&windows[i - 1], &windows[i], &windows[i + 1]});
-  return all;
-}
-
-// [N m] of the torque so many steps later
-double later(const std::array<const ArmWindow*, 3>& w, int j, Index steps) {
-  const Index count = w[1]->steps.cols();
-  double sum = 0;
-  for (Index k = steps; k < count + steps; ++k) {
-    const ArmWindow& of = k < 0 ? *w[0] : k < count ? *w[1] : *w[2];
-    sum += of.steps(j, (k + count) % count);
-  }
-  return sum / (w[1]->motion(0, count) - w[1]->motion(0, 0));
-}
-
 }  // namespace
 
 std::string listed(const std::vector<int>& joints) {
   return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
-}
-
-std::string found_delay(const ArmTree& arm, const WindowMaker& recording) {
-  constexpr std::size_t kEnough = 20;
-  constexpr double kLate = 0.015;    // [s] less may be a filter's
-  constexpr double kTouched = 1e-3;  // [1] as kKnown, where somebody may touch the arm
-  constexpr double kAll = 5e-3;      // [1] less is left where nobody does
-  const auto threes = in_threes(recording.windows());
-  if (threes.size() < kEnough) return "";
-  const Index steps = threes.front()[1]->steps.cols();
-  std::vector<const ArmWindow*> windows;
-  for (const auto& w : threes) windows.push_back(w[1]);
-  const auto unexplained = [&](Index by) {
-    VectorXd share(arm.dof());
-    for (int j = 0; j < arm.dof(); ++j) {
-      // a rotor whose inertia the file lacks looks like a delay
-      VectorXd tau(static_cast<Index>(threes.size())), model(tau.size()), qdd(tau.size());
-      for (Index i = 0; i < tau.size(); ++i) {
-        const auto& w = threes[static_cast<std::size_t>(i)];
-        const auto qd = w[1]->motion.row(1 + arm.dof() + j);
-        tau[i] = later(w, j, by), model[i] = w[1]->model[j], qdd[i] = qd(steps) - qd(0);
-      }
-      const double power = tau.squaredNorm() / static_cast<double>(tau.size());
-      share[j] = misfit(windows, j, tau - model, qdd) /
-                 (power + std::pow(kLittle * arm.usual_torque[j], 2));
-    }
-    return share;
-  };
-  const VectorXd now = unexplained(0);
-  VectorXd then = now;
-  Index best = 0;
-  for (Index by = -steps; by <= steps; ++by)
-    if (VectorXd share = unexplained(by); Search::size(share) < Search::size(then))
-      then = std::move(share), best = by;
-  const double known = (then.array() < kAll).all() ? kKnown : kTouched;
-  const double better = ((now.array() + known) / (then.array() + known)).log().sum();
-  const ArmWindow& one = *windows.front();
-  const double late = static_cast<double>(best) * (one.motion(0, steps) - one.motion(0, 0)) /
-                      static_cast<double>(steps);
-  if (std::abs(late) < kLate || better < kTenTimes) return "";
-  return fmt::format(
-      "tau comes {:.0f} ms {} the motion that takes it: are both stamped by one clock, and for the "
-      "time when they were measured?",
-      1000 * std::abs(late), late > 0 ? "after" : "before");
 }
 
 FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
@@ -345,8 +274,11 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
   if (!(Search::size(before) - Search::size(after) > kTenTimes) || !one_alone || !all_fit ||
       search.has_simpler_cause(Search::size(after)))
     return {};
-  const double than_loads = Search::size(search.unexplained(own, true)) - Search::size(after);
-  if (than_loads < kWorthAStep && !has_other_torques(found.reading)) return {};
+  const bool other_torques = has_other_torques(found.reading);  // which no rotor looks like
+  const double than_loads =
+      Search::size(search.unexplained(own, other_torques ? Beside::kLoad : Beside::kLoadAndRotor)) -
+      Search::size(after);
+  if (than_loads < kWorthAStep && !other_torques) return {};
   return {words(found.reading), than_loads > kTenTimes};
 }
 

@@ -38,8 +38,4 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording);
 /// Joints in words, by their numbers from 1.
 std::string listed(const std::vector<int>& joints);
 
-/// Whether the torques fit ten times better if they are taken 20 to 100 ms earlier or later, all
-/// alike; "" or why.
-std::string found_delay(const ArmTree& arm, const WindowMaker& recording);
-
 }  // namespace tauext

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "bench/replay/column_reading.h"
+#include "bench/replay/torque_causes.h"
+#include "bench/replay/torque_delay.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext {
@@ -63,26 +65,21 @@ void TorqueFit::take(const Trace& log) {
          log.has_truth() ? VectorXd(log.tau_ext.col(k)) : VectorXd());
 }
 
-// those in which a joint carries something, and hardly more than that
-TorqueFit::Poses TorqueFit::poses(int j) const {
+// those in which a joint carries something, and hardly more than that; none where dry friction
+// alone explains most of them, as the others are what the model does not know
+TorqueFit::Windows TorqueFit::slow(int j) const {
   const auto leader = static_cast<std::size_t>(arm_.leaders[static_cast<std::size_t>(j)]);
   const double stiction = kStiction * arm_.joints[leader].dry;
-  Poses all;
+  Windows others, held;
   for (const ArmWindow& w : windows_.windows()) {
     const double g = std::abs(w.gravity[j]);
     if (g < kMinTorqueShare * arm_.usual_torque[j] || std::abs(w.model[j] - w.gravity[j]) > 0.2 * g)
       continue;
-    const bool held =
+    const bool rests =
         std::abs(w.direction[j]) < kMoving && std::abs(w.tau[j] - w.model[j]) < stiction;
-    (held ? all.held : all.others).push_back(&w);
+    (rests ? held : others).push_back(&w);
   }
-  return all;
-}
-
-// none where dry friction alone explains most of them: the others are what the model does not know
-TorqueFit::Windows TorqueFit::slow(int j) const {
-  Poses all = poses(j);
-  return all.held.size() > all.others.size() ? Windows() : std::move(all.others);
+  return held.size() > others.size() ? Windows() : others;
 }
 
 // those that carry something, in slow poses
@@ -161,9 +158,12 @@ TorqueFit::Cause TorqueFit::by_gravity(const std::vector<SlowJoint>& joints) {
   return {fmt::format("in slow poses tau of {} is {:.3g} times the torque of the model: {}",
                       listed(scaled), fmt::join(factors, ", "),
                       *most < 0 ? "its sign is reversed; set `sign = -1` in a map (--columns)"
-                                : "are these currents, or is this another unit? In a map "
-                                  "(--columns), [current] with `gain` (N m/A), or `unit`, `gain` "
-                                  "and `sign` of [tau], say so"),
+                      : *least > 1.8 && *most < 2.2
+                          ? "is gravity added to a torque that has it already, or is this another "
+                            "unit? `gain = 0.5` of [tau] in a map (--columns) halves it"
+                          : "are these currents, or is this another unit? In a map "
+                            "(--columns), [current] with `gain` (N m/A), or `unit`, `gain` "
+                            "and `sign` of [tau], say so"),
           scaled_varied && far && spread < kMaxSpreadOfGains &&
               (factors.size() > 1 || joints.size() == 1)};
 }
@@ -185,7 +185,7 @@ std::string TorqueFit::by_unit(const std::vector<SlowJoint>& joints) {
   if (*most > kSame * *least || std::max(*most, 1 / *least) < kMinUnit) return "";
   return fmt::format(
       "in slow poses all torques are {:.3g} times those of the model: is this another unit (lbf "
-      "ft: 0.738)? `gain = {:.3g}` of [tau] in a map (--columns) makes it N m",
+      "ft: 0.738)? `gain = {:.4g}` of [tau] in a map (--columns) makes it N m",
       *least, 1 / *least);
 }
 
@@ -236,38 +236,6 @@ std::string TorqueFit::by_another_arm(const std::vector<SlowJoint>& joints) {
       "in slow poses tau of {} is {:.3g} times the torque of the model: is this recording of this "
       "robot?",
       listed(light), fmt::join(factors, ", "));
-}
-
-// of joints that carry nothing: rotors and friction that a file lacks make more torque, not less,
-// and no rotor feels in which pose the others are
-std::string TorqueFit::by_drive_unit() const {
-  constexpr double kStrong = 1.8, kMaxOfRotor = 0.05;  // [1] of the model, of what a rotor leaves
-  const Windows windows = thinned(windows_.windows(), kMost);
-  for (int j = 0; j < n_; ++j) {
-    const Poses carries = poses(j);
-    if (carries.held.size() + carries.others.size() >= kMinWindows) continue;
-    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
-                   model = each(windows, [j](const ArmWindow&w) { return w.model[j]; }),
-                   acceleration = each(windows, [j, this](const ArmWindow&w) {
-                     const Eigen::Index last = w.motion.cols() - 1;
-                     return (w.motion(1 + n_ + j, last) - w.motion(1 + n_ + j, 0)) /
-                            (w.motion(0, last) - w.motion(0, 0));
-                   });
-    const double s = factor(windows, j, tau), residual = misfit(windows, j, tau - model);
-    if (!(s > 0) || (s > 0.7 && s < kStrong) || residual < kMinMisfit * misfit(windows, j, model))
-      continue;
-    MatrixXd others(tau.size(), 2);  // a rotor, and an offset
-    others << acceleration, VectorXd::Ones(tau.size());
-    const double by_factor = s * s * misfit(windows, j, tau / s - model),
-                 by_rotor = misfit(windows, j, tau - model, others);
-    if (by_factor < kMaxRatio * residual &&
-        (s < 1 || (by_factor < kMaxOfRotor * by_rotor && by_rotor > kMinVariation * residual)))
-      return fmt::format(
-          "tau of joint {} is {:.3g} times what its motion takes: is it in another unit? `unit` "
-          "and `gain` of [tau] in a map (--columns) say so",
-          j + 1, s);
-  }
-  return "";
 }
 
 // of a file in which nothing weighs anything
@@ -365,7 +333,7 @@ TorqueFit::Judgement TorqueFit::judge() const {
   if (std::string why = found_delay(arm_, windows_); !why.empty()) return {why, false};
   if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
   if (std::string why = by_another_motion(); !why.empty()) return {why, false};
-  if (std::string why = by_drive_unit(); !why.empty()) return {why, false};
+  if (std::string why = found_cause(arm_, windows_); !why.empty()) return {why + or_else, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
   if (!(residual > power)) return {};

@@ -5,8 +5,9 @@
 ///
 /// The mean torque of windows (arm_windows.h) is compared with that of the arm's model, and with
 /// what it would be if the recording had it otherwise: without gravity, in another unit, with
-/// another sign, of another joint (column_reading.h); each time with the Coulomb and viscous
-/// friction of each joint that explains most of the rest, as hardly a file knows it.
+/// another sign, of another joint (column_reading.h), of another time (torque_delay.h), or with
+/// what slow poses do not show (torque_causes.h); each time with the Coulomb and viscous friction
+/// of each joint that explains most of the rest, as hardly a file knows it.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,7 +44,8 @@ class TorqueFit {
     bool sure = false;  ///< whether it contradicts the arm; else it may be of another one
   };
   /// A cause is named if it explains the measured torque ten times better (mean square) than the
-  /// model does. It is sure if it explains it so much better than a constant load of each joint,
+  /// model does; a delay, and the causes of torque_causes.h, from 2.25 times on if that is no
+  /// chance. It is sure if it explains it so much better than a constant load of each joint,
   /// too, and if other masses cannot.
   Judgement judge() const;
   std::string contradiction() const;  ///< what is surely wrong, or ""
@@ -67,17 +69,12 @@ class TorqueFit {
     bool varied = false;  // no constant load explains it
   };
 
-  struct Poses {
-    Windows others, held;  // held: at rest, and within dry friction of the model
-  };
-  Poses poses(int joint) const;
   Windows slow(int joint) const;
   std::vector<SlowJoint> slow_joints() const;
   static Cause by_gravity(const std::vector<SlowJoint>& joints);
   static std::string by_unit(const std::vector<SlowJoint>& joints);
   static std::string by_another_arm(const std::vector<SlowJoint>& joints);
   std::string by_added_gravity() const;
-  std::string by_drive_unit() const;
   std::string by_gravity_of_file() const;
   std::string by_copies() const;
   std::string by_rest() const;
