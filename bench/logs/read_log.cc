@@ -2,6 +2,7 @@
 #include "bench/logs/read_log.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -58,6 +59,7 @@ class UnitDoubt {
       : least_(VectorXd::Constant(joints, kNever)),
         most_(-least_),
         joints_(joints),
+        apart_(Eigen::MatrixXd::Zero(joints, joints)),
         velocity_delay_(velocity_delay) {}
 
   // the next sample
@@ -94,7 +96,13 @@ class UnitDoubt {
       if (!is_wrong(j)) continue;
       const Joint& sum = joints_[j];
       const std::string what =
-          rests(sum) ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
+          rests(sum)    ? fmt::format("q{} moves, and qd{} says that it rests", j + 1, j + 1)
+          : stands(sum) ? fmt::format("q{} rests, and qd{} says that it moves", j + 1, j + 1)
+          : says_of(j) != j
+              ? fmt::format(
+                    "q{} moves as qd{} says, and not as qd{}, so that `columns` of [qd] in a "
+                    "map (--columns) may be in another order, or else",
+                    j + 1, says_of(j) + 1, j + 1)
           : sum.alike() < kForeign
               ? fmt::format("q{} moves otherwise than qd{} says, as if that were another joint's",
                             j + 1, j + 1)
@@ -145,6 +153,19 @@ class UnitDoubt {
   };
 
   static bool rests(const Joint& sum) { return sum.xx < 1e-6 * sum.yy; }
+  static bool stands(const Joint& sum) { return sum.yy < 1e-7 * sum.xx && sum.xx > 0.01; }
+
+  // the joint of which q of this one tells, by qd; itself, unless another's fits ten times better
+  std::size_t says_of(std::size_t j) const {
+    constexpr double kFits = 0.01;   // [1] of q's squares
+    constexpr double kSlope = 0.99;  // [1] of correlation: else its unit or sign is another one
+    Eigen::Index best = 0;
+    const auto at = static_cast<Eigen::Index>(j);
+    const double own = apart_(at, at), least = apart_.row(at).minCoeff(&best);
+    const bool other = joints_[j].alike() < kSlope && own > kFits * joints_[j].yy &&
+                       10 * least < std::min(own, joints_[j].yy);
+    return other ? static_cast<std::size_t>(best) : j;
+  }
 
   bool is_wrong(std::size_t j) const {
     constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
@@ -154,9 +175,10 @@ class UnitDoubt {
     const Joint& sum = joints_[j];
     const auto at = static_cast<Eigen::Index>(j);
     const double range = most_[at] - least_[at];
+    if (stands(sum)) return true;
     if (rests(sum)) return range > kMoved;
     if (std::max(range, sum.path) < kNudged) return false;
-    if (range > kMoved && sum.alike() < kForeign) return true;
+    if (range > kMoved && (sum.alike() < kForeign || says_of(j) != j)) return true;
     // q fixes the speed exactly: a slope other than 1 is another rate or unit
     if (longest_ < kFewest && range > kMoved && sum.alike() > kSame &&
         std::abs(sum.xy / sum.yy - 1) > kMostSlip)
@@ -202,6 +224,10 @@ class UnitDoubt {
     if (s.t - window_ < kWindow && h <= longest_) return;
     window_ = s.t;
     ++windows_;
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      for (std::size_t k = 0; k < joints_.size(); ++k)
+        apart_(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) +=
+            std::pow(joints_[j].y - joints_[k].x, 2);
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const auto at = static_cast<Eigen::Index>(j);
       Joint& sum = joints_[j];
@@ -218,6 +244,7 @@ class UnitDoubt {
 
   VectorXd least_, most_;
   std::vector<Joint> joints_;
+  Eigen::MatrixXd apart_;      // [rad^2] squares of the motion of a row's q without a column's qd
   double velocity_delay_;      // [s] of qd, where the reader makes it of q
   double windows_ = 0;         // so many
   std::vector<Sample> first_;  // until they are kFirst, or all
@@ -226,6 +253,115 @@ class UnitDoubt {
   double longest_ = 0;        // [s] over a gap qd says nothing; 0 until settle()
   double from_ = 0, to_ = 0;  // [s]
   double window_ = -kNever;   // [s] where it began
+};
+
+// whether a joint's q, qd or tau is new in every kth sample only, and another in each; or whether
+// its tau stays the same, though it moves
+class Repeats {
+ public:
+  void take(double t, const VectorXd& q, const VectorXd& qd, const VectorXd& tau) {
+    const VectorXd* const quantities[] = {&q, &qd, &tau};
+    channels_.resize(3 * static_cast<std::size_t>(q.size()));
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto joint = static_cast<Eigen::Index>(c / 3);
+      Channel& channel = channels_[c];
+      channel.take((*quantities[c % 3])[joint]);
+      if (c % 3 == kTau) channel.look(t, q[joint]);
+    }
+    if (samples_++ == 0) from_ = t;
+    to_ = t;
+  }
+
+  // "" or what
+  std::string words() const {
+    for (std::size_t c = kTau; c < channels_.size(); c += 3)
+      if (channels_[c].changes && channels_[c].stuck)  // one that never changes is no torque
+        return fmt::format(
+            "tau of joint {} stays the same, bit for bit, from t = {:.6g} s on, though the joint "
+            "moves: does its sensor still measure?",
+            c / 3 + 1, channels_[c].stuck_from);
+    constexpr double kOld = 0.0045;  // [s] less than half of it matters to nobody
+    const double step = samples_ < 2 ? 0 : (to_ - from_) / static_cast<double>(samples_ - 1);
+    int least = kMostAge;
+    for (const Channel& one : channels_) least = std::min(least, one.usual_age());
+    std::string all;
+    for (const std::size_t quantity : {0, 1, 2}) {
+      std::vector<std::size_t> joints;
+      int oldest = 0;
+      for (std::size_t c = quantity; c < channels_.size(); c += 3) {
+        const int age = channels_[c].usual_age();
+        if (age <= 2 * least || age * step < kOld) continue;
+        joints.push_back(c / 3 + 1);
+        oldest = std::max(oldest, age);
+      }
+      if (joints.empty()) continue;
+      constexpr const char* kNames[] = {"q", "qd", "tau"};
+      all += fmt::format("{}{}{} is new in every {}th sample only", all.empty() ? "" : ", ",
+                         kNames[quantity],
+                         3 * joints.size() == channels_.size()
+                             ? ""
+                             : fmt::format(" of joint{} {}", joints.size() == 1 ? "" : "s",
+                                           fmt::join(joints, ", ")),
+                         oldest);
+    }
+    if (all.empty()) return "";
+    return all +
+           ", so that it is of another time than the others: keep only samples in which all "
+           "are new, or record them at one rate";
+  }
+
+ private:
+  static constexpr std::size_t kTau = 2;
+  static constexpr int kMostAge = 100;  // [samples]
+
+  struct Channel {
+    double last = 0, least_change = std::numeric_limits<double>::infinity();  // not 0
+    int age = 0;                                                              // [samples] of it
+    std::array<int, kMostAge + 1> ages{};      // that it reached, how often
+    double from = 0, least_q = 0, most_q = 0;  // [s], [rad] since it is what it is
+    bool changes = false, stuck = false;
+    double stuck_from = 0;  // [s]
+
+    void take(double now) {
+      if (age > 0 && now == last) {
+        ++age;
+        return;
+      }
+      const double change = std::abs(now - last);
+      // an encoder's single step comes in every kth sample at a constant speed, too
+      if (age > 0 && change > 1.5 * least_change)
+        ++ages[static_cast<std::size_t>(std::min(age, kMostAge))];
+      if (age > 0) least_change = std::min(least_change, change);
+      changes = changes || age > 0;
+      last = now, age = 1;
+    }
+
+    // whether it is the same for long, in which its joint moves far
+    void look(double t, double q) {
+      constexpr double kLong = 0.5, kFar = 0.1;  // [s], [rad]
+      if (age == 1) from = t, least_q = most_q = q;
+      least_q = std::min(least_q, q), most_q = std::max(most_q, q);
+      if (stuck || t - from < kLong || most_q - least_q < kFar) return;
+      stuck = true, stuck_from = from;
+    }
+
+    // [samples] that nearly all of them have, one more or less; else 1
+    int usual_age() const {
+      constexpr int kFewest = 50;
+      constexpr double kNearlyAll = 0.9;
+      double count = 0, most = 0;
+      int usual = 1;
+      for (std::size_t samples = 1; samples < ages.size(); ++samples) {
+        count += ages[samples];
+        const double alike = ages[samples] + (samples + 1 < ages.size() ? ages[samples + 1] : 0);
+        if (ages[samples] > 0 && alike > most) most = alike, usual = static_cast<int>(samples);
+      }
+      return count >= kFewest && most > kNearlyAll * count ? usual : 1;
+    }
+  };
+  std::vector<Channel> channels_;  // q, qd and tau of each joint
+  std::int64_t samples_ = 0;
+  double from_ = 0, to_ = 0;  // [s]
 };
 
 }  // namespace detail
@@ -281,6 +417,7 @@ struct LogReader::Impl {
   VectorXd gain;  // [N m/A] of the drives, if tau is to be made of currents; or [1]
   std::function<VectorXd(const VectorXd&)> gravity;  // [N m] of q, if it is to be added to tau
   std::unique_ptr<detail::UnitDoubt> doubt;
+  detail::Repeats repeats;
 };
 
 LogReader::LogReader(const std::string& path, const LogOptions& options)
@@ -323,6 +460,10 @@ bool LogReader::contradicts() const {
   return impl_->doubt->contradicts();
 }
 
+bool LogReader::usable() const {
+  return skipped() <= regularity().samples && !contradicts() && impl_->repeats.words().empty();
+}
+
 bool LogReader::next(RecordedSample& s) {
   if (!impl_->source->next(s)) {
     impl_->doubt->finish();
@@ -338,6 +479,7 @@ bool LogReader::next(RecordedSample& s) {
   }
   impl_->label(s);
   impl_->tau = s.tau;
+  impl_->repeats.take(s.t, s.q, s.qd, s.tau);
   if (impl_->gain.size() > 0) s.tau = impl_->gain.cwiseProduct(s.tau);
   if (impl_->gravity) s.tau += impl_->gravity(s.q);
   impl_->doubt->take(s);
@@ -367,6 +509,7 @@ void LogReader::report() const {
         "{}: its own labels are not used, and are others than those of {} in {} samples", i.path,
         i.labels_file->path(), i.differing));
   i.doubt->tell(i.path, remedy);
+  if (const std::string why = i.repeats.words(); !why.empty()) say(i.path + ": " + why);
   if (const double step = regularity().step; step > kSlowStep)
     say(fmt::format(
         "{}: {:.3g} samples a second. An estimate is a sample late, {:.3g} ms here, and "
@@ -386,7 +529,7 @@ RecordedLog read_any_log(const std::string& path, const LogOptions& o) {
   LogReader reader(path, o);
   Trace trace = trace_of(reader);
   reader.report();
-  return {std::move(trace), reader.skipped(), reader.contradicts()};
+  return {std::move(trace), reader.contradicts(), !reader.usable()};
 }
 
 }  // namespace tauext

@@ -58,11 +58,12 @@ class LogReader final : public SampleSource {
   /// Says on standard error, at the end, what was skipped, what is irregular in it, and what can
   /// hardly be in the units of a Trace.
   void report() const;
-  /// At the end: whether a joint moves at least twice as fast as its qd says, at most half as fast,
-  /// or the other way.
+  /// At the end: whether some q and qd cannot both be true: another unit, rate or sign, a qd that
+  /// rests, another joint's, or of another time (15 ms or more).
   bool contradicts() const;
-  /// Whether most of it could be used, and q and qd agree: else it is not the log that one means.
-  bool usable() const { return skipped() <= regularity().samples && !contradicts(); }
+  /// Whether most of it could be used, q and qd agree, and each quantity is as new as the others:
+  /// else it is not the log that one means.
+  bool usable() const;
 
  private:
   struct Impl;
@@ -72,11 +73,11 @@ class LogReader final : public SampleSource {
 /// A log, and how much of it could not be used.
 struct RecordedLog {
   Trace trace;               ///< what could be used
-  std::int64_t skipped = 0;  ///< rows, or messages of the channel
   bool contradicts = false;  ///< as LogReader says
-  bool doubtful = false;  ///< whether its torques may be another robot's (bench/replay/robot_log.h)
-  /// Whether most of it could be used, q and qd agree, and the torques may be the robot's.
-  bool usable() const { return skipped <= trace.size() && !contradicts && !doubtful; }
+  /// Whether it is not usable() to LogReader, or its torques may be another robot's
+  /// (bench/replay/robot_log.h).
+  bool doubtful = false;
+  bool usable() const { return !doubtful; }  ///< whether it is what one means
   /// Asked by programs that write down what they learn from it.
   /// @throws std::invalid_argument if q and qd contradict each other
   void require_consistent(const std::string& path) const;

@@ -15,7 +15,7 @@ RecordedLog robot_log(const Robot& robot, const std::string& path, const std::st
   const bool without_gravity = log.trace.tau_without_gravity;
   robot.make_torques(log.trace);
   if (robot.is_from_file())
-    log.doubtful = !torques_fit(tree_of(robot.model()), {log.trace}, without_gravity, {path});
+    log.doubtful |= !torques_fit(tree_of(robot.model()), {log.trace}, without_gravity, {path});
   return log;
 }
 
