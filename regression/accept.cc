@@ -31,20 +31,15 @@ struct Excess {
 void add_times(TimeReport& t, std::vector<Excess>& all) {
   for (KernelTime& k : t.kernels) {
     const bool slower = k.verdict.verdict == Verdict::kFail;
-    const auto add = [&](const char* layer, TimeVerdict& v) {
-      const bool fails = v.verdict == Verdict::kFail;
-      if (!fails && !(slower && v.ratio > 1)) return;
+    if (slower) {
       // another day's machine may say a tenth more
-      const double at_most = v.high - 1 + 0.1 * (v.ratio - 1);
-      all.push_back({layer, k.kernel, v.surely, at_most,
-                     [&v](const std::string& reason) {
+      const double at_most = k.verdict.high - 1 + 0.1 * (k.verdict.ratio - 1);
+      all.push_back({kTimeLayer, k.kernel, k.verdict.surely, at_most,
+                     [&v = k.verdict](const std::string& reason) {
                        v.verdict = Verdict::kAccepted;
                        v.why = reason;
-                     },
-                     fails});
-    };
-    add(kTimeLayer, k.verdict);
-    add(kColdLayer, k.cold);
+                     }});
+    }
     if (k.life.kernel.empty() || k.life.head.waits > k.life.base.waits) continue;
     const bool fails = !complaint(k.life).empty();
     const double by = std::max(k.life.worst_ratio, k.life.head.mean_ns / k.life.base.mean_ns) - 1;

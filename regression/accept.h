@@ -11,9 +11,8 @@
 namespace tauext::gate {
 
 /// Each finding that fails and has a size, as it would be accepted: a time by the upper end of its
-/// interval and a tenth, all else by what it is. With a slower step also what its steps after other
-/// work and its longer run say, which another run may find to fail. Not what is new or gone, nor a
-/// step that waits.
+/// interval and a tenth, all else by what it is. With a slower step also what its longer run says,
+/// which another run may find to fail. Not what is new or gone, nor a step that waits.
 std::vector<Acceptance> acceptable(const GateResult& result, const std::string& base,
                                    const std::string& reason);
 

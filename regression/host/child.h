@@ -3,6 +3,10 @@
 /// Other programs, without a shell between.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,5 +29,19 @@ struct Finished {
   std::string output;
 };
 Finished finish_child(const std::vector<std::string>& argv);
+
+/// Starts this program again with the arguments `worker` and the request, as JSON, and reads its
+/// standard output, JSON too, as a Reply.
+/// @throws std::runtime_error if the child fails or answers something else
+template <class Reply, class Request>
+Reply ask(const std::string& worker, const Request& request) {
+  const std::string out = run_child({this_program(), worker, nlohmann::json(request).dump()});
+  try {
+    return nlohmann::json::parse(out).get<Reply>();
+  } catch (const nlohmann::json::exception& e) {
+    throw std::runtime_error(fmt::format(
+        "the child process '{}' did not answer with the expected JSON: {}", worker, e.what()));
+  }
+}
 
 }  // namespace tauext::gate

@@ -21,8 +21,8 @@ constexpr const char* kHeader = "# tauext accepted findings 1";
 constexpr const char* kColumns = "layer\tsubject\tat most\tbase\treason";
 constexpr const char* kEnd = "# end";
 
-constexpr const char* kLayers[] = {kTimeLayer,         kColdLayer,      kLongLayer,
-                                   kInstructionsLayer, kCommittedLayer, kAccuracyLayer};
+constexpr const char* kLayers[] = {kTimeLayer, kLongLayer, kInstructionsLayer, kCommittedLayer,
+                                   kAccuracyLayer};
 
 [[noreturn]] void refuse_at_most(const std::string& what, const std::string& where) {
   throw std::runtime_error(

@@ -9,7 +9,7 @@
 namespace tauext::gate {
 
 /// The layers of findings that can be accepted.
-inline constexpr const char *kTimeLayer = "time", *kColdLayer = "cold", *kLongLayer = "long",
+inline constexpr const char *kTimeLayer = "time", *kLongLayer = "long",
                             *kInstructionsLayer = "instructions", *kCommittedLayer = "committed",
                             *kAccuracyLayer = "accuracy";
 

@@ -24,13 +24,6 @@ std::vector<Finding> time_findings(const GateResult& r) {
     Finding f{"time", k.kernel, verdict_of(k), std::move(rows[i]), {}};
     f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
     if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
-    if (k.cold.verdict == Verdict::kAccepted) f.more.push_back("after other work: " + k.cold.why);
-    if (k.cold.verdict == Verdict::kFail) {
-      f.more.push_back(fmt::format(
-          "after other work a step takes {:+.0f} % ({:+.0f} to {:+.0f}, limit {:+.0f} %)",
-          100 * (k.cold.ratio - 1), 100 * (k.cold.low - 1), 100 * (k.cold.high - 1),
-          100 * cold_limits().surely));
-    }
     if (!k.life.kernel.empty()) {
       if (std::string stall = complaint(k.life); !stall.empty()) f.more.push_back(std::move(stall));
       if (!k.life_accepted.empty()) f.more.push_back(k.life_accepted);

@@ -23,7 +23,7 @@ std::vector<std::string> cells_of(const GateResult& r, const KernelTime& k) {
                                    : counted(r, k.kernel) ? "same"
                                                           : "";
   if (v.verdict == Verdict::kIdentical) {
-    return {k.kernel, "", "", "", "", "", "", instructions, name_of(v.verdict)};
+    return {k.kernel, "", "", "", "", "", instructions, name_of(v.verdict)};
   }
   return {k.kernel,
           fmt::format("{:.1f}", k.base_ns),
@@ -31,7 +31,6 @@ std::vector<std::string> cells_of(const GateResult& r, const KernelTime& k) {
           fmt::format("{:+.2f}", 100 * (v.ratio - 1)),
           fmt::format("{:+.2f} to {:+.2f}", 100 * (v.low - 1), 100 * (v.high - 1)),
           fmt::format("{:.2f}", 100 * v.layout_sd),
-          fmt::format("{:+.0f}", 100 * (k.cold.ratio - 1)),
           instructions,
           name_of(verdict_of(k))};
 }
@@ -53,7 +52,6 @@ KernelTable kernel_table(const GateResult& r) {
                      {"change", "%"},
                      {"interval", "%"},
                      {"layouts' sd", "%"},
-                     {"cold", "%"},
                      {"instructions", "%"},
                      {"verdict", fmt::format("limit {:+.0f} %", 100 * TimeLimits().surely), true}});
   for (const KernelTime& k : r.time->kernels) table.add(cells_of(r, k));

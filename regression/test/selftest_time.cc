@@ -84,11 +84,6 @@ TEST_F(Time, ASlowPathForBadSamplesFails) {
   EXPECT_EQ(time("bad"), kSlower) << text_;
 }
 
-TEST_F(Time, AStepThatIsSlowerAfterOtherWorkFails) {
-  EXPECT_EQ(time("lines", "line"), kSlower) << text_;
-  EXPECT_TRUE(says("after other work a step takes")) << text_;
-}
-
 TEST_F(Time, ABranchThatNobodyCanPredictFails) {
   EXPECT_EQ(time("branch", "few"), kSlower) << text_;
 }

@@ -9,7 +9,6 @@
 //   SUBJECT_SLEEP           gives up the processor every 10,007 steps
 //   SUBJECT_BAD=n           divides where the sample is bad
 //   SUBJECT_BRANCH          takes a branch that nobody can predict
-//   SUBJECT_LINES=n         a chain of 128 loads from n cache lines, in no order that is foreseen
 //   SUBJECT_FLAG=true       divides if a member says so, which its constructor sets
 //   SUBJECT_FLAG_IN=type    of that member, an array unless said
 //   SUBJECT_SPOILED         its arm's samples are all bad
@@ -68,14 +67,6 @@ double dear(double x) {
   return divided(x, 100);
 }
 constexpr Term kTable[] = {SUBJECT_TABLE == 0 ? cheap : dear, SUBJECT_TABLE == 0 ? dear : cheap};
-#ifdef SUBJECT_LINES
-constexpr int kInts = 16;  // of a cache line
-constexpr std::array<int, kInts* SUBJECT_LINES> kNext = [] {
-  std::array<int, kInts * SUBJECT_LINES> next{};
-  for (int i = 0; i < SUBJECT_LINES; ++i) next[kInts * i] = kInts * ((53 * i + 29) % SUBJECT_LINES);
-  return next;
-}();
-#endif
 [[maybe_unused]] int steps = 0;  // in no state, so that no reset begins anew
 
 // tau through a chain of low-passes, and back
@@ -117,10 +108,6 @@ class Subject {
 #ifdef SUBJECT_BRANCH
     // the last digits of the end of the chain decide
     if (std::bit_cast<std::uint64_t>(x) >> 8 & 1) asm volatile("nop");
-#endif
-#ifdef SUBJECT_LINES
-    int line = 0;
-    for (int i = 0; i < 128; ++i) line = const_cast<const volatile int*>(kNext.data())[line];
 #endif
 #ifdef SUBJECT_INSTRUCTIONS
     asm volatile(".rept " TEXT(SUBJECT_INSTRUCTIONS) "\n nop\n .endr");

@@ -19,11 +19,10 @@
 
 namespace tauext::gate {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LongRunOptions, base, head, kernels, samples)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LifeTimes, mean_ns, rare_ns, worst_ns, waits)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LongRun, kernel, base, head, worst_ratio, worst_more_ns,
                                    worst_at)
-
-using nlohmann::json;
 
 namespace {
 
@@ -112,22 +111,10 @@ std::string complaint(const LongRun& r, const LongRunLimits& limits) {
   return "";
 }
 
-namespace {
-
-std::vector<LongRun> run_once(const LongRunOptions& o) {
-  const json options = {
-      {"base", o.base}, {"head", o.head}, {"kernels", o.kernels}, {"samples", o.samples}};
-  const std::string out = run_child({this_program(), "long-worker", options.dump()});
-  try {
-    return json::parse(out).get<std::vector<LongRun>>();
-  } catch (const json::exception& e) {
-    throw std::runtime_error(fmt::format("a timing process said something else: {}", e.what()));
-  }
-}
-
-}  // namespace
-
 std::vector<LongRun> run_long(const LongRunOptions& options) {
+  const auto run_once = [](const LongRunOptions& o) {
+    return ask<std::vector<LongRun>>("long-worker", o);
+  };
   std::vector<LongRun> all = run_once(options);
   LongRunOptions again = options;
   again.kernels.clear();
@@ -144,16 +131,15 @@ std::vector<LongRun> run_long(const LongRunOptions& options) {
 }
 
 int long_worker_main(const std::string& text) {
-  const json j = json::parse(text);
-  const std::string base = j.at("base"), head = j.at("head");
+  const LongRunOptions o = nlohmann::json::parse(text);
   const TemporaryFolder folder;
   std::map<std::string, Profile> of_base, of_head;
   for (int i = 0; i < kRuns; ++i) {
     // what is static in a library begins anew with it
-    const Plugin b(folder.copy(base, fmt::format("base{}.so", i)));
-    const Plugin h(folder.copy(head, fmt::format("head{}.so", i)));
-    Lives lives(0, j.at("samples"));
-    for (const std::string kernel : j.at("kernels")) {
+    const Plugin b(folder.copy(o.base, fmt::format("base{}.so", i)));
+    const Plugin h(folder.copy(o.head, fmt::format("head{}.so", i)));
+    Lives lives(0, o.samples);
+    for (const std::string& kernel : o.kernels) {
       const int at_base = b.find(kernel), at_head = h.find(kernel);
       const auto one_side = [&](bool of_b) {
         if (of_b) {
@@ -170,7 +156,7 @@ int long_worker_main(const std::string& text) {
   for (const auto& [kernel, profile] : of_base) {
     all.push_back(compared(kernel, profile, of_head.at(kernel)));
   }
-  std::cout << json(all).dump();
+  std::cout << nlohmann::json(all).dump();
   return 0;
 }
 

@@ -45,7 +45,7 @@ std::vector<KernelTime> beside_themselves(const TimeOptions& o,
 // a kernel and what its layouts said
 struct Timed {
   KernelTime* kernel;
-  std::vector<LayoutRatios> warm, cold;
+  std::vector<LayoutRatios> layouts;
 };
 
 void time_layout(const TimeOptions& o, const Layouts& layouts, int seed, std::vector<Timed>& open) {
@@ -56,9 +56,8 @@ void time_layout(const TimeOptions& o, const Layouts& layouts, int seed, std::ve
     std::vector<WorkerResult>& mine = results[t.kernel->kernel];
     std::vector<double> canaries;
     for (const WorkerResult& r : mine) canaries.push_back(r.canaries.at(0));
-    t.warm.push_back({median_of(mine, &WorkerResult::head), median_of(mine, &WorkerResult::aa),
-                      median(canaries)});
-    t.cold.push_back({mine.front().cold_head, mine.front().cold_aa, 1});
+    t.layouts.push_back({median_of(mine, &WorkerResult::head), median_of(mine, &WorkerResult::aa),
+                         median(canaries)});
     auto& processes = t.kernel->processes;
     std::move(mine.begin(), mine.end(), std::back_inserter(processes));
   }
@@ -66,24 +65,16 @@ void time_layout(const TimeOptions& o, const Layouts& layouts, int seed, std::ve
 
 void judge_kernel(Timed& t, const TimeOptions& o, int kernels) {
   KernelTime& k = *t.kernel;
-  k.verdict = judge(t.warm, o.limits, kernels);
-  k.cold = judge(t.cold, cold_limits(), kernels);
+  k.verdict = judge(t.layouts, o.limits, kernels);
   k.base_ns = median_of(k.processes, &WorkerResult::base_ns);
   k.head_ns = median_of(k.processes, &WorkerResult::head_ns);
   k.over_budget = over_budget(k.head_ns, o);
 }
 
-// cold steps are noisy, and a doubt of theirs is no reason to go on
-bool undecided(const KernelTime& k, const TimeLimits& limits) {
-  const bool cold_to_be_confirmed =
-      k.cold.surely > limits.surely && k.cold.verdict != Verdict::kFail;
-  return k.verdict.verdict == Verdict::kInconclusive || cold_to_be_confirmed;
-}
-
 void run_stages(const TimeOptions& o, const Layouts& layouts,
                 const std::vector<KernelTime*>& kernels) {
   std::vector<Timed> open;
-  for (KernelTime* k : kernels) open.push_back({k, {}, {}});
+  for (KernelTime* k : kernels) open.push_back({k, {}});
   int done = 0;
   for (const int stage : o.limits.stages) {
     for (; done < stage; ++done) {
@@ -94,7 +85,8 @@ void run_stages(const TimeOptions& o, const Layouts& layouts,
     }
     for (Timed& t : open) judge_kernel(t, o, static_cast<int>(kernels.size()));
     // the next stage is for those that are undecided
-    std::erase_if(open, [](const Timed& t) { return !undecided(*t.kernel, cold_limits()); });
+    std::erase_if(
+        open, [](const Timed& t) { return t.kernel->verdict.verdict != Verdict::kInconclusive; });
     if (open.empty()) return;
   }
 }
@@ -190,9 +182,8 @@ KernelNames kernel_names(const std::string& base, const std::string& head,
 Verdict verdict_of(const KernelTime& k) {
   const bool complained = !k.life.kernel.empty() && !complaint(k.life).empty();
   const bool stalls = complained && k.life_accepted.empty();
-  if (stalls || k.cold.verdict == Verdict::kFail) return Verdict::kFail;
-  const bool meant = complained || k.cold.verdict == Verdict::kAccepted;
-  return meant && k.verdict.verdict == Verdict::kPass ? Verdict::kAccepted : k.verdict.verdict;
+  if (stalls) return Verdict::kFail;
+  return complained && k.verdict.verdict == Verdict::kPass ? Verdict::kAccepted : k.verdict.verdict;
 }
 
 TimeReport compare_times(const TimeOptions& o) {
@@ -206,7 +197,7 @@ TimeReport compare_times(const TimeOptions& o) {
   for (KernelTime& k : report.kernels) {
     const bool timed = o.even_if_identical || o.counted_otherwise.contains(k.kernel);
     if (!timed && identity.same(k.kernel)) {
-      k.verdict.verdict = k.cold.verdict = Verdict::kIdentical;
+      k.verdict.verdict = Verdict::kIdentical;
     } else {
       different.push_back(&k);
     }

@@ -31,14 +31,13 @@ struct KernelTime {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians over processes
   TimeVerdict verdict;
-  TimeVerdict cold;           ///< of steps after other work
   LongRun life;               ///< of a longer run
   std::string life_accepted;  ///< why its complaint is right; "" if nobody says so
   bool over_budget = false;   ///< L3
   std::vector<WorkerResult> processes;
 };
 
-/// What its layouts say; a failure also where its cold steps or its longer run fail.
+/// What its layouts say; a failure also where its longer run fails.
 Verdict verdict_of(const KernelTime& kernel);
 
 /// What L0, L2 and L3 found.

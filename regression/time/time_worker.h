@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// One process of L2: every kernel of base and head in turn, inside Google Benchmark.
+/// One process of L2: every kernel of base and head in turn.
 #pragma once
 
 #include <map>
@@ -18,7 +18,6 @@ struct WorkerOptions {
   unsigned seed = 1;                 ///< of the samples
   int rounds = 20;
   double block = 60e-6;                   ///< [s] of work between two looks at the clock
-  int cold_steps = 16;                    ///< with other work before each
   std::vector<double> injected = {0.05};  ///< [1] slowdowns of the canaries
 };
 
@@ -27,15 +26,13 @@ struct WorkerResult {
   std::string kernel;
   double base_ns = 0, head_ns = 0;  ///< [ns] of a step, medians
   double head = 1, aa = 1;          ///< [1] medians over the rounds of head / base and copy / base
-  double cold_head = 1, cold_aa = 1;  ///< [1] head / base and copy / base of such steps
-  std::vector<double> canaries;       ///< [1] of base with `injected` more steps
+  std::vector<double> canaries;     ///< [1] of base with `injected` more steps
 };
 
 /// Samples of one life that a worker runs through.
 inline constexpr int kLifeSamples = 20000;
 
-/// Runs every kernel's rounds in a child process of this program, with its output on the other end
-/// of a pipe.
+/// Runs every kernel's rounds in a child process of this program.
 /// @throws std::runtime_error with what the child said, if it failed
 std::vector<WorkerResult> run_worker(const WorkerOptions& options);
 
@@ -45,7 +42,7 @@ std::vector<WorkerResult> run_worker(const WorkerOptions& options);
 std::map<std::string, std::vector<WorkerResult>> run_layout(const Layouts& layouts, int seed,
                                                             int processes, WorkerOptions options);
 
-/// The child: JSON of Google Benchmark on standard output. argv: worker OPTIONS-AS-JSON.
+/// The child: JSON on standard output. argv: worker OPTIONS-AS-JSON.
 int worker_main(const std::string& options);
 
 }  // namespace tauext::gate

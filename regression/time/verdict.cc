@@ -36,7 +36,7 @@ bool too_noisy(const TimeLimits& limits, TimeVerdict& v) {
     v.why = fmt::format("a copy of base beside itself is off by {:+.1f} %", 100 * (v.aa - 1));
     return true;
   }
-  if (limits.canary > 0 && !(v.canary > 1 + limits.canary / 2)) {
+  if (!(v.canary > 1 + limits.canary / 2)) {
     v.why = fmt::format("of {:.0f} % injected, {:.1f} % were seen", 100 * limits.canary,
                         100 * (v.canary - 1));
     v.harness_error = true;
@@ -83,10 +83,6 @@ double student_quantile(double probability, int degrees) {
     (student_probability(middle, degrees) < probability ? low : high) = middle;
   }
   return (low + high) / 2;
-}
-
-TimeLimits cold_limits() {
-  return {.limit = 0.25, .surely = 0.15, .canary = 0, .least_sd = 0.02};
 }
 
 TimeVerdict judge(const std::vector<LayoutRatios>& all, const TimeLimits& limits, int kernels) {

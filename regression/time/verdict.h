@@ -30,9 +30,6 @@ struct TimeLimits {
   double least_sd = 0.0015;         ///< [1] between layouts, where fewer of them say less
 };
 
-/// The limits of a step whose caches and predictors were another's, which are noisier.
-TimeLimits cold_limits();
-
 /// What is said of a kernel.
 struct TimeVerdict {
   Verdict verdict = Verdict::kInconclusive;

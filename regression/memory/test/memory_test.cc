@@ -130,7 +130,7 @@ TEST(Acceptance, IsReadBackAndCoversWhatIsNoLarger) {
   EXPECT_EQ(all[1].reason, "two more terms");
   EXPECT_TRUE(all[1].covers("time", "r/e", 0.03));
   EXPECT_FALSE(all[1].covers("time", "r/e", 0.0301));
-  EXPECT_FALSE(all[1].covers("cold", "r/e", 0.01));
+  EXPECT_FALSE(all[1].covers("long", "r/e", 0.01));
   EXPECT_FALSE(all[1].covers("time", "r/f", 0.01));
 }
 
