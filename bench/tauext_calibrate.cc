@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "bench/calibrate/arm_calibration.h"
-#include "bench/calibrate/identify.h"
 #include "bench/calibrate/masses/masses.h"
 #include "bench/calibrate/robot_file_writer.h"
 #include "bench/calibrate/weighing.h"
@@ -51,14 +50,11 @@ struct Arm {
 
 void add_flags(CLI::App& app, Flags& f) {
   app.add_option("logs", f.logs, "without contact: CSV, .npy, .npz, MCAP, a ROS 2 bag or LCM");
-  app.add_option("--robot", f.robot,
-                 "its file of MJCF, URDF or ours; else a log of one joint is identified")
-      ->type_name("FILE");
+  app.add_option("--robot", f.robot, "its file of MJCF, URDF or ours")->type_name("FILE");
   app.add_option("--lock", f.lock, "joints of that file to fix, like grippers'")
       ->type_name("REGEX")
       ->check(not_empty);
-  app.add_option("--out,-o", f.out,
-                 "robot file (.json) to write, or CSV of one joint; - is standard output")
+  app.add_option("--out,-o", f.out, "robot file (.json) to write; - is standard output")
       ->type_name("FILE");
   app.add_option("--weigh", f.loaded,
                  "recordings with a payload, which is weighed; the logs are without it")
@@ -71,8 +67,7 @@ void add_flags(CLI::App& app, Flags& f) {
       ->type_name("FILE.csv")
       ->check(not_empty);
   app.add_option("--channel", f.channel, "of an LCM log, or topic of a bag, with several of them");
-  app.add_option("--terms", f.terms,
-                 "to find, apart by commas (see --list); of a robot's joints all")
+  app.add_option("--terms", f.terms, "to find, apart by commas (see --list); without it all")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,..");
@@ -90,10 +85,7 @@ void add_flags(CLI::App& app, Flags& f) {
 
 std::string list_terms() {
   TableWriter table({{"term", "", true}, {"unit", "", true}, {"what it multiplies", "", true}});
-  table.add_note("of a joint of a robot");
   for (const JointTerm& t : kJointTerms) table.add({t.name, t.unit, t.what});
-  table.add_note("of one joint without a robot: tau = the sum of these");
-  for (const Term& t : terms()) table.add({t.name, t.unit, t.description});
   return table.format();
 }
 
@@ -254,47 +246,6 @@ std::string weighing_table(const Weighing& w, TableFormat format) {
   return out;
 }
 
-// the parameters of a one-joint model, and what its residuals say
-std::string identification_report(const std::vector<Term>& terms, const Identification& id) {
-  TableWriter table({{"term", "", true},
-                     {"unit", "", true},
-                     {"estimate"},
-                     {"std error", "if white"},
-                     {"std error", "robust"},
-                     {"excitation", "rms"},
-                     {"own share"}});
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    const Parameter& p = id.parameters[i];
-    table.add({terms[i].name, terms[i].unit, fmt::format("{:.5g}", p.theta),
-               fmt::format("{:.2g}", p.sigma), fmt::format("{:.2g}", p.robust),
-               fmt::format("{:.4g}", p.excitation), fmt::format("{:.3f}", p.own)});
-  }
-  std::string out = table.format();
-  out += fmt::format(
-      "\nresidual {:.3g} N m, condition number {:.3g}, {} windows used, {} left out (slow, or a "
-      "gap)\n",
-      id.residual, id.condition, id.windows, id.left_out);
-  if (id.condition > 100) {
-    out += "The motion hardly tells some terms apart: see the smallest own share.\n";
-  }
-  if (id.colour > 3) {
-    out += fmt::format(
-        "The residuals are no white noise (Ljung-Box, {:.0f} standard deviations): use the robust "
-        "errors; if the model lacks a\nterm, theta is biased by more than they say.\n",
-        id.colour);
-  }
-  return out + missing(id.missing, "");
-}
-
-std::string identification_csv(const std::vector<Term>& terms, const Identification& id) {
-  std::string out = "term,unit,estimate,std_error,robust_std_error\n";
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    out += fmt::format("{},{},{:.17g},{:.17g},{:.17g}\n", terms[i].name, terms[i].unit,
-                       id.parameters[i].theta, id.parameters[i].sigma, id.parameters[i].robust);
-  }
-  return out;
-}
-
 // what of the base parameters was shown, and of which bodies some were not
 std::string shown(const IdentifiedMasses& m) {
   std::string words = fmt::format(
@@ -381,25 +332,6 @@ int not_sure(const Flags& f) {
       "--columns tells them",
       f.out.empty() ? "" : f.out + " is not written, as "));
   return kAnswerIsNo;
-}
-
-int identify_one(const Flags& f) {
-  if (f.logs.size() != 1)
-    throw std::invalid_argument("a log of one joint, or --robot FILE and logs of it, are required");
-  const std::vector<Term> model = find_terms(
-      f.terms.empty() ? std::vector<std::string>{"inertia", "gravity_cos", "gravity_sin", "coulomb"}
-                      : f.terms);
-  const RecordedLog recorded =
-      read_any_log(f.logs[0], {f.channel, f.columns, {}, false, contacts_of(f.contacts, f.logs)});
-  recorded.require_consistent(f.logs[0]);
-  const auto id = naming(f.logs, [&] { return identify(recorded.trace, model, f.windows); });
-  fmt::print(f.out == "-" ? stderr : stdout, "{}", identification_report(model, id));
-  if (!id.doubts.empty()) {
-    for (const std::string& why : id.doubts) say(why);
-    return not_sure(f);
-  }
-  if (!f.out.empty()) write_file(identification_csv(model, id), f.out);
-  return recorded.usable() ? kGood : kAnswerIsNo;
 }
 
 std::vector<std::string> all_logs(const Flags& f) {
@@ -559,10 +491,10 @@ int run(const CLI::App& app, Flags& f) {
     fmt::print("{}", list_terms());
     return kGood;
   }
-  if (f.robot.empty()) {
-    require_mode(app, false, "--robot", {"--weigh", "--lock", "--apply", "--masses"});
-    return identify_one(f);
-  }
+  if (f.robot.empty())
+    throw std::invalid_argument(
+        "--robot FILE is required: of a testbed, an MJCF or URDF of its joint (see "
+        "mjcf/testbed1.xml)");
   table_format(f.format);
   if (!f.out.empty() && f.out != "-") {
     if (!f.out.ends_with(".json"))
@@ -589,8 +521,7 @@ int main(int argc, char** argv) {
       "Finds friction, rotors' inertia, offsets and drives' gains (--masses: masses, too) of an "
       "arm\n"
       "from recordings without contact, and writes a robot file that every --robot takes. --weigh\n"
-      "weighs a payload. Of one joint (a log of t,q1,qd1,tau1, no --robot) it finds terms of "
-      "--list.\n\n"
+      "weighs a payload.\n\n"
       "  tauext-calibrate free*.csv --robot arm.urdf --columns ur_rtde --out arm.json\n"
       "  tauext-calibrate free*.csv --robot arm.json --columns ur_rtde --weigh loaded.csv\n",
       "tauext-calibrate");

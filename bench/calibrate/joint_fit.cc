@@ -222,7 +222,6 @@ CalibratedJoint calibrated_joint(const Rows& r, const Names& names, bool current
         "touched? --contacts names when",
         joint.after, joint.torque));
   if (joint.after <= 1e-6 * joint.torque) return joint;  // no noise, but the integration's error
-  joint.colour = colour(a.fit.residuals);
   joint.missing = suspects(a.fit.shown, a.fit.inverse, a.fit.residuals, r.others, r.suspects);
   return joint;
 }

@@ -68,7 +68,6 @@ struct CalibratedJoint {
   double after = 0;              ///< [N m] with them
   double unbounded = 0;          ///< [N m] with those of a fit in which nothing is held
   double held_out = 0;           ///< [N m] the same, of stretches that the fit has not seen
-  double colour = 0;             ///< [1] of what is left (least_squares.h)
   std::vector<Suspect> missing;  ///< what may be missing; the likeliest first
   int windows = 0;               ///< that were used
   int left_out = 0;              ///< that were not

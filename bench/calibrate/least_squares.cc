@@ -54,8 +54,7 @@ VectorXd Fit::theta() const {
 Fit fit(const MatrixXd& A, const MatrixXd& Z, const VectorXd& y,
         const std::vector<std::string>& names, const char* remedy) {
   const Eigen::Index m = A.rows(), n = A.cols();
-  if (n == 0)
-    return {{}, A, MatrixXd(0, 0), y, 1, y.norm() / std::sqrt(m), y.norm() / std::sqrt(m)};
+  if (n == 0) return {{}, A, MatrixXd(0, 0), y};
   if (m <= n)
     throw std::invalid_argument(fmt::format("{} windows cannot tell {} terms: {}", m, n, remedy));
   const VectorXd norm = A.colwise().norm();
@@ -68,23 +67,20 @@ Fit fit(const MatrixXd& A, const MatrixXd& Z, const VectorXd& y,
   // columns scaled; its inverse is the share of column i that the others cannot imitate.
   const VectorXd root =
       (svd.matrixV() * s.cwiseMax(kLeast).cwiseInverse().asDiagonal()).rowwise().norm();
-  f.condition = s[0] / s[n - 1];
-  if (!(f.condition < 1e6)) {
+  const double condition = s[0] / s[n - 1];
+  if (!(condition < 1e6)) {
     Eigen::Index least = 0;
     root.maxCoeff(&least);
     throw std::invalid_argument(
         fmt::format("the motion cannot tell '{}' from the other terms (condition {:.1e}): {}",
-                    names[static_cast<std::size_t>(least)], f.condition, remedy));
+                    names[static_cast<std::size_t>(least)], condition, remedy));
   }
   const VectorXd theta = norm.cwiseInverse().asDiagonal() * svd.solve(y);
   f.inverse = (f.shown.transpose() * f.shown).ldlt().solve(MatrixXd::Identity(n, n));
   f.residuals = y - A * theta;
-  f.y = std::sqrt(y.squaredNorm() / static_cast<double>(m));
-  f.residual = std::sqrt(f.residuals.squaredNorm() / static_cast<double>(m - n));
   const VectorXd robust = robust_errors(f.shown, f.inverse, f.residuals);
   for (Eigen::Index i = 0; i < n; ++i) {
-    f.parameters.push_back({theta[i], f.residual * root[i] / norm[i], robust[i],
-                            norm[i] / std::sqrt(static_cast<double>(m)),
+    f.parameters.push_back({theta[i], robust[i], norm[i] / std::sqrt(static_cast<double>(m)),
                             std::min(1 / root[i], 1.)});
   }
   return f;
@@ -94,19 +90,6 @@ VectorXd jackknife_errors(const MatrixXd& theta) {
   const auto n = static_cast<double>(theta.cols());
   const VectorXd mean = theta.rowwise().mean();
   return std::sqrt((n - 1) / n) * (theta.colwise() - mean).rowwise().norm();
-}
-
-double colour(const VectorXd& r) {
-  const Index n = r.size(), most = std::min<Index>(20, n / 5);
-  if (most < 1) return 0;
-  double q = 0;
-  for (Index lag = 1; lag <= most; ++lag) {
-    const double rho = autocorrelation(r, lag);
-    q += rho * rho / static_cast<double>(n - lag);
-  }
-  const auto h = static_cast<double>(most), m = static_cast<double>(n);
-  const double spread = 2 / (9 * h);
-  return (std::cbrt(m * (m + 2) * q / h) - (1 - spread)) / std::sqrt(spread);
 }
 
 VectorXd robust_errors(const MatrixXd& A, const MatrixXd& inverse, const VectorXd& r) {

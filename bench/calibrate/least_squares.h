@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Linear least squares, with what a fit has to say of itself: whether what it leaves over is
-/// noise, and what its standard errors are if it is not.
+/// Linear least squares, with what a fit has to say of itself: standard errors that hold if what it
+/// leaves over is no noise, and which term it may lack.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,7 @@ inline constexpr double kMatters = 0.01;
 /// A parameter and how well the motion shows it.
 struct Parameter {
   double theta = 0;       ///< in the term's unit
-  double sigma = 0;       ///< standard error, in the same unit, if the residuals are white
-  double robust = 0;      ///< standard error whatever they are
+  double robust = 0;      ///< standard error, in the same unit, whatever the residuals are
   double excitation = 0;  ///< rms of the term's column, in N m by unit of its parameter
   double own = 0;         ///< [1] share of it, as shown, that other columns cannot imitate
 };
@@ -31,9 +30,6 @@ struct Fit {
   Eigen::MatrixXd shown;              ///< A, or what the instruments show of it
   Eigen::MatrixXd inverse;            ///< (shown^T shown)^-1
   Eigen::VectorXd residuals;          ///< in the unit of y
-  double condition = 0;               ///< [1] of it, with A's columns scaled to norm 1
-  double y = 0;                       ///< rms of y
-  double residual = 0;                ///< standard deviation of the residuals
 
   Eigen::VectorXd theta() const;  ///< all parameters
 };
@@ -57,15 +53,10 @@ inline constexpr int kStretches = 10;
 /// they see what drifts from one stretch to the next.
 Eigen::VectorXd jackknife_errors(const Eigen::MatrixXd& theta);
 
-/// Ljung and Box, "On a measure of lack of fit in time series models", Biometrika 1978, over the
-/// first 20 lags (a fifth of the residuals, if that is less), as standard deviations beyond white
-/// noise (Wilson and Hilferty's cube root): above 3 the residuals are no noise. What was left out
-/// between two residuals is passed over, here and below.
-double colour(const Eigen::VectorXd& residuals);
-
 /// Standard errors of the parameters of y = A theta, which hold for residuals of any colour and
 /// variance: Newey and West, Econometrica 1987, with Bartlett's weights over as many lags as
-/// Andrews, Econometrica 1991, takes for their first autocorrelation; times n / (n - k).
+/// Andrews, Econometrica 1991, takes for their first autocorrelation; times n / (n - k). What was
+/// left out between two residuals is passed over, here and below.
 /// @param inverse (A^T A)^-1, of Fit::shown where there are instruments
 Eigen::VectorXd robust_errors(const Eigen::MatrixXd& A, const Eigen::MatrixXd& inverse,
                               const Eigen::VectorXd& residuals);

@@ -32,6 +32,22 @@ TEST_F(Programs, CalibrateWritesNoFileWhereItIsNotSure) {
   EXPECT_EQ(good.code, 0) << good.text;
 }
 
+// its friction is (37) of the paper, which is in its file, and its inertia and masses too
+TEST_F(Programs, CalibrateTakesATestbedForAnArmOfOneJoint) {
+  run("tauext-record --robot testbed1 --scenario identify --loadcell noise=1 --out log.csv");
+  const Outcome good =
+      run("tauext-calibrate log.csv --terms armature,coulomb --format csv --robot " + kMjcf +
+          "/testbed1.xml");
+  EXPECT_EQ(good.code, 0) << good.text;
+  const std::string name = "q1,coulomb,N m,";
+  const std::size_t at = good.text.find(name);
+  ASSERT_NE(at, std::string::npos) << good.text;
+  EXPECT_NEAR(std::stod(good.text.substr(at + name.size())), 2.163, 0.01) << good.text;
+  const Outcome alone = run("tauext-calibrate log.csv");
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_TRUE(alone.says("--robot FILE is required")) << alone.text;
+}
+
 // a sensor that says a tenth less than it should: what --apply writes makes it right
 TEST_F(Programs, CalibrateAppliesTheScaleThatItFinds) {
   const std::string robot = " --robot " + kExamples + "/arm6.json";

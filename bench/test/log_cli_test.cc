@@ -32,7 +32,6 @@ TEST_F(Programs, RecordWritesTheSameBitsForTheSameSeed) {
 
 TEST_F(Programs, NoneReplacesAFileThatItReads) {
   run("tauext-record --robot wallmobot3 --scenario free --out log.csv");
-  run("tauext-record --robot testbed1 --scenario model_check --out one.csv");
   run("tauext-record --robot wallmobot3 --scenario free --out log.lcm");
   run_system("ln log.csv hard.csv; ln -s log.csv soft.csv; cp " + kMjcf +
              "/wallmobot3.xml arm.xml");
@@ -45,7 +44,6 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
            {"log.csv", replay + "wallmobot3 --out hard.csv"},
            {"log.csv", replay + "wallmobot3 --out soft.csv"},
            {"arm.xml", replay + "arm.xml --out arm.xml"},
-           {"one.csv", "tauext-calibrate one.csv --out one.csv"},
            {"log.lcm", live + "'file://log.lcm?mode=w'"},
            {"t.json", live + "'file://t.json?mode=w' --detector threshold --thresholds t.json"},
            {"t.json",
@@ -64,26 +62,6 @@ TEST_F(Programs, NoneReplacesAFileThatItReads) {
   }
   const Outcome o = run_system("LCM_DEFAULT_URL='file://log.lcm?mode=w' " + kBin + "/" + live);
   EXPECT_TRUE(o.says("log.lcm: is read by this program")) << o.text;
-}
-
-TEST_F(Programs, IdentifyPrintsTheParametersAndWritesThem) {
-  run("tauext-record --robot testbed1 --scenario identify --loadcell noise=1 --out log.csv");
-  const Outcome o = run(
-      "tauext-calibrate --terms inertia,gravity_cos,gravity_sin,coulomb log.csv --out theta.csv");
-  EXPECT_EQ(o.code, 0) << o.text;
-  EXPECT_TRUE(o.says("condition number")) << o.text;
-  EXPECT_TRUE(o.says("gravity_cos  kg m      11.66")) << o.text;
-  const std::string csv = content("theta.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "term,unit,estimate,std_error,robust_std_error");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
-  const Outcome term = run("tauext-calibrate log.csv --terms magic --out t2.csv");
-  EXPECT_EQ(term.code, 2);
-  EXPECT_TRUE(term.says("unknown term 'magic'; known: inertia, gravity_cos")) << term.text;
-  run("tauext-record --robot wallmobot3 --scenario free --out three.csv");
-  const Outcome three = run("tauext-calibrate three.csv --out t2.csv");
-  EXPECT_EQ(three.code, 2);
-  EXPECT_TRUE(three.says("the log has 3 joints")) << three.text;
-  EXPECT_FALSE(exists("t2.csv"));
 }
 
 TEST_F(Programs, RecordStopsTheMotorAtAMark) {
