@@ -19,6 +19,7 @@
 #include "regression/host/child.h"
 #include "regression/host/ending.h"
 #include "regression/report/explain.h"
+#include "regression/report/findings.h"
 #include "regression/report/layers.h"
 #include "regression/report/report.h"
 #include "regression/time/calibrate.h"

@@ -15,13 +15,15 @@
 namespace tauext::gate {
 namespace {
 
+constexpr const char* kBaselines = "baselines beside base's";
+
 std::vector<Finding> time_findings(const GateResult& r) {
   std::vector<Finding> all;
   if (!r.time) return all;
   std::vector<std::string> rows = kernel_table(r).rows;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const KernelTime& k = r.time->kernels[i];
-    Finding f{"time", k.kernel, verdict_of(k), std::move(rows[i]), {}};
+    Finding f{kTimeLayer, k.kernel, verdict_of(k), std::move(rows[i]), {}};
     f.harness_error = k.verdict.harness_error && f.verdict == Verdict::kInconclusive;
     if (!k.verdict.why.empty()) f.more.push_back(k.verdict.why);
     if (!k.life.kernel.empty()) {
@@ -41,6 +43,18 @@ std::vector<Finding> time_findings(const GateResult& r) {
     }
     all.push_back(std::move(f));
   }
+  for (const KernelTime& k : r.time->alone)
+    if (k.over_budget)
+      all.push_back({kTimeLayer,
+                     k.kernel,
+                     Verdict::kFail,
+                     fmt::format("{}: new, and a step takes {:.1f} ns, more than a tenth of the "
+                                 "control period",
+                                 k.kernel, k.head_ns),
+                     {}});
+  for (const std::string& k : r.time->gone)
+    all.push_back(
+        {kTimeLayer, k, Verdict::kNoBaseline, k + " is gone from head: update needed", {}});
   return all;
 }
 
@@ -117,7 +131,7 @@ std::string worst_of(const MetricChange& c) {
 // @param command whether the entry's command has not been shown yet
 Finding metric_finding(const MetricChange& c, const std::string& bench, bool command) {
   const double percent = 100 * (c.after / c.before - 1);
-  Finding f{"accuracy",
+  Finding f{kAccuracyLayer,
             c.entry + " " + c.metric,
             verdict_of(c.change),
             fmt::format("{} {}  {} -> {}{}  {}", c.entry, c.metric, said(c.before), said(c.after),
@@ -140,10 +154,11 @@ std::vector<Finding> accuracy_findings(const GateResult& r) {
   std::vector<Finding> all;
   if (!r.accuracy) return all;
   for (const std::string& line : r.accuracy->not_repeated) {
-    all.push_back({"accuracy", "repeat", Verdict::kFail, "not the same twice: " + line, {}, true});
+    all.push_back(
+        {kAccuracyLayer, "repeat", Verdict::kFail, "not the same twice: " + line, {}, true});
   }
   if (!r.accuracy->no_baseline.empty()) {
-    all.push_back({"accuracy", "baseline", Verdict::kNoBaseline, r.accuracy->no_baseline, {}});
+    all.push_back({kAccuracyLayer, "baseline", Verdict::kNoBaseline, r.accuracy->no_baseline, {}});
   }
   std::set<std::string> shown;
   for (const MetricChange& c : r.accuracy->changes) {
@@ -163,11 +178,7 @@ std::vector<Finding> memory_findings(const MemoryReport& r) {
                               : v == Verdict::kNoBaseline ? "moved without a reason"
                               : m.worse                   ? "worse, accepted"
                                                           : "moved";
-    all.push_back({"baselines beside base's",
-                   m.what,
-                   v,
-                   fmt::format("{}: {}  {}", m.what, m.how, words),
-                   {}});
+    all.push_back({kBaselines, m.what, v, fmt::format("{}: {}  {}", m.what, m.how, words), {}});
   }
   return all;
 }
@@ -204,15 +215,13 @@ void add_alone(std::vector<KernelTime> kernels, std::vector<std::string>& lines)
             [](const KernelTime& a, const KernelTime& b) { return a.head_ns < b.head_ns; });
   const KernelTime& slowest = kernels.back();
   lines.push_back(fmt::format(
-      "time          {} kernels with nothing to compare with; the slowest: {}, {:.1f} ns a step{}",
-      kernels.size(), slowest.kernel, slowest.head_ns,
-      slowest.over_budget ? ", MORE THAN A TENTH OF THE CONTROL PERIOD" : ""));
+      "time          {} kernels with nothing to compare with; the slowest: {}, {:.1f} ns a step",
+      kernels.size(), slowest.kernel, slowest.head_ns));
 }
 
 void add_summary(const TimeReport& t, std::vector<std::string>& lines) {
   if (!t.kernels.empty()) add_compared(t, lines);
   if (!t.alone.empty()) add_alone(t.alone, lines);
-  for (const std::string& k : t.gone) lines.push_back("time          gone from head: " + k);
 }
 
 void add_summary(const InstructionReport& r, std::vector<std::string>& lines) {
@@ -242,6 +251,23 @@ std::vector<Finding> findings(const GateResult& r) {
   add(accuracy_findings(r));
   if (r.memory) add(memory_findings(*r.memory));
   return all;
+}
+
+ExitCode exit_code(const GateResult& r) {
+  const std::vector<Finding> all = findings(r);
+  const auto any = [&](auto&& is) { return std::any_of(all.begin(), all.end(), is); };
+  const auto has = [&](Verdict v) { return any([v](const Finding& f) { return f.verdict == v; }); };
+  const auto fails = [&](bool accuracy) {
+    return any([accuracy](const Finding& f) {
+      const bool of_metrics = f.layer == kAccuracyLayer || f.layer == kBaselines;
+      return f.verdict == Verdict::kFail && of_metrics == accuracy;
+    });
+  };
+  if (any([](const Finding& f) { return f.harness_error; })) return kCouldNotRun;
+  if (fails(false)) return kSlower;
+  if (fails(true)) return kLessAccurate;
+  if (has(Verdict::kNoBaseline)) return kUpdateNeeded;
+  return has(Verdict::kInconclusive) ? kInconclusive : kGood;
 }
 
 std::string no_base_text(const GateResult& r) {

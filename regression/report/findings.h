@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/program/exit_code.h"
 #include "regression/report/layers.h"
 
 namespace tauext::gate {
@@ -21,6 +22,10 @@ struct Finding {
 
 /// All of them, layer by layer.
 std::vector<Finding> findings(const GateResult& result);
+
+/// What they say together. A harness that is broken (kCouldNotRun) counts before kSlower, that
+/// before kLessAccurate, kUpdateNeeded and kInconclusive.
+ExitCode exit_code(const GateResult& result);
 
 /// What it means that there was no base, and why there was none.
 std::string no_base_text(const GateResult& result);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The layers together: what is asked, what they found, and the exit code that follows.
+/// The layers together: what is asked, and what they found.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/program/exit_code.h"
 #include "regression/accuracy/accuracy.h"
 #include "regression/counts/count_layer.h"
 #include "regression/memory/acceptance.h"
@@ -48,9 +47,5 @@ struct GateResult {
 /// @throws std::invalid_argument for filters that match nothing, std::runtime_error for files and
 /// programs
 GateResult run_layers(const GateOptions& options);
-
-/// A harness that is broken (kCouldNotRun) counts before kSlower, that before kLessAccurate,
-/// kUpdateNeeded and kInconclusive.
-ExitCode exit_code(const GateResult& result);
 
 }  // namespace tauext::gate

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "regression/accept.h"
+#include "regression/report/findings.h"
 
 namespace tauext::gate {
 namespace {
