@@ -14,6 +14,7 @@
 #include "bench/roster/robots.h"
 #include "mjcf/record.h"
 #include "mjcf/test/error_of.h"
+#include "mjcf/trace/input_file.h"
 #include "mjcf/trace/read/npy_writer.h"
 
 namespace tauext::test {
@@ -107,11 +108,17 @@ TEST_F(Outside, SeveralEstimatorsStandInAFileOfReplay) {
 
 TEST_F(Outside, NumPysArraysAreRowsOfTheSamples) {
   const Eigen::MatrixXd estimate = Eigen::MatrixXd::Constant(2, 1000, 7);
-  write_npy(path("e.npy"), {"", estimate.data(), 1000, 2});
+  const auto write_both = [&](const std::string& name, std::size_t rows) {
+    write_npz(path(name + ".npz"), {{"tau_ext", estimate.data(), rows, 2}});
+    const std::string bytes = read_whole(path(name + ".npz"));
+    const std::size_t begin = bytes.find("\x93NUMPY");  // of its member, which is not compressed
+    std::ofstream(path(name + ".npy"), std::ios::binary)
+        << bytes.substr(begin, bytes.find("PK\1\2") - begin);
+  };
+  write_both("e", 1000);
   EXPECT_EQ(read(path("e.npy"))[0].output.tau_ext, estimate);
-  write_npz(path("e.npz"), {{"tau_ext", estimate.data(), 1000, 2}});
   EXPECT_EQ(read(path("e.npz"))[0].output.tau_ext, estimate);
-  write_npy(path("short.npy"), {"", estimate.data(), 999, 2});
+  write_both("short", 999);
   EXPECT_EQ(error(path("short.npy")), path("short.npy") +
                                           ": 999 rows without times, and 1000 samples: a column t "
                                           "says which belong together");

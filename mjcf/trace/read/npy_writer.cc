@@ -27,26 +27,10 @@ std::string_view bytes_of(const NpyArray& a) {
   return {reinterpret_cast<const char*>(a.data), a.rows * width_of(a) * sizeof(double)};
 }
 
-std::string quoted(const std::string& name) {
-  std::string s = "'";
-  for (const char c : name) s += c == '\'' || c == '\\' ? std::string{'\\', c} : std::string{c};
-  return s + "'";
-}
-
-std::string type_of(const std::vector<std::string>& fields) {
-  if (fields.empty()) return quoted(kDouble);
-  std::string types;
-  for (const std::string& f : fields) {
-    types += fmt::format("{}({}, '{}')", types.empty() ? "" : ", ", quoted(f), kDouble);
-  }
-  return fmt::format("[{}]", types);
-}
-
-std::string header_of(const NpyArray& a, const std::vector<std::string>& fields) {
-  const bool matrix = a.columns > 0 && fields.empty();
+std::string header_of(const NpyArray& a) {
   std::string text =
-      fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({},{}), }}", type_of(fields),
-                  a.rows, matrix ? fmt::format(" {}", a.columns) : "");
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},{}), }}", kDouble, a.rows,
+                  a.columns > 0 ? fmt::format(" {}", a.columns) : "");
   // the elements begin at a multiple of 64 bytes
   constexpr std::size_t kBegin = 10, kAlign = 64;
   text.resize((kBegin + text.size() + kAlign) / kAlign * kAlign - kBegin, ' ');
@@ -83,25 +67,11 @@ void refuse_too_large(const std::string& path, const std::vector<NpyArray>& arra
   }
   if (size < static_cast<double>(kMostZip) && arrays.size() <= kMostArrays) return;
   throw std::runtime_error(
-      fmt::format("{}: a .npz of ours has at most 4 GiB and {} arrays: write a .npy, or a .csv",
+      fmt::format("{}: a .npz of ours has at most 4 GiB and {} arrays: write a .mcap, or a .csv",
                   path, kMostArrays));
 }
 
 }  // namespace
-
-void write_npy(const std::string& path, const NpyArray& array,
-               const std::vector<std::string>& fields) {
-  if (!fields.empty() && fields.size() != width_of(array)) {
-    throw std::runtime_error(
-        fmt::format("{}: {} names of {} columns", path, fields.size(), width_of(array)));
-  }
-  const std::string header = header_of(array, fields);
-  if (header.size() > 65535) throw std::runtime_error(fmt::format("{}: too many columns", path));
-  AtomicFile file(path);
-  file.write(header);
-  file.write(bytes_of(array));
-  file.commit();
-}
 
 void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
   refuse_too_large(path, arrays);
@@ -110,7 +80,7 @@ void write_npz(const std::string& path, const std::vector<NpyArray>& arrays) {
   std::uint64_t at = 0;
   for (const NpyArray& a : arrays) {
     const std::string_view data = bytes_of(a);
-    Member m{a.name + ".npy", header_of(a, {}), at, 0, 0};
+    Member m{a.name + ".npy", header_of(a), at, 0, 0};
     m.size = m.header.size() + data.size();
     m.crc = crc32_of(crc32_of(0, m.header.data(), m.header.size()), data.data(), data.size());
     const std::string local = m.local();

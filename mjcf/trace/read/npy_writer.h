@@ -20,15 +20,8 @@ struct NpyArray {
   std::size_t columns = 0;  ///< 0: an array of 1 dimension, of shape (rows,)
 };
 
-/// Writes a .npy, to standard output if the path is "-". The file appears whole or not at all.
-/// @param fields names of the columns, as many as there are: they make a structured array of 1
-/// dimension, in which numpy.load(path)['q1'] finds a column; none: an array of shape (rows,
-/// columns)
-/// @throws std::runtime_error naming the path
-void write_npy(const std::string& path, const NpyArray& array,
-               const std::vector<std::string>& fields = {});
-
-/// Writes a .npz, not compressed, as write_npy() does.
+/// Writes a .npz, not compressed, to standard output if the path is "-". The file appears whole or
+/// not at all.
 /// @throws std::runtime_error naming the path, also if it had more than 4 GiB or 65535 arrays, or
 /// if zlib was missing at build
 void write_npz(const std::string& path, const std::vector<NpyArray>& arrays);

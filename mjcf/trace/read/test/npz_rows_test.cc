@@ -220,7 +220,7 @@ TEST_F(Npz, WritesAnArrayThatZipAndNumpyDescribe) {
               write_npz(path("y.npz"), {{"q", nullptr, 1u << 30, 0}});
             }),
             path("y.npz") +
-                ": a .npz of ours has at most 4 GiB and 65535 arrays: write a .npy, or a .csv");
+                ": a .npz of ours has at most 4 GiB and 65535 arrays: write a .mcap, or a .csv");
 }
 
 }  // namespace
