@@ -71,7 +71,15 @@ concept TellsTorqueSampling = requires(P p) {
   p.torque = TorqueSampling::kInstant;
 };
 
-// those of the entry, or of a bandwidth, with what the other keys change
+// whether one that is made can be made again, and told when the torque acted
+template <class E, class M>
+concept KnowsItsParameters = requires(const E& e, const M& model, typename E::Parameters p) {
+  p = e.parameters();
+  p.torque = TorqueSampling::kInstant;
+  E(model, p);
+};
+
+// the entry's parameters, or those of a bandwidth, as the specification's other keys change them
 template <class E, class M>
 [[gnu::cold]] typename E::Parameters parameters_of(const RosterEntry<E, M>& entry, Specification s,
                                                    bool torque_at_instants) {
@@ -125,6 +133,13 @@ EstimatorType estimator_type(const M& model, const Make& make) {
     if (!keyed) detail::refuse_keys(s);
     const bool as_made = s.keys.empty() && !(told && trace.torque_at_instants);
     if (as_made) return std::make_unique<EstimatorStageOf<E>>(make());
+    if constexpr (detail::KnowsItsParameters<E, M>) {
+      if (s.keys.empty()) {
+        typename E::Parameters p = make().parameters();
+        p.torque = TorqueSampling::kInstant;
+        return std::make_unique<EstimatorStageOf<E>>(std::in_place, model, p);
+      }
+    }
     return with_keys(s, trace);
   };
   return type;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// A robot of a model of your own, with the roster's estimators and the registered ones. Include
-/// bench/registry.h to make one; for those that there are bench/roster/robots.h is enough.
+/// bench/registry.h to make one; bench/roster/robots.h has the built-in ones.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ namespace detail {
 // what bench/registry.h has put beside the roster: robot and specification
 using Registered = std::pair<std::string, std::string>;
 std::vector<Registered>& registered_specifications();
-// and functions of a type; who first asks makes their list
+// the list of registered functions of this type; the first call makes it
 std::shared_ptr<void>& registered_of(const std::type_info& functions);
 template <class Add>
 std::vector<std::function<Add>>& registered() {
@@ -65,10 +65,10 @@ std::unique_ptr<const Robot> make_robot(const std::string& name, const M& model,
   return detail::robot_of_roster(name, model, file);
 }
 
-/// That of wallmobot3 is compiled in the library.
+/// Compiled in the library for wallmobot3.
 template <>
 std::unique_ptr<const Robot> make_robot(const std::string&, const WallMoBot3&, const Model&);
-/// That of testbed1, likewise.
+/// Compiled in the library for testbed1.
 template <>
 std::unique_ptr<const Robot> make_robot(const std::string&, const Testbed1&, const Model&);
 

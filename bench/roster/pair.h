@@ -37,7 +37,7 @@ struct StepResult {
 /// An estimator, and a detector behind it if there is one, of the same number of joints.
 class Pair {
  public:
-  /// The second may be null.
+  /// @param d null: no detector
   Pair(std::unique_ptr<EstimatorStage<>> e, std::unique_ptr<DetectorStage<>> d)
       : estimator_(std::move(e)), detector_(std::move(d)) {}
 
@@ -49,7 +49,7 @@ class Pair {
   /// The next samples; `detections` of a pair without a detector is left as it is.
   void run(const SampleColumns<>& in, const EstimateColumns<>& out,
            std::span<Detection> detections);
-  /// From a reset over all samples.
+  /// Resets, then runs over the whole trace.
   Output run(const Trace& trace);
   bool detects() const { return detector_ != nullptr; }  ///< whether there is a detector
 
@@ -63,7 +63,7 @@ class Runner {
  public:
   static constexpr int kBatch = 1000;  ///< samples
 
-  /// Keeps what it needs of the trace.
+  /// Copies t, q, qd and tau of the trace.
   Runner(Pair pair, const Trace& trace);
   /// The next samples, from a reset and the first one again after the last.
   void batch();

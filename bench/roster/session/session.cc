@@ -377,12 +377,13 @@ class SessionOf final : public Session {
 
   const Robot& robot_;
   std::span<const Trace> traces_;
-  std::vector<RunBatch<double>> alone_;       // each run, once it is asked for
-  std::optional<LaneSamples> in_lanes_;       // all of them, if they are alike
-  std::optional<RunBatch<Lanes>> lanes_;      // likewise
-  std::optional<SharedTerms> terms_;          // there; from the second estimator on
-  int asked_ = 0;                             // for so many estimators
-  bool at_once_ = false, one_by_one_ = true;  // whether detectors find estimates there
+  std::vector<RunBatch<double>> alone_;   // each run, once it is asked for
+  std::optional<LaneSamples> in_lanes_;   // all runs in lanes, if they are alike
+  std::optional<RunBatch<Lanes>> lanes_;  // of them
+  std::optional<SharedTerms> terms_;      // shared by estimators, from the second one on
+  int asked_ = 0;                         // estimators asked for so far
+  bool at_once_ = false,
+       one_by_one_ = true;  // whether lanes_ has the estimates; whether alone_ has
 };
 
 }  // namespace
