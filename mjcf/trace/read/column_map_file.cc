@@ -193,8 +193,9 @@ class MapReader {
     written_.emplace(name);
     for (const auto& [key, value] : table) read_key(*known, key.str(), value, w);
     if (w.expression.empty() && w.names.empty() && w.numbers.empty())
-      fail(table, fmt::format("[{}] names no columns, and no preset lends it any, as preset = "
-                              "\"joint_state\" above all tables does for a bag",
+      fail(table, fmt::format("[{}] names no columns, and no preset lends it any: `preset = "
+                              "\"tauext\"` above all tables has those that are read without a "
+                              "map, \"joint_state\" those of a bag",
                               name));
   }
 
