@@ -83,48 +83,46 @@ TEST(ReadAnyLog, AVelocityOfAnotherTimeThanThePositionIsNamed) {
   EXPECT_FALSE(read_sine(1, 1, 1, 0, 0.01).log.contradicts) << "as a filter's may be";
 }
 
+// what read_any_log() prints of a file of this text: something where it is not usable, else nothing
+std::string messages_of_text(const std::string& text) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / fmt::format("tauext_text_{}.csv", ::getpid()))
+          .string();
+  std::ofstream(path) << text;
+  testing::internal::CaptureStderr();
+  const bool usable = read_any_log(path).usable();
+  std::filesystem::remove(path);
+  std::string messages = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(usable, messages.empty()) << messages;
+  return messages;
+}
+
 // of motions that end at the same time, as those from pose to pose do
 TEST(ReadAnyLog, SpeedsOfEachOthersJointsAreNamed) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("tauext_speeds_{}.csv", ::getpid()))
-          .string();
-  for (const bool exchanged : {false, true}) {
-    std::ofstream file(path);
-    file << (exchanged ? "t,q1,q2,qd2,qd1,tau1,tau2\n" : "t,q1,q2,qd1,qd2,tau1,tau2\n");
+  const auto messages_of_two = [](const std::string& names) {
+    std::string text = names + "\n";
     for (int k = 0; k < 2000; ++k) {
       const double s = 0.001 * k, q = 0.5 * std::sin(3 * s), qd = 1.5 * std::cos(3 * s);
-      file << fmt::format("{},{},{},{},{},0,0\n", s, q, 0.7 * q + 0.05 * std::sin(9 * s), qd,
+      text += fmt::format("{},{},{},{},{},0,0\n", s, q, 0.7 * q + 0.05 * std::sin(9 * s), qd,
                           0.7 * qd + 0.45 * std::cos(9 * s));
     }
-    file.close();
-    testing::internal::CaptureStderr();
-    const bool usable = read_any_log(path).usable();
-    const std::string messages = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(usable, !exchanged);
-    EXPECT_EQ(messages.find("q1 moves as qd2 says, and not as qd1") != std::string::npos, exchanged)
-        << messages;
-  }
-  std::filesystem::remove(path);
+    return messages_of_text(text);
+  };
+  EXPECT_EQ(messages_of_two("t,q1,q2,qd1,qd2,tau1,tau2"), "");
+  EXPECT_NE(
+      messages_of_two("t,q1,q2,qd2,qd1,tau1,tau2").find("q1 moves as qd2 says, and not as qd1"),
+      std::string::npos);
 }
 
 // a quantity that a slower clock gives, by the number of its samples
 TEST(ReadAnyLog, SamplesThatAreGivenAgainAreNamed) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("tauext_again_{}.csv", ::getpid()))
-          .string();
-  const auto messages_of_held = [&](int q, int qd, int tau) {
+  const auto messages_of_held = [](int q, int qd, int tau) {
     const auto sine = [](int k) { return std::sin(0.003 * k); };
-    std::ofstream file(path);
-    file << "t,q1,qd1,tau1\n";
+    std::string text = "t,q1,qd1,tau1\n";
     for (int k = 0; k < 2000; ++k)
-      file << fmt::format("{},{},{},{}\n", 0.001 * k, 0.5 * sine(k / q * q),
+      text += fmt::format("{},{},{},{}\n", 0.001 * k, 0.5 * sine(k / q * q),
                           1.5 * std::cos(0.003 * (k / qd * qd)), sine(k / tau * tau));
-    file.close();
-    testing::internal::CaptureStderr();
-    const bool usable = read_any_log(path).usable();
-    const std::string messages = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(usable, messages.empty()) << messages;
-    return messages;
+    return messages_of_text(text);
   };
   EXPECT_EQ(messages_of_held(1, 1, 1), "");
   EXPECT_EQ(messages_of_held(1, 1, 4), "") << "too short to matter";
@@ -133,35 +131,23 @@ TEST(ReadAnyLog, SamplesThatAreGivenAgainAreNamed) {
   EXPECT_NE(messages_of_held(1, 1, 10).find("tau" + again), std::string::npos);
   EXPECT_NE(messages_of_held(10, 1, 1).find("q" + again), std::string::npos);
   EXPECT_NE(messages_of_held(1, 10, 1).find("qd" + again), std::string::npos);
-  std::ofstream file(
-      path);  // a joint at a constant speed, whose encoder takes seven samples a step
-  file << "t,q1,qd1,tau1\n";
+  // a joint at a constant speed, whose encoder takes seven samples a step
+  std::string text = "t,q1,qd1,tau1\n";
   for (int k = 0; k < 5000; ++k)
-    file << fmt::format("{},{},{},{}\n", 0.001 * k, 7e-4 * (k / 7), 0.1 + 1e-4 * std::sin(k),
+    text += fmt::format("{},{},{},{}\n", 0.001 * k, 7e-4 * (k / 7), 0.1 + 1e-4 * std::sin(k),
                         std::cos(k));
-  file.close();
-  EXPECT_TRUE(read_any_log(path).usable());
-  std::filesystem::remove(path);
+  EXPECT_EQ(messages_of_text(text), "");
 }
 
 // in the middle of a recording, or from the begin
 TEST(ReadAnyLog, AChannelThatStandsStillWhileItsJointMovesIsNamed) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("tauext_still_{}.csv", ::getpid()))
-          .string();
-  const auto messages_of_two = [&](auto&& q2, auto&& tau2) {
-    std::ofstream file(path);
-    file << "t,q1,q2,qd1,qd2,tau1,tau2\n";
+  const auto messages_of_two = [](auto&& q2, auto&& tau2) {
+    std::string text = "t,q1,q2,qd1,qd2,tau1,tau2\n";
     for (int k = 0; k < 3000; ++k) {
       const double s = 0.001 * k, q = 0.5 * std::sin(3 * s), qd = 1.5 * std::cos(3 * s);
-      file << fmt::format("{},{},{},{},{},{},{}\n", s, q, q2(k, q), qd, qd, q, tau2(k, q));
+      text += fmt::format("{},{},{},{},{},{},{}\n", s, q, q2(k, q), qd, qd, q, tau2(k, q));
     }
-    file.close();
-    testing::internal::CaptureStderr();
-    const bool usable = read_any_log(path).usable();
-    const std::string messages = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(usable, messages.empty()) << messages;
-    return messages;
+    return messages_of_text(text);
   };
   const auto as_it_is = [](int, double q) { return q; };
   const auto still = [](int, double) { return 0.3; };
@@ -174,7 +160,6 @@ TEST(ReadAnyLog, AChannelThatStandsStillWhileItsJointMovesIsNamed) {
   EXPECT_NE(messages_of_two(as_it_is, [](int k, double) { return std::sin(k / 10 * 10.); })
                 .find("tau of joint 2 is new in every 10th sample only"),
             std::string::npos);
-  std::filesystem::remove(path);
 }
 
 // 1 kHz whose first sample came 0.9 ms early, of an encoder with steps of 1e-4 rad
