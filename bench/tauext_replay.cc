@@ -130,12 +130,14 @@ class TorqueCheck {
     const auto w = weigher_.weight(kBandwidth, (log.to - log.from) / samples);
     bool good = true;
     for (const bool instant : {false, true}) {
-      if (!w || takers_[instant].empty() || !w->contradicts(instant)) continue;
+      if (!w || takers_[instant].empty() || !w->leans_from(instant)) continue;
       const auto& [now, other] =
           instant ? std::tie(w->instant, w->held) : std::tie(w->held, w->instant);
       // half as large again, and by more than matters
       const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 1e-3 * (most_ - least_).array();
-      good = good && (now.array().sqrt() <= much).all();
+      const bool costly = (now.array().sqrt() > much).any();
+      if (!costly && !w->contradicts(instant)) continue;
+      good = good && !costly;
       constexpr const char* kHow[] = {"held from each t", "read at each t"};
       say(fmt::format(
           "tau seems to be {} (weight {:.2f} +- {:.2f} of 0 held, 1 instant), and is taken as {}; "

@@ -13,6 +13,10 @@ bool TorqueWeight::contradicts(bool assumed_instant) const {
   return sure < 0.3 && std::abs(weight - other) < 0.25 && std::abs(weight - other) + sure < 0.5;
 }
 
+bool TorqueWeight::leans_from(bool assumed_instant) const {
+  return (assumed_instant ? 1 - weight : weight) - sure > 0.5;
+}
+
 void TorqueWeigher::take(const double* held, const double* instant) {
   ++count_;
   for (std::size_t j = 0; j < sums_.size(); ++j) {

@@ -20,6 +20,8 @@ struct TorqueWeight {
   Eigen::VectorXd instant;  ///< [(N m)^2] likewise of the other
   /// Whether that contradicts the reading that was assumed, beyond doubt.
   bool contradicts(bool assumed_instant) const;
+  /// Whether the other reading is nearer, however far from both the log is.
+  bool leans_from(bool assumed_instant) const;
 };
 
 /// Between one momentum observer's estimates by both readings lies a signal that is known; without

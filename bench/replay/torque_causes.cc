@@ -76,6 +76,16 @@ class Causes {
           unit, 1 / unit);
     });
     for (int j = 0; j < arm_.dof(); ++j) consider_joint(j, consider);
+    for (int b = 1; b < arm_.dof(); ++b) {
+      for (int a = 0; a < b; ++a) {
+        consider(by_exchange(a, b), [a, b] {
+          return fmt::format(
+              "q and qd of joints {} and {} fit better if they are exchanged: name the columns in "
+              "a map (--columns), or set its [q]'s and [qd]'s `columns`",
+              a + 1, b + 1);
+        });
+      }
+    }
     return words;
   }
 
@@ -177,28 +187,45 @@ class Causes {
     return g;
   }
 
-  // of a joint all of whose signs are the other ones, as gravity may not tell; none where anything
-  // but noise is left, as masses that err may look like it
-  Gain by_mirror(int j) const {
-    std::vector<VectorXd> rests;
-    for (const Joint& of : joints_) rests.push_back(of.rest);
-    for (std::size_t i = 0; i < windows_.size(); ++i) {
-      const ArmWindow& own = *windows_[i];
-      MatrixXd motion = own.motion;
-      motion.row(1 + j) *= -1;
-      motion.row(1 + arm_.dof() + j) *= -1;
-      const ArmWindow w = recording_.window(std::move(motion), own.tau);
-      for (int k = 0; k < arm_.dof(); ++k)
-        rests[static_cast<std::size_t>(k)][static_cast<Index>(i)] +=
-            own.model[k] + (k == j ? 1 : -1) * w.model[k];
+  // of a recording that is read otherwise; none where anything but noise is left, as masses that
+  // err may look like it
+  template <class Read>
+  Gain by_reading(Read&& read) const {
+    ArmWindows others;
+    for (const ArmWindow* own : windows_) {
+      MatrixXd motion = own->motion;
+      ArmWindow::VectorN tau = own->tau;
+      read(motion, tau);
+      others.push_back(recording_.window(std::move(motion), tau));
     }
+    const Windows windows = thinned(others, others.size() + 1);
     Gain g;
-    for (std::size_t k = 0; k < rests.size(); ++k) {
-      const WindowFit f = left(joints_[k], static_cast<int>(k), rests[k]);
-      if (independent(f.residual) < kMostlyNoise * static_cast<double>(windows_.size())) return {};
-      add(g, static_cast<int>(k), f);
+    for (int k = 0; k < arm_.dof(); ++k) {
+      const VectorXd rest =
+          each(windows, [k](const ArmWindow& w) { return w.tau[k] - w.model[k]; });
+      const WindowFit f =
+          fit(windows, k, rest, MatrixXd::Ones(rest.size(), 1), rotor_torque(windows, k));
+      if (independent(f.residual) < kMostlyNoise * static_cast<double>(windows.size())) return {};
+      add(g, k, f);
     }
     return g;
+  }
+
+  // all signs of a joint, as gravity may not tell them
+  Gain by_mirror(int j) const {
+    return by_reading([this, j](MatrixXd& motion, ArmWindow::VectorN& tau) {
+      motion.row(1 + j) *= -1;
+      motion.row(1 + arm_.dof() + j) *= -1;
+      tau[j] *= -1;
+    });
+  }
+
+  // two joints that move alike
+  Gain by_exchange(int a, int b) const {
+    return by_reading([this, a, b](MatrixXd& motion, ArmWindow::VectorN&) {
+      motion.row(1 + a).swap(motion.row(1 + b));
+      motion.row(1 + arm_.dof() + a).swap(motion.row(1 + arm_.dof() + b));
+    });
   }
 
   // numbers that all joints have in common, each with its torques in these windows

@@ -32,7 +32,16 @@ TEST(TorqueWeight, IsThatOfTheDifferenceInTheEstimate) {
     EXPECT_LT(w->sure, 0.1);
     EXPECT_TRUE(w->contradicts(weight == 0));
     EXPECT_FALSE(w->contradicts(weight == 1));
+    EXPECT_TRUE(w->leans_from(weight == 0));
+    EXPECT_FALSE(w->leans_from(weight == 1));
   }
+}
+
+TEST(TorqueWeight, LeansToTheNearerReading) {
+  EXPECT_TRUE(weight_of(2.2, 0.1)->leans_from(false));
+  EXPECT_FALSE(weight_of(2.2, 0.1)->leans_from(true));
+  EXPECT_TRUE(weight_of(-2, 0.1)->leans_from(true));
+  EXPECT_FALSE(weight_of(0.5, 0.1)->leans_from(false) || weight_of(0.5, 0.1)->leans_from(true));
 }
 
 TEST(TorqueWeight, SaysNothingWhereTheLogDoesNot) {

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <random>
 #include <string>
 
 #include "mjcf/plant/simulated.h"
@@ -286,6 +288,40 @@ TEST_F(TorqueFits, AJointSeenInAMirrorIsADoubt) {
     log.q.row(0) *= -1, log.qd.row(0) *= -1, log.tau.row(0) *= -1;
     expect(robot.words(log), words);
   }
+}
+
+// their q's are the same but for 0.3 rad; torques by the closed form of two links in a plane
+TEST_F(TorqueFits, JointsThatMoveAlikeAndAreExchangedAreADoubt) {
+  const std::string file = testing::TempDir() + "tauext_turntables.xml";
+  std::ofstream(file) << "<mujoco><compiler angle='radian'/><worldbody>"
+                         "<body name='one'><joint name='j1' axis='0 0 1'/>"
+                         "<inertial pos='.2 0 0' mass='5' diaginertia='.05 .05 .07'/>"
+                         "<body name='two' pos='.4 0 0'><joint name='j2' axis='0 0 1'/>"
+                         "<inertial pos='.15 0 0' mass='2' diaginertia='.01 .01 .017'/>"
+                         "</body></body></worldbody></mujoco>";
+  const Model model = load_mjcf(file);
+  const ArmTree arm = tree_of(model);
+  std::mt19937_64 random(7);
+  std::normal_distribution<> noise(0, 1e-3);
+  Trace log;
+  log.q.resize(2, 12000), log.qd = log.q, log.tau = log.q;
+  log.torque_at_instants = true;
+  for (int k = 0; k < 12000; ++k) {
+    const double t = 1e-3 * k, w = 1.3, q1 = 0.3 + 0.15 * std::sin(w * t), q2 = q1 + 0.3;
+    const double qd = 0.15 * w * std::cos(w * t), qdd = -0.15 * w * w * std::sin(w * t);
+    const double coupled = 2 * 0.4 * 0.15 * std::cos(q2), turned = 2 * 0.4 * 0.15 * std::sin(q2);
+    const double far = 0.017 + 2 * 0.15 * 0.15;  // [kg m^2] the second link about its joint
+    const double tau1 = (0.07 + 5 * 0.2 * 0.2 + 2 * 0.4 * 0.4 + far + 2 * coupled) * qdd +
+                        (far + coupled) * qdd - 3 * turned * qd * qd + 0.02 * qd;
+    const double tau2 = (far + coupled) * qdd + far * qdd + turned * qd * qd + 0.01 * qd;
+    log.t.push_back(t);
+    log.q.col(k) << q1, q2;
+    log.qd.col(k) << qd + noise(random), qd + noise(random);
+    log.tau.col(k) << tau1, tau2;
+  }
+  EXPECT_EQ(Robot::words_of(arm, log), "");
+  log.q.row(0).swap(log.q.row(1)), log.qd.row(0).swap(log.qd.row(1));
+  expect(Robot::words_of(arm, log), "q and qd of joints 1 and 2 fit");
 }
 
 // no joint alone shows it beside a load, and no slow pose, where nothing weighs anything
