@@ -134,7 +134,7 @@ class TorqueCheck {
       const auto& [now, other] =
           instant ? std::tie(w->instant, w->held) : std::tie(w->held, w->instant);
       // half as large again, and by more than matters
-      const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 1e-3 * (most_ - least_).array();
+      const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 5e-4 * (most_ - least_).array();
       const bool costly = (now.array().sqrt() > much).any();
       if (!costly && !w->contradicts(instant)) continue;
       good = good && !costly;

@@ -88,6 +88,20 @@ class UnitDoubt {
     return false;
   }
 
+  // "" or which joint's speed is rather noise than motion
+  std::string words_of_noise() const {
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      if (!is_noise(j)) continue;
+      return fmt::format(
+          "qd{} is rather noise than motion, {:.2g} of {:.2g} rad/s (or m/s): if it is the "
+          "difference of a coarse q, a recording without qd has it made of q, filtered "
+          "(`velocity_filter` in a map, --columns)",
+          j + 1, std::sqrt(joints_[j].noise / joints_[j].steps),
+          std::sqrt(joints_[j].speed / joints_[j].steps));
+    }
+    return "";
+  }
+
   // says what can hardly be
   void tell(const std::string& path, const std::string& remedy) const {
     constexpr double kTwoTurns = 12.6;    // [rad]
@@ -143,6 +157,9 @@ class UnitDoubt {
     double from = 0;                          // [rad/s] qd at its begin
     double xx = 0, xy = 0, yy = 0, path = 0;  // of |x|
     double xa = 0, ya = 0, aa = 0;
+    // [(rad/s)^2] squares of qd, and of its noise by second differences, in windows that it moves
+    double speed = 0, noise = 0, steps = 0;
+    double own_speed = 0, own_noise = 0, own_steps = 0;  // of the window
 
     double alike() const { return std::abs(xy) / std::sqrt(xx * yy); }
     // [s] of qd behind q, where y = x + late a
@@ -186,6 +203,12 @@ class UnitDoubt {
     return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
 
+  bool is_noise(std::size_t j) const {
+    constexpr double kMostNoise = 0.4;  // [1]
+    const Joint& sum = joints_[j];
+    return sum.steps > kFirst / 10 && sum.noise > kMostNoise * kMostNoise * sum.speed;
+  }
+
   // whether qd is that of another time than q, beyond chance and beyond a filter's delay
   bool is_late(std::size_t j) const {
     constexpr double kLate = 0.015;             // [s] less may be a filter's
@@ -205,7 +228,7 @@ class UnitDoubt {
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
     longest_ = 5 * *middle;
-    last_ = first_.front();
+    before_last_ = last_ = first_.front();
     for (std::size_t j = 0; j < joints_.size(); ++j)
       joints_[j].from = last_.qd[static_cast<Eigen::Index>(j)];
     for (std::size_t k = 1; k < first_.size(); ++k) take_step(first_[k]);
@@ -219,8 +242,13 @@ class UnitDoubt {
       const double x = h * (s.qd[at] + last_.qd[at]) / 2, y = s.q[at] - last_.q[at];
       joints_[j].x += x, joints_[j].y += y;
       joints_[j].path += std::abs(x);
+      if (!(last_.t - before_last_.t <= longest_)) continue;
+      joints_[j].own_noise += std::pow(s.qd[at] - 2 * last_.qd[at] + before_last_.qd[at], 2) / 6;
+      joints_[j].own_speed += last_.qd[at] * last_.qd[at];
+      ++joints_[j].own_steps;
     }
-    const Sample before = std::exchange(last_, s);
+    before_last_ = std::exchange(last_, s);
+    const Sample& before = before_last_;
     if (s.t - window_ < kWindow && h <= longest_) return;
     window_ = s.t;
     ++windows_;
@@ -234,12 +262,16 @@ class UnitDoubt {
       const double a = (h <= longest_ ? s : before).qd[at] - sum.from;
       sum.xx += sum.x * sum.x, sum.xy += sum.x * sum.y, sum.yy += sum.y * sum.y;
       sum.xa += sum.x * a, sum.ya += sum.y * a, sum.aa += a * a;
+      if (std::abs(sum.y) > kCreeps)
+        sum.speed += sum.own_speed, sum.noise += sum.own_noise, sum.steps += sum.own_steps;
+      sum.own_speed = sum.own_noise = sum.own_steps = 0;
       sum.x = sum.y = 0, sum.from = s.qd[at];
     }
   }
 
   static constexpr std::size_t kFirst = 1000;
   static constexpr double kWindow = 0.1;   // [s]
+  static constexpr double kCreeps = 2e-3;  // [rad] in it
   static constexpr double kForeign = 0.5;  // [1] correlation of what is another joint's
 
   VectorXd least_, most_;
@@ -248,7 +280,7 @@ class UnitDoubt {
   double velocity_delay_;      // [s] of qd, where the reader makes it of q
   double windows_ = 0;         // so many
   std::vector<Sample> first_;  // until they are kFirst, or all
-  Sample last_;
+  Sample last_, before_last_;
   std::int64_t samples_ = 0;
   double longest_ = 0;        // [s] over a gap qd says nothing; 0 until settle()
   double from_ = 0, to_ = 0;  // [s]
@@ -461,7 +493,8 @@ bool LogReader::contradicts() const {
 }
 
 bool LogReader::usable() const {
-  return skipped() <= regularity().samples && !contradicts() && impl_->repeats.words().empty();
+  return skipped() <= regularity().samples && !contradicts() && impl_->repeats.words().empty() &&
+         impl_->doubt->words_of_noise().empty();
 }
 
 bool LogReader::next(RecordedSample& s) {
@@ -509,7 +542,8 @@ void LogReader::report() const {
         "{}: its own labels are not used, and are others than those of {} in {} samples", i.path,
         i.labels_file->path(), i.differing));
   i.doubt->tell(i.path, remedy);
-  if (const std::string why = i.repeats.words(); !why.empty()) say(i.path + ": " + why);
+  for (const std::string& why : {i.doubt->words_of_noise(), i.repeats.words()})
+    if (!why.empty()) say(i.path + ": " + why);
   if (const double step = regularity().step; step > kSlowStep)
     say(fmt::format(
         "{}: {:.3g} samples a second. An estimate is a sample late, {:.3g} ms here, and "

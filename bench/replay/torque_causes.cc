@@ -205,7 +205,9 @@ class Causes {
           each(windows, [k](const ArmWindow& w) { return w.tau[k] - w.model[k]; });
       const WindowFit f =
           fit(windows, k, rest, MatrixXd::Ones(rest.size(), 1), rotor_torque(windows, k));
-      if (independent(f.residual) < kMostlyNoise * static_cast<double>(windows.size())) return {};
+      if (f.mean_square > joints_[static_cast<std::size_t>(k)].negligible &&
+          independent(f.residual) < kMostlyNoise * static_cast<double>(windows.size()))
+        return {};
       add(g, k, f);
     }
     return g;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -163,6 +164,43 @@ TEST(ReadAnyLog, AChannelThatStandsStillWhileItsJointMovesIsNamed) {
 }
 
 // 1 kHz whose first sample came 0.9 ms early, of an encoder with steps of 1e-4 rad
+// of an encoder with so many steps a turn, by central and by backward differences
+TEST(ReadAnyLog, ASpeedThatIsRatherNoiseIsNamed) {
+  const auto read = [](int steps, bool central, double noise) {
+    const std::string path =
+        (std::filesystem::temp_directory_path() / fmt::format("tauext_noise_{}.csv", ::getpid()))
+            .string();
+    const auto q = [&](int k) {
+      const double step = 2 * M_PI / steps;
+      return std::round(0.3 * std::sin(2e-3 * k) / step) * step;
+    };
+    std::mt19937_64 random(3);
+    std::normal_distribution<> normal(0, 1);
+    std::ofstream file(path);
+    file << "t,q1,qd1,tau1\n";
+    for (int k = 0; k < 4000; ++k)
+      file << fmt::format("{},{},{},0\n", 1e-3 * k, q(k),
+                          noise > 0 ? 0.6 * std::cos(2e-3 * k) + noise * normal(random)
+                          : central ? (q(k + 1) - q(k - 1)) / 2e-3
+                                    : (q(k) - q(k - 1)) / 1e-3);
+    file.close();
+    testing::internal::CaptureStderr();
+    const bool usable = read_any_log(path).usable();
+    std::filesystem::remove(path);
+    return std::pair(usable, testing::internal::GetCapturedStderr());
+  };
+  for (const bool central : {false, true}) {
+    for (const int steps : {1024, 4096}) {
+      const auto [usable, words] = read(steps, central, 0);
+      EXPECT_FALSE(usable);
+      EXPECT_NE(words.find("qd1 is rather noise than motion, "), std::string::npos) << words;
+    }
+    EXPECT_TRUE(read(1 << 19, central, 0).first);
+  }
+  EXPECT_FALSE(read(1 << 19, false, 0.5).first);
+  EXPECT_TRUE(read(1 << 19, false, 0.1).first);
+}
+
 TEST(ReadAnyLog, AShortFirstStepIsNoContradiction) {
   const std::string path =
       (std::filesystem::temp_directory_path() / fmt::format("tauext_burst_{}.csv", ::getpid()))

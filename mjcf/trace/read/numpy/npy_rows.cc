@@ -74,7 +74,10 @@ class Zip {
       : path_(path), zip_(archive_read_new(), archive_read_free) {
     if (!zip_) throw std::bad_alloc();
     require(path_, archive_read_support_format_zip_seekable(zip_.get()));
-    require(path_, archive_read_open_memory(zip_.get(), bytes.data(), bytes.size()));
+    if (archive_read_open_memory(zip_.get(), bytes.data(), bytes.size()) != ARCHIVE_OK)
+      refuse(
+          path_,
+          "lacks the list of its arrays, which stands at its end: was it cut off? Copy it again");
   }
 
   void each(const Found& found) {

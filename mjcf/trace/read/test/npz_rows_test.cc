@@ -174,6 +174,8 @@ TEST_F(Npz, ErrorsNameTheArray) {
             "has no array that could be columns");
   EXPECT_EQ(error_of_reading(zip({t, stored("\x1b[2J", "no array")})),
             "array '?[2J': begins as no NumPy array of version 1 to 3 does");
+  EXPECT_EQ(error_of_reading(zip({t}).substr(0, 100)),
+            "lacks the list of its arrays, which stands at its end: was it cut off? Copy it again");
   EXPECT_EQ(error_of_reading(zip({{"t.txt", "0", 0, 0, 1}})),
             "has 't.txt', which is no array of NumPy: unzip it first");
 }
