@@ -52,7 +52,7 @@ struct Flags {
   SuiteOutputs outputs;
   bool list = false, list_metrics = false;
   std::string lock;
-  std::optional<std::string> scenarios, golden, seeds;
+  std::optional<std::string> robot, scenarios, golden, seeds;
 };
 
 int run_golden(const Flags& f, const std::string& filter) {
@@ -182,12 +182,12 @@ int run_suite_with_outputs(const SuiteRun& run, const SuiteOutputs& outputs) {
 }
 
 int run(const CLI::App& app, Flags& flags, const BenchmarkFlags& benchmark) {
-  std::optional<std::string>& name = flags.studies.robot;
-  if (!name && !flags.lock.empty()) throw std::invalid_argument("--lock: of which --robot FILE?");
-  if (!name && flags.scenarios) throw std::invalid_argument("--scenarios: of which --robot?");
-  if (name) {
-    name = with_lock(*name, flags.lock);
-    flags.selection.robot = &robot(*name);
+  if (!flags.robot && !flags.lock.empty())
+    throw std::invalid_argument("--lock: of which --robot FILE?");
+  if (!flags.robot && flags.scenarios)
+    throw std::invalid_argument("--scenarios: of which --robot?");
+  if (flags.robot) {
+    flags.selection.robot = &robot(*flags.robot, flags.lock);
     if (flags.scenarios) add_scenarios(*flags.scenarios, *flags.selection.robot);
   }
   const std::string filter = benchmark.filter();
@@ -219,7 +219,7 @@ int run(const CLI::App& app, Flags& flags, const BenchmarkFlags& benchmark) {
 }
 
 void add_selection_flags(CLI::App& app, Flags& flags) {
-  app.add_option("--robot", flags.studies.robot,
+  app.add_option("--robot", flags.robot,
                  "only this one, or that of an MJCF or URDF file (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", flags.lock)->group("")->check(not_empty);

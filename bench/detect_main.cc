@@ -41,13 +41,12 @@ struct Flags {
   study::CalibrationOptions calibration;
   std::vector<std::string> logs;   // to calibrate from
   std::vector<std::string> parts;  // of a study
-  std::string channel, columns, contacts, lock, calibrate_to, thresholds, out, shard,
+  std::string robot, lock, channel, columns, contacts, calibrate_to, thresholds, out, shard,
       format = "text";
   bool list = false, quick = false;
 };
 
-int list_conditions(const std::string& robot_name) {
-  const study::StudyRuns& runs = study::touched_runs(robot_name);
+int list_conditions(const study::StudyRuns& runs) {
   TableWriter table({{"condition", "", true}, {"what is so", "", true}});
   for (const study::Condition& c : runs.conditions) {
     const bool trained = std::count(runs.training.begin(), runs.training.end(), c.name) > 0;
@@ -55,7 +54,7 @@ int list_conditions(const std::string& robot_name) {
                                         : c.trains_itself ? " (trained on itself)"
                                                           : "")});
   }
-  fmt::print("{}\n{}", table.format(), list_fields(&robot(runs.robot)));
+  fmt::print("{}\n{}", table.format(), list_fields(runs.robot));
   return kGood;
 }
 
@@ -114,9 +113,9 @@ std::vector<study::FreeRecording> free_stretches(const std::string& path, const 
 
 // from recordings without contact; says whether these thresholds would have held
 Thresholds calibrated_on_logs(const Flags& f, bool& usable) {
-  if (f.study.robot.empty())
+  if (f.study.robot == nullptr)
     throw std::invalid_argument("calibrating from recordings needs --robot NAME or FILE");
-  const Robot& r = robot(f.study.robot);
+  const Robot& r = *f.study.robot;
   std::vector<std::string> files;
   for (const std::string& path : f.logs)
     files.push_back(std::filesystem::weakly_canonical(path).string());
@@ -181,11 +180,12 @@ void write_study(const Flags& f, const study::StudyAbout& about,
   std::FILE* const words = format == TableFormat::kText && f.out != "-" ? stdout : stderr;
   fmt::print(words, "thresholds: {}, margin {:g}; test seeds from {} on\n\n",
              printable(about.trained_on), about.margin, about.plan.at("seed").dump());
-  fmt::print(f.out == "-" ? stderr : stdout, "{}", study::format_study(about.robot, cells, format));
+  const study::StudyRuns& runs = study::touched_runs(about.robot);
+  fmt::print(f.out == "-" ? stderr : stdout, "{}", study::format_study(runs, cells, format));
   if (f.out.empty()) return;
   const Thresholds t{.trained_on = about.trained_on, .margin = about.margin};
   AtomicFile file(f.out);
-  file.write(study::study_json(about.robot, cells, t, about.context));
+  file.write(study::study_json(runs, cells, t, about.context));
   file.commit();
   if (f.out != "-") fmt::print(words, "\n{}: all of it as JSON, with points of the ROC\n", f.out);
 }
@@ -197,7 +197,7 @@ std::vector<std::string> conditions_of(const Flags& f, const study::StudyRuns& r
   if (!f.quick && !f.thresholds.empty()) {
     all.clear();
     for (const study::Condition& c : runs.conditions)
-      if (study::are_for(t, robot(runs.robot), c.name)) all.push_back(c.name);
+      if (study::are_for(t, *runs.robot, c.name)) all.push_back(c.name);
     if (all.empty()) all = runs.quick;
   }
   return study::chosen_conditions(runs, f.study.conditions, all);
@@ -256,8 +256,8 @@ int merge(const Flags& f) {
 }
 
 int run(const CLI::App& app, Flags& f) {
-  f.study.robot = with_lock(f.study.robot, f.lock);
-  if (f.list) return list_conditions(f.study.robot);
+  if (!f.robot.empty() || !f.lock.empty()) f.study.robot = &robot(f.robot, f.lock);
+  if (f.list) return list_conditions(study::touched_runs(f.study.robot));
   const bool studies = f.calibrate_to.empty();
   require_mode(app, studies, "a study, not with --calibrate",
                {"--thresholds", "--out", "--format", "--conditions", "--collisions", "--pushes",
@@ -304,7 +304,7 @@ void add_flags(CLI::App& app, Flags& f) {
   app.add_option("--out", f.out, "JSON of it all, with the ROC; --format csv|md|latex: the table")
       ->type_name("FILE");
   app.add_option("--format", f.format)->group("");
-  app.add_option("--robot", f.study.robot,
+  app.add_option("--robot", f.robot,
                  "wallmobot3, another, or a file of MJCF or URDF (with --lock REGEX)")
       ->type_name("NAME|FILE");
   app.add_option("--lock", f.lock)->group("")->check(not_empty);

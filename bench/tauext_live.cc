@@ -39,7 +39,7 @@ using Clock = std::chrono::steady_clock;
 
 // a robot on which all that was asked for can run
 const Robot& checked_robot(const Options& o) {
-  const Robot& r = robot(with_lock(o.robot, o.lock));
+  const Robot& r = robot(o.robot, o.lock);
   for (const std::string& e : o.estimators) r.check(e, o.detector);
   if (r.dof() > kMaxJoints)
     throw std::invalid_argument(
@@ -79,7 +79,7 @@ RecordedLog simulate_samples(const Options& o, const Robot& r, const DetectorsOf
 }
 
 std::string title_of(const Options& o) {
-  return robot(with_lock(o.robot, o.lock)).label() + "/" +
+  return robot(o.robot, o.lock).label() + "/" +
          (!o.subscribe.empty() ? o.subscribe
           : !o.from.empty()    ? o.from
                                : o.scenario);
@@ -297,7 +297,7 @@ int main(int argc, char** argv) {
       "--kd.");
   return run_program(app, argc, argv, [&]() -> int {
     if (list) {
-      fmt::print("{}", list_known(with_lock(o.robot, o.lock)));
+      fmt::print("{}", list_known(o.robot, o.lock));
       return kGood;
     }
     o.stream = app.count("--lcm") > 0;
@@ -313,7 +313,7 @@ int main(int argc, char** argv) {
                  "--lcm, --page and --plotjuggler", {"--rate"});
     live::check(o, listen);
     if (listen) return live::run_listen(o);
-    if (!scenarios.empty()) add_scenarios(scenarios, robot(with_lock(o.robot, o.lock)));
+    if (!scenarios.empty()) add_scenarios(scenarios, robot(o.robot, o.lock));
     return o.subscribe.empty() ? live::run_recorded(o) : live::run_subscribed(o);
   });
 }

@@ -82,9 +82,8 @@ int main(int argc, char** argv) {
     std::optional<AtomicFile> file;  // made before the work
     if (!out.empty()) file.emplace(out);
     Progress progress("timing");
-    const std::vector<peers::Peer> all =
-        peers::compare(peers::module_path(), with_lock(name, lock), scenario, bandwidth, rounds,
-                       progress.callback());
+    const std::vector<peers::Peer> all = peers::compare(
+        peers::module_path(), robot(name, lock), scenario, bandwidth, rounds, progress.callback());
     progress.clear();
     print(all, out == "-" ? stderr : stdout);
     if (file) write(all, name, scenario, bandwidth, *file);

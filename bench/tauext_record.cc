@@ -110,8 +110,7 @@ int record_set(const Flags& f) {
                                                           {"slow_push", TouchKind::kSlowPush},
                                                           {"brisk_push", TouchKind::kBriskPush},
                                                           {"clamp", TouchKind::kClamp}};
-  const std::string arm = with_lock(f.robot, f.lock);
-  const study::StudyRuns& runs = study::touched_runs(arm);
+  const study::StudyRuns& runs = study::touched_runs(&robot(f.robot, f.lock));
   const std::vector<std::uint64_t> seeds = seeds_of(f.seeds);
   study::Condition condition;
   condition.panel = runs.carries;
@@ -134,7 +133,7 @@ int record_set(const Flags& f) {
       jobs.push_back({plant, kind, seed + (f.set == "training" ? study::kTrainingSeed : 0)});
     const std::vector<Trace> truths = study::simulated(runs, jobs, model);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
-      const Trace trace = sensed(study::measured(truths[k], f.sensors, jobs[k]), robot(arm));
+      const Trace trace = sensed(study::measured(truths[k], f.sensors, jobs[k]), *runs.robot);
       write_npz(fmt::format("{}/{}_{:04}.npz", f.out, kKinds[k].first, seed),
                 study::thinned(trace, f.every));
     }
@@ -147,7 +146,7 @@ int record_set(const Flags& f) {
 
 int run(const CLI::App& app, const Flags& f) {
   if (f.list) {
-    fmt::print("{}", list_known(with_lock(f.robot, f.lock)));
+    fmt::print("{}", list_known(f.robot, f.lock));
     return kGood;
   }
   require_mode(app, !f.set.empty(), "--set", {"--seeds"});
@@ -173,7 +172,7 @@ int run(const CLI::App& app, const Flags& f) {
       (is_lcm_log(f.out) || f.out.ends_with(".npz") || f.out.ends_with(".mcap")))
     throw std::invalid_argument(
         fmt::format("--layout {} writes text or a bag, and --out is {}", f.layout, f.out));
-  const Robot& r = robot(with_lock(f.robot, f.lock));
+  const Robot& r = robot(f.robot, f.lock);
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   const Scenario& s = scenario_of(r, f.scenario);
   const Sensors sensors = sensors_for(s, f.sensors);

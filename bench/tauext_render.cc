@@ -43,7 +43,7 @@ int list(const Flags& f) {
     fmt::print("{}\n", fmt::join(robot_names(), "\n"));
     return kGood;
   }
-  const Robot& r = robot(with_lock(f.robot, f.lock));
+  const Robot& r = robot(f.robot, f.lock);
   const std::vector<std::string> cameras = cameras_of(r.model());
   fmt::print("cameras: {}\n{} joints\n",
              cameras.empty() ? "none" : fmt::format("{}", fmt::join(cameras, ", ")), r.dof());
@@ -59,7 +59,7 @@ int render(Flags& f) {
       f.size.c_str()[end] != '\0') {
     throw std::invalid_argument(fmt::format("--size {}: width x height, like 1200x900", f.size));
   }
-  const Robot& r = robot(with_lock(f.robot, f.lock));
+  const Robot& r = robot(f.robot, f.lock);
   Eigen::VectorXd q = Eigen::VectorXd::Zero(r.dof());
   if (r.is_from_file()) q = r.home();
   if (!f.q.empty()) q = Eigen::VectorXd::Map(f.q.data(), static_cast<Eigen::Index>(f.q.size()));

@@ -134,7 +134,7 @@ class TorqueCheck {
       const auto& [now, other] =
           instant ? std::tie(w->instant, w->held) : std::tie(w->held, w->instant);
       // half as large again, and by more than matters
-      const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 5e-4 * (most_ - least_).array();
+      const Eigen::ArrayXd much = 1.5 * other.array().sqrt() + 8e-4 * (most_ - least_).array();
       const bool costly = (now.array().sqrt() > much).any();
       if (!costly && !w->contradicts(instant)) continue;
       good = good && !costly;
@@ -242,7 +242,7 @@ void refuse_incomplete(const Flags& f) {
 
 int replay(Flags& f) {
   refuse_incomplete(f);
-  const Robot& r = robot(with_lock(f.robot, f.lock));
+  const Robot& r = robot(f.robot, f.lock);
   const std::vector<DetectorSettings> settings = settings_of(f, r);
   const auto forces =
       f.wrench.empty() ? nullptr : r.forces_at(f.wrench, r.dof() >= kJointsOfMoment);
@@ -316,7 +316,7 @@ int main(int argc, char** argv) {
   add_flags(app, flags);
   return run_program(app, argc, argv, [&]() -> int {
     if (!flags.list) return replay(flags);
-    fmt::print("{}", list_known(with_lock(flags.robot, flags.lock)));
+    fmt::print("{}", list_known(flags.robot, flags.lock));
     return kGood;
   });
 }

@@ -137,7 +137,7 @@ struct Recorded {
 
 Recorded recorded(const Flags& f) {
   Recorded all;
-  const Robot* const r = f.robot.empty() ? nullptr : &robot(with_lock(f.robot, f.lock));
+  const Robot* const r = f.robot.empty() ? nullptr : &robot(f.robot, f.lock);
   for (const std::string& e : f.ours) r->check(e, f.detector);
   if (!f.scenario.empty()) {
     const Scenario& s = scenario_of(*r, f.scenario);

@@ -246,7 +246,7 @@ int tune_on_recordings(const Flags& f, const Robot& r, TuneOptions o, TableForma
 
 // pairs of the study to tune into a file
 struct ConditionsToTune {
-  std::string robot;                    // "" for the first one that has runs
+  const Robot* robot;                   // null for the first one that has runs
   std::vector<std::string> conditions;  // names
   std::string estimators, detectors;    // specifications, apart by commas; "" for all
   int evaluations;                      // of each pair
@@ -265,7 +265,7 @@ std::vector<std::string> list_of(const std::string& text) {
 
 std::string command_of(const ConditionsToTune& f) {
   std::string text = "tauext-tune";
-  if (!f.robot.empty()) text += " --robot " + f.robot;
+  if (f.robot != nullptr) text += " --robot " + f.robot->name();
   text +=
       fmt::format(" --conditions {} --evaluations {}", fmt::join(f.conditions, ","), f.evaluations);
   if (!f.estimators.empty()) text += " --estimator " + f.estimators;
@@ -339,8 +339,10 @@ int run(const CLI::App& app, Flags& f) {
                  {"--tune", "--minimize", "--limit", "--scenario", "--scenarios", "--seeds",
                   "--test_seeds", "--log", "--test_log", "--columns", "--channel", "--contacts"});
     require_mode(app, false, why, recording_flags());
-    return tune_conditions({with_lock(f.robot, f.lock), f.conditions, f.pair.estimator,
-                            f.pair.detector, f.evaluations, f.shard, f.out, f.format});
+    const bool named = !f.robot.empty() || !f.lock.empty();
+    return tune_conditions({named ? &robot(f.robot, f.lock) : nullptr, f.conditions,
+                            f.pair.estimator, f.pair.detector, f.evaluations, f.shard, f.out,
+                            f.format});
   }
   require_flags(f);
   const TableFormat format = table_format(f.format);
@@ -348,7 +350,7 @@ int run(const CLI::App& app, Flags& f) {
   require_mode(app, f.logs.empty(), simulated,
                {"--scenario", "--scenarios", "--seeds", "--test_seeds"});
   require_mode(app, f.logs.empty(), simulated, recording_flags());
-  const Robot& r = robot(with_lock(f.robot, f.lock));
+  const Robot& r = robot(f.robot, f.lock);
   if (!f.scenarios.empty()) add_scenarios(f.scenarios, r);
   r.check(f.pair.estimator, f.pair.detector);
   if (f.suite.sensors.ideal()) f.suite.sensors = golden_sensors();

@@ -239,11 +239,4 @@ std::string LogReport::in_words() const {
   return text;
 }
 
-Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report) {
-  LcmReader reader(path, channel);
-  Trace trace = trace_of(reader);
-  if (report != nullptr) *report = reader.report();
-  return trace;
-}
-
 }  // namespace tauext

@@ -47,8 +47,4 @@ class LcmReader final : public SampleSource {
   std::unique_ptr<Impl> impl_;
 };
 
-/// All of them.
-/// @throws std::runtime_error as LcmReader does
-Trace read_lcm(const std::string& path, const std::string& channel, LogReport* report);
-
 }  // namespace tauext

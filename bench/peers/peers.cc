@@ -94,10 +94,9 @@ void* function_of(const std::string& module, const char* name) {
   throw std::runtime_error(fmt::format("{}: {}", module, dlerror()));
 }
 
-std::vector<Peer> compare(const std::string& module, const std::string& name,
-                          const std::string& scenario, double bandwidth, int rounds,
+std::vector<Peer> compare(const std::string& module, const Robot& r, const std::string& scenario,
+                          double bandwidth, int rounds,
                           const std::function<void(double)>& progress) {
-  const Robot& r = robot(name);
   require_compiled(r);
   const Scenario& s = scenario_of(r, scenario);
   const Model model = r.load_for(s);

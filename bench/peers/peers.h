@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/roster/robot.h"
+
 namespace tauext::peers {
 
 /// One estimator.
@@ -22,11 +24,10 @@ struct Peer {
 
 /// All of them on an arm with 3, 6 or 7 joints in a chain, at so many rad/s, over its scenario.
 /// @param module path of tauext_kdl.so (kdl_module.h)
-/// @param robot NAME or FILE[:lock=REGEX]
 /// @param progress called with the share that is done; may be empty
-/// @throws std::invalid_argument for another arm, an unknown robot or scenario; std::runtime_error
+/// @throws std::invalid_argument for another arm, an unknown scenario; std::runtime_error
 /// naming the module if it cannot be loaded
-std::vector<Peer> compare(const std::string& module, const std::string& robot,
+std::vector<Peer> compare(const std::string& module, const Robot& robot,
                           const std::string& scenario, double bandwidth, int rounds,
                           const std::function<void(double)>& progress = {});
 

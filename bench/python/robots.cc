@@ -176,7 +176,7 @@ void bind_robots(py::module_& m) {
   m.def(
       "robot",
       [](const std::string& name, const std::string& lock) {
-        return const_cast<Robot*>(&robot(with_lock(name, lock)));
+        return const_cast<Robot*>(&robot(name, lock));
       },
       py::return_value_policy::reference);
   m.def("robots", [] {

@@ -85,13 +85,13 @@ std::vector<py::dict> suite(const Robot& robot, const std::vector<std::string>& 
   return rows;
 }
 
-std::string study(const std::string& robot_name, const std::vector<std::string>& conditions,
+std::string study(const Robot& robot, const std::vector<std::string>& conditions,
                   const std::vector<std::string>& estimators,
                   const std::vector<std::string>& detectors, int collisions, int pushes,
                   int clampings, int regions, double hours, int training_runs, int jobs,
                   const py::object& progress) {
   study::StudyOptions o;
-  o.robot = robot_name, o.conditions = conditions;
+  o.robot = &robot, o.conditions = conditions;
   o.estimators = estimators, o.detectors = detectors;
   o.blows = collisions, o.brisk_pushes = pushes, o.clampings = clampings, o.regions = regions;
   o.hours = hours, o.threads = jobs;
@@ -109,7 +109,8 @@ std::string study(const std::string& robot_name, const std::vector<std::string>&
     c.robot = o.robot, c.estimators = o.estimators, c.detectors = o.detectors;
     c.threads = o.threads, c.runs = training_runs;
     const Thresholds thresholds = study::calibrate_for(o.conditions, c);
-    return study::study_json(o.robot, study::detection_study(o, thresholds), thresholds);
+    return study::study_json(study::touched_runs(o.robot), study::detection_study(o, thresholds),
+                             thresholds);
   });
   const auto done = [&] {
     const py::gil_scoped_release free;

@@ -154,17 +154,15 @@ const std::vector<std::unique_ptr<const Robot>>& robots() {
   return all;
 }
 
-std::string with_lock(const std::string& robot, const std::string& lock) {
-  if (lock.empty()) return robot;
-  if (is_robot_file(robot)) return robot + std::string(kLock) + lock;
-  refuse_other_kind(robot);
-  throw std::invalid_argument(
-      fmt::format("--lock fixes joints of a robot from a file, and {} is none", robot));
-}
-
-const Robot& robot(std::string_view name) {
-  const bool by_mjcf = is_robot_file(name) || is_by_mjcf(name);
-  return by_mjcf ? robot_of_file(std::string(name)) : find_robot(robots(), name);
+const Robot& robot(std::string_view name, std::string_view lock) {
+  const bool file = is_robot_file(name);
+  if (!lock.empty() && !file) {
+    refuse_other_kind(name);
+    throw std::invalid_argument(
+        fmt::format("--lock fixes joints of a robot from a file, and {} is none", name));
+  }
+  if (!lock.empty()) return robot_of_file(fmt::format("{}{}{}", name, kLock, lock));
+  return file || is_by_mjcf(name) ? robot_of_file(std::string(name)) : find_robot(robots(), name);
 }
 
 std::unique_ptr<const Robot> wallmobot3_believing(double panel) {
@@ -189,9 +187,9 @@ bool study_only(std::string_view detector) {
   return found;
 }
 
-std::string list_known(const std::string& name) {
-  if (!name.empty()) {
-    const Robot& r = robot(name);
+std::string list_known(const std::string& name, const std::string& lock) {
+  if (!name.empty() || !lock.empty()) {
+    const Robot& r = robot(name, lock);
     const bool by_mjcf = is_robot_file(name) || is_by_mjcf(name);
     return list_of(r) + (by_mjcf ? list_scale(r) : "") + "\n" + list_fields(&r);
   }

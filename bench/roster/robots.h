@@ -28,13 +28,11 @@ const std::vector<std::unique_ptr<const Robot>>& robots();
 /// path of its MJCF or URDF file (.xml, .urdf) and the joints of it that are fixed, an arm of 1 to
 /// 8 hinges and slides with the estimators, detectors and scenarios that every arm has. A file is
 /// read once.
-/// @throws std::invalid_argument for an unknown name, listing the known ones; std::runtime_error or
-/// std::invalid_argument naming the path and what is wrong with it
-const Robot& robot(std::string_view name);
-
-/// That name of a robot from a file with joints that are fixed, or the name itself without.
-/// @throws std::invalid_argument if joints of another robot are to be fixed
-std::string with_lock(const std::string& robot, const std::string& lock);
+/// @param lock REGEX of a file's joints that are fixed; "" for none
+/// @throws std::invalid_argument for an unknown name, listing the known ones, and for joints of a
+/// robot from no file; std::runtime_error or std::invalid_argument naming the path and what is
+/// wrong with it
+const Robot& robot(std::string_view name, std::string_view lock = "");
 
 /// wallmobot3 whose estimators believe in a panel of so many kg; 150 is what robot("wallmobot3")
 /// believes.
@@ -53,9 +51,9 @@ const Scenario& scenario_of(const Robot& robot, std::string_view name);
 
 /// What --list prints: what all robots have that are known by name, or one, and by what one from a
 /// file is scaled; and the keys of specifications.
-/// @param robot by which robot() finds it; "" for all
+/// @param robot,lock by which robot() finds it; "" for all
 /// @throws std::invalid_argument as robot()
-std::string list_known(const std::string& robot = "");
+std::string list_known(const std::string& robot = "", const std::string& lock = "");
 
 /// A line for each key that an estimator or a detector of any robot has, or of that one: unit,
 /// limits, what larger does.

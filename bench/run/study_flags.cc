@@ -28,7 +28,7 @@ TableFormat format_of(const StudyFlags& f) {
 }
 
 const Robot& robot_of(const StudyFlags& f) {
-  return f.robot ? robot(*f.robot) : *robots().front();
+  return *robots_of(f.selection).front();
 }
 
 // a file of JSON is one for tauext-report, with where it comes from

@@ -22,10 +22,8 @@ struct StudyFlags {
   std::string against = "mo2";            ///< with whom they are compared
   bool pareto = false;                    ///< whether that study is asked for
   std::optional<double> equal_bandwidth;  ///< [rad/s]
-  /// By which robot() finds it; else the roster's first one that can be studied so.
-  std::optional<std::string> robot;
-  Selection selection;                ///< of seeds; its estimators also of the last two
-  std::string filter;                 ///< regular expression on the entries of seeds; "": all
+  Selection selection;  ///< of seeds; its robot, else the first one, and estimators of the last two
+  std::string filter;   ///< regular expression on the entries of seeds; "": all
   std::optional<std::string> format;  ///< of all tables, as table_format() knows it; else text
   std::optional<std::string> out;     ///< file, else standard output
 

@@ -57,7 +57,7 @@ Degradation dry_friction() {  // 5 N m
 }
 
 StudyRuns runs_of_wallmobot3() {
-  StudyRuns r{.robot = "wallmobot3", .carries = 150};
+  StudyRuns r{.robot = &robot("wallmobot3"), .carries = 150};
   r.conditions = {
       {"known_0", "no panel, and the estimators know", 0, 0, noisy(1e-4)},
       {"known_50", "a panel of 50 kg, known", 50, 50, noisy(1e-4)},
@@ -91,7 +91,7 @@ StudyRuns runs_of_wallmobot3() {
 
 // of any arm
 StudyRuns runs_of_any(const Robot& r) {
-  StudyRuns runs{.robot = r.name()};
+  StudyRuns runs{.robot = &r};
   Degradation heavy = noisy(1e-4), rubbing = noisy(1e-4);
   heavy.model_error.mass = 1.05;
   rubbing.model_error = r.hidden_friction();
@@ -128,13 +128,12 @@ StudyRuns runs_of_any(const Robot& r) {
 }
 
 // made when it is first asked for
-const StudyRuns& of_any(std::string_view name) {
+const StudyRuns& of_any(const Robot& r) {
   static std::mutex mutex;
-  static std::map<std::string, StudyRuns, std::less<>> all;
+  static std::map<const Robot*, StudyRuns> all;
   const std::lock_guard alone(mutex);
-  const auto found = all.find(name);
-  return found != all.end() ? found->second
-                            : all.emplace(name, runs_of_any(robot(name))).first->second;
+  const auto found = all.find(&r);
+  return found != all.end() ? found->second : all.emplace(&r, runs_of_any(r)).first->second;
 }
 
 // what has the name of a known one; its keys are checked by building it
@@ -176,15 +175,14 @@ PlantKey plant_of(const Condition& c) {
   return {c.panel, c.degradation.model_error, c.degradation.drives, c.motions};
 }
 
-const StudyRuns& touched_runs(std::string_view name) {
+const StudyRuns& touched_runs(const Robot* r) {
   static const StudyRuns first = runs_of_wallmobot3();
-  if (name.empty() || name == first.robot) return first;
-  robot(name);  // an unknown one is no robot without runs
-  if (name != "testbed1") return of_any(name);
+  if (r == nullptr || r == first.robot) return first;
+  if (r->name() != "testbed1") return of_any(*r);
   throw std::invalid_argument(
       fmt::format("the detection study has no runs for {}; it has them for {}, {}, and for robots "
                   "from files",
-                  name, first.robot, fmt::join(kRobotsByMjcf, ", ")));
+                  r->name(), first.robot->name(), fmt::join(kRobotsByMjcf, ", ")));
 }
 
 const Condition& condition(const StudyRuns& runs, const std::string& name) {
@@ -199,7 +197,7 @@ std::vector<RegionTouch> meetings_of(const StudyRuns& runs, const Job& job) {
 std::vector<Trace> simulated(const StudyRuns& runs, std::span<const Job> jobs, const Model& model) {
   std::vector<Scenario> scenarios;
   for (const Job& job : jobs) scenarios.push_back(scenario_of(runs, job));
-  return robot(runs.robot).simulate(model, scenarios, {.drives = jobs.front().plant.drives});
+  return runs.robot->simulate(model, scenarios, {.drives = jobs.front().plant.drives});
 }
 
 void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& model,
@@ -209,7 +207,7 @@ void require_mujoco_agrees(const StudyRuns& runs, const Job& job, const Model& m
   if (off < 1e-9) return;
   throw std::runtime_error(
       fmt::format("{}: the run of seed {} differs by {:.2g} from MuJoCo's, and 1e-9 is allowed",
-                  runs.robot, job.seed, off));
+                  runs.robot->name(), job.seed, off));
 }
 
 Trace thinned(const Trace& trace, int n) {

@@ -60,7 +60,7 @@ PlantKey plant_of(const Condition& c);
 
 /// The runs of one robot. A function that is empty stands for runs that the robot does not have.
 struct StudyRuns {
-  std::string robot;   ///< its name
+  const Robot* robot;  ///< that has them
   double carries = 0;  ///< [kg] the panel that its own model has
 
   // of the detection study and of calibration
@@ -77,10 +77,9 @@ struct StudyRuns {
   std::function<const TouchPoints&()> points;
 };
 
-/// The runs of a robot for the detection study; "" stands for the first robot that has some.
-/// @throws std::invalid_argument for an unknown robot, and for one without such runs, naming those
-/// with
-const StudyRuns& touched_runs(std::string_view robot);
+/// The runs of a robot for the detection study; null stands for the first robot that has some.
+/// @throws std::invalid_argument for one without such runs, naming those with
+const StudyRuns& touched_runs(const Robot* robot = nullptr);
 
 /// @throws std::invalid_argument for an unknown name, listing the known ones
 const Condition& condition(const StudyRuns& runs, const std::string& name);

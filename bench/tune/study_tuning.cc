@@ -30,7 +30,7 @@ using study::Job;
 
 TrainingRuns::TrainingRuns(const study::StudyRuns& runs, const study::Condition& c, int free_runs,
                            int meetings, int threads)
-    : runs_(runs), robot_(robot(runs.robot)), believer_(runs.believer(c.believed)) {
+    : runs_(runs), robot_(*runs.robot), believer_(runs.believer(c.believed)) {
   std::vector<Job> all;
   Job job{plant_of(c), TouchKind::kSlowPush, study::kTrainingSeed};
   for (int i = 0; i < free_runs; ++i, ++job.seed) all.push_back(job);
@@ -228,7 +228,7 @@ class OfCondition {
   // `unit` numbers the estimators of all conditions, of which each is of one part
   OfCondition(const StudyTuning& o, const StudyRuns& runs, const std::string& condition,
               const std::vector<study::TunedRow>& known, int& unit)
-      : o_(o), robot_(robot(runs.robot)), runs_(runs), condition_(condition) {
+      : o_(o), robot_(*runs.robot), runs_(runs), condition_(condition) {
     const std::vector<std::string> detectors = study::chosen_detectors(robot_, o.detectors);
     for (const std::string& e : study::chosen_estimators(robot_, o.estimators)) {
       if (unit++ % o.shard.count != o.shard.index - 1) continue;

@@ -58,7 +58,7 @@ class TrainingRuns {
 
 /// What is tuned, and how long.
 struct StudyTuning {
-  std::string robot;                     ///< "" for the first one that has runs
+  const Robot* robot = nullptr;          ///< null for the first one that has runs
   std::vector<std::string> conditions;   ///< each for itself
   std::vector<std::string> estimators;   ///< specifications; empty: all but the baselines
   std::vector<std::string> detectors;    ///< specifications; empty: all

@@ -167,8 +167,9 @@ void log(Bytes input) {
   const std::string path = file_of(input);
   refused_or(path, [&] { events_of_log(path, input.size()); });
   refused_or(path, [&] {
-    LogReport report;
-    demand_trace(read_lcm(path, "", &report), false);
+    LcmReader reader(path, "");
+    demand_trace(trace_of(reader), false);
+    const LogReport report = reader.report();
     demand(report.rejected >= 0 && report.out_of_order >= 0 && report.lost >= 0, "counts count");
   });
 }

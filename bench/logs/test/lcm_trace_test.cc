@@ -51,7 +51,12 @@ class LcmTrace : public testing::Test {
     r.utime = (std::int64_t{1} << 52) + more;
     r.t = static_cast<double>(r.utime) * 1e-6;
   }
-  Trace get(const std::string& channel = "") { return read_lcm(path_.string(), channel, &report_); }
+  Trace get(const std::string& channel = "") {
+    LcmReader reader(path_.string(), channel);
+    Trace trace = trace_of(reader);
+    report_ = reader.report();
+    return trace;
+  }
   std::string error(const std::string& channel = "") {
     try {
       get(channel);

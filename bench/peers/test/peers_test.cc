@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bench/peers/kdl_module.h"
+#include "bench/roster/robots.h"
 #include "mjcf/plant/tree.h"
 #include "mjcf/test/error_of.h"
 
@@ -42,7 +43,7 @@ TEST(Kdl, HasTheTermsOfOurModel) {
 std::map<std::string, Peer> compared(const std::string& robot, double least_of_ekf) {
   std::map<std::string, Peer> best;
   for (int attempt = 0; attempt < 3; ++attempt) {
-    for (const Peer& p : compare(kModule, robot, "sine", 30, 15)) {
+    for (const Peer& p : compare(kModule, tauext::robot(robot), "sine", 30, 15)) {
       if (!best.contains(p.name) || best.at(p.name).ratio < p.ratio) best[p.name] = p;
     }
     if (best.at("kdl_ekf").ratio >= least_of_ekf) break;
@@ -64,11 +65,11 @@ TEST(Peers, OursAreAsRightAndManyTimesAsFast) {
 
 TEST(Peers, WhatCannotBeSaysWhy) {
   EXPECT_NE(tauext::test::error_of([] {
-              compare("/nowhere.so", "wallmobot3", "sine", 30, 3);
+              compare("/nowhere.so", robot("wallmobot3"), "sine", 30, 3);
             }).find("/nowhere.so"),
             std::string::npos);
   EXPECT_NE(tauext::test::error_of([] {
-              compare(kModule, "testbed1", "sine", 30, 3);
+              compare(kModule, robot("testbed1"), "sine", 30, 3);
             }).find("testbed1 has 1 joint; peers are compiled for 3, 6 and 7"),
             std::string::npos);
 }

@@ -246,7 +246,7 @@ class Robot:
         jobs: threads, 0 for one a core; an estimator in Python gains nothing by several
         progress: is called with the share that is done
         """
-        text = _core.study(self.name, list(conditions), _list(estimators, list), _list(detectors, list),
+        text = _core.study(self._robot, list(conditions), _list(estimators, list), _list(detectors, list),
                            collisions, pushes, clampings, regions, hours, training_runs, jobs, progress)
         written: dict[str, Any] = json.loads(text)
         return written

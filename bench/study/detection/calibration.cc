@@ -43,7 +43,7 @@ void require_free(const FreeRecording& r, const Robot& robot) {
 Thresholds calibrated(const StudyRuns& runs, const std::vector<std::string>& names,
                       const std::vector<Quality>& qualities, const CalibrationOptions& o) {
   if (o.runs < 1) throw std::invalid_argument("calibration needs at least one run");
-  const Robot& r = robot(runs.robot);
+  const Robot& r = *runs.robot;
   std::map<double, std::shared_ptr<const Robot>> believers;
   for (const std::string& name : names) {
     const double believed = condition(runs, name).believed;
@@ -73,7 +73,7 @@ Thresholds calibrated(const StudyRuns& runs, const std::vector<std::string>& nam
   };
   return train(o, r, {count * o.runs, count * batches_of_one, show}, qualities,
                fmt::format("{}, {}: {} runs each of free motion and slow pushes, seeds from {} on",
-                           runs.robot, fmt::join(names, ", "), o.runs, kTrainingSeed));
+                           r.name(), fmt::join(names, ", "), o.runs, kTrainingSeed));
 }
 
 }  // namespace

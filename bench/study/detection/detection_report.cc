@@ -202,9 +202,9 @@ Json to_json(const Condition& c) {
 
 }  // namespace
 
-std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
+std::string format_study(const StudyRuns& runs, const std::vector<Cell>& cells,
                          TableFormat format) {
-  if (format == TableFormat::kText) return text(touched_runs(robot), cells);
+  if (format == TableFormat::kText) return text(runs, cells);
   std::vector<TableWriter::Column> all = detection_columns();
   all.insert(all.begin(), {"condition", "", true});
   TableWriter table(all);
@@ -216,15 +216,14 @@ std::string format_study(const std::string& robot, const std::vector<Cell>& cell
   return table.format(format);
 }
 
-std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
+std::string study_json(const StudyRuns& runs, const std::vector<Cell>& cells,
                        const Thresholds& thresholds,
                        const std::vector<std::pair<std::string, std::string>>& context) {
-  const StudyRuns& runs = touched_runs(robot);
   Json j;
   j["format"] = "tauext-detection-1";
   j["context"] = Json::object();
   for (const auto& [key, text] : context) j["context"][key] = text;
-  j["robot"] = runs.robot;
+  j["robot"] = runs.robot->name();
   j["thresholds_trained_on"] = thresholds.trained_on;
   j["margin"] = thresholds.margin;
   for (const Condition& c : runs.conditions) {

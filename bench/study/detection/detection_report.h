@@ -15,13 +15,13 @@ namespace tauext::study {
 
 /// As text a table for each condition, and what the columns mean; else one table with a column of
 /// conditions.
-/// @param robot that was studied; "" for the first one that has runs
-std::string format_study(const std::string& robot, const std::vector<Cell>& cells,
+/// @param runs that were studied
+std::string format_study(const StudyRuns& runs, const std::vector<Cell>& cells,
                          TableFormat format = TableFormat::kText);
 
 /// All of it as JSON text: counts, quantiles, the bound on false alarms, points of the ROC.
 /// @param context keys and texts that say where it comes from
-std::string study_json(const std::string& robot, const std::vector<Cell>& cells,
+std::string study_json(const StudyRuns& runs, const std::vector<Cell>& cells,
                        const Thresholds& thresholds,
                        const std::vector<std::pair<std::string, std::string>>& context = {});
 

@@ -81,7 +81,7 @@ class DetectionStudy::Study {
   Added run(int piece) const {
     const std::span<const Job> jobs = pieces_[static_cast<std::size_t>(piece)];
     std::map<std::size_t, Cell> sums;
-    const auto most = static_cast<std::size_t>(robot(runs_.robot).runs_at_once());
+    const auto most = static_cast<std::size_t>(runs_.robot->runs_at_once());
     for (std::size_t from = 0; from < jobs.size(); from += most)
       run(jobs.subspan(from, std::min(most, jobs.size() - from)), sums);
     return {sums.begin(), sums.end()};
@@ -100,7 +100,7 @@ class DetectionStudy::Study {
   };
 
   void add_condition(const StudyOptions& o, const Condition& c) {
-    const Robot& r = robot(runs_.robot);
+    const Robot& r = *runs_.robot;
     Tried tried{&c, pairs_of(o, r, c)};
     if (c.trains_itself && !thresholds_.path.empty() && !are_for(thresholds_, r, c.name))
       throw std::invalid_argument(
@@ -151,7 +151,7 @@ class DetectionStudy::Study {
 
   DetectorSettings settings(const Condition& c, const std::string& e, const std::string& d) const {
     const double noise = c.degradation.sensors.velocity_noise;
-    return judged_with(trained_for(thresholds_, robot(runs_.robot), noise, e, d, c.name));
+    return judged_with(trained_for(thresholds_, *runs_.robot, noise, e, d, c.name));
   }
 
   // pieces of jobs of one plant and kind
@@ -274,8 +274,8 @@ void check_study(const StudyOptions& o) {
   const StudyRuns& of = touched_runs(o.robot);
   if (o.regions > 0) of.points();  // which may throw
   chosen_conditions(of, o.conditions, {});
-  chosen_estimators(robot(of.robot), o.estimators);
-  chosen_detectors(robot(of.robot), o.detectors);
+  chosen_estimators(*of.robot, o.estimators);
+  chosen_detectors(*of.robot, o.detectors);
 }
 
 void run_pieces(const DetectionStudy& study, const StudyOptions& o, StudySum& sum) {

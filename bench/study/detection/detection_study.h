@@ -25,7 +25,7 @@ namespace tauext::study {
 
 /// How much is tried, and what of it.
 struct StudyOptions {
-  std::string robot;                    ///< "" for the first one that has runs
+  const Robot* robot = nullptr;         ///< null for the first one that has runs
   std::vector<std::string> conditions;  ///< by name; empty: the quick ones
   std::vector<std::string> estimators;  ///< specifications; empty: all but the baselines
   std::vector<std::string> detectors;   ///< specifications; empty: all

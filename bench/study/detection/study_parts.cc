@@ -142,9 +142,12 @@ Added added_of(const Json& j) {
 }
 
 Json first_line(const DetectionStudy& study, const StudyAbout& about, const Shard& shard) {
-  Json j = {
-      {"format", kPartFormat},  {"robot", about.robot}, {"thresholds_trained_on", about.trained_on},
-      {"margin", about.margin}, {"plan", about.plan},   {"pieces", study.pieces()}};
+  Json j = {{"format", kPartFormat},
+            {"robot", about.robot->name()},
+            {"thresholds_trained_on", about.trained_on},
+            {"margin", about.margin},
+            {"plan", about.plan},
+            {"pieces", study.pieces()}};
   j["cells"] = Json::array();
   for (const Cell& c : study.cells())
     j["cells"].push_back({c.condition, c.estimator, c.detector, c.Ts});
@@ -335,7 +338,7 @@ Merged merge_parts(const std::vector<std::string>& paths) {
         "of {} pieces {} are missing, of --shard {}: run these again with the same --out, which go "
         "on where they stopped",
         pieces, pieces - static_cast<int>(in.size()), fmt::join(missing, ", ")));
-  StudyAbout about{first.at("robot").get<std::string>(),
+  StudyAbout about{&robot(first.at("robot").get<std::string>()),
                    first.at("thresholds_trained_on").get<std::string>(),
                    first.at("margin").get<double>(),
                    first.at("plan"),

@@ -57,10 +57,10 @@ Shard shard_of(const std::string& text);
 
 /// What a study is of, and where it runs.
 struct StudyAbout {
-  std::string robot;            ///< by which robot() finds it
-  std::string trained_on;       ///< Thresholds::trained_on
-  double margin = 1;            ///< Thresholds::margin
-  nlohmann::ordered_json plan;  ///< what was asked for, and a digest of the thresholds
+  const Robot* robot = nullptr;  ///< that has runs
+  std::string trained_on;        ///< Thresholds::trained_on
+  double margin = 1;             ///< Thresholds::margin
+  nlohmann::ordered_json plan;   ///< what was asked for, and a digest of the thresholds
   std::vector<std::pair<std::string, std::string>> context;  ///< provenance(), of one part
 };
 

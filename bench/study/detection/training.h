@@ -19,7 +19,7 @@ namespace tauext::study {
 
 /// How thresholds are set.
 struct CalibrationOptions {
-  std::string robot;    ///< "" for the first one that has runs
+  const Robot* robot = nullptr;  ///< null for the first one that has runs
   double margin = 1.3;  ///< [1] threshold over the largest value in training, as an amplitude
   std::vector<std::string> conditions;  ///< trained on; empty: those that the robot's runs name
   std::vector<std::string> estimators;  ///< specifications; empty: all but the baselines

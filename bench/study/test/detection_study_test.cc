@@ -83,13 +83,14 @@ TEST(DetectionStudy, MeetsEachKindOfRegion) {
       }
     }
   }
-  const auto json = nlohmann::json::parse(study_json("", all, {}));
+  const auto json = nlohmann::json::parse(study_json(touched_runs(), all, {}));
   const auto& hand = json.at("cells")[0].at("regions")[0];
   EXPECT_EQ(hand.at("class"), "hand_0.10");
   EXPECT_EQ(hand.at("limit_N"), 280);
   EXPECT_EQ(hand.at("touches"), all[0].regions[0].touches);
   EXPECT_LE(hand.at("moved_p50_m"), hand.at("moved_p95_m"));
-  EXPECT_NE(format_study("", all, TableFormat::kText).find("exceeded"), std::string::npos);
+  EXPECT_NE(format_study(touched_runs(), all, TableFormat::kText).find("exceeded"),
+            std::string::npos);
 }
 
 TEST(DetectionStudy, OfRegionsCountsTheFirstMarkAndWhatWasPressedUntilThen) {
@@ -127,7 +128,7 @@ TEST(DetectionStudy, DoesNotDependOnTheNumberOfThreads) {
   o.threads = 3;
   const std::vector<Cell> other = detection_study(o, {});
   ASSERT_EQ(other.size(), cells().size());
-  EXPECT_EQ(study_json("", other, {}), study_json("", cells(), {}));
+  EXPECT_EQ(study_json(touched_runs(), other, {}), study_json(touched_runs(), cells(), {}));
   for (std::size_t i = 0; i < other.size(); ++i) EXPECT_EQ(other[i].delays, cells()[i].delays);
 }
 
@@ -289,7 +290,7 @@ TEST(DetectionStudy, UnknownNamesListTheKnownOnes) {
                       "known_0, known_50"),
             std::string::npos);
   o = small();
-  o.robot = "testbed1";
+  o.robot = &robot("testbed1");
   EXPECT_NE(error_of([&] { detection_study(o, {}); }).find("no runs for testbed1"),
             std::string::npos);
   o = small();
@@ -301,16 +302,17 @@ TEST(DetectionStudy, UnknownNamesListTheKnownOnes) {
 }
 
 TEST(DetectionReport, HoldsEveryCellAsJsonAndAsALine) {
-  const auto json = nlohmann::json::parse(study_json("", cells(), {}));
+  const auto json = nlohmann::json::parse(study_json(touched_runs(), cells(), {}));
   ASSERT_EQ(json["cells"].size(), cells().size());
   EXPECT_EQ(json["cells"][0]["collisions"], cells()[0].blows);
   EXPECT_EQ(json["cells"][0]["roc"].size(), kLevels.size());
   EXPECT_EQ(json["conditions"]["known_150"]["panel_kg"], 150);
-  const std::string text = format_study("", cells());
+  const std::string text = format_study(touched_runs(), cells());
   for (const char* row : {"\nmo1+pan_tompkins ", "\nmo1+high_pass "}) {
     EXPECT_NE(text.find(row), std::string::npos) << text;
   }
-  const auto table = nlohmann::json::parse(format_study("", cells(), TableFormat::kJson));
+  const auto table =
+      nlohmann::json::parse(format_study(touched_runs(), cells(), TableFormat::kJson));
   ASSERT_EQ(table.size(), cells().size());
   EXPECT_EQ(table[0]["condition"], "known_150");
   EXPECT_EQ(table[0]["recall_percent"], 100);

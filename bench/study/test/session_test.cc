@@ -24,7 +24,7 @@ namespace {
 
 // blows on a robot, as noisy sensors see them
 std::vector<Trace> blows(const std::string& robot, const std::string& name, int runs) {
-  const StudyRuns& of = touched_runs(robot);
+  const StudyRuns& of = touched_runs(&tauext::robot(robot));
   const Condition& c = condition(of, name);
   std::vector<Job> jobs;
   for (int i = 1; i <= runs; ++i)

@@ -54,7 +54,9 @@ class StudyParts : public ::testing::Test {
     });
     return merge_parts(paths);
   }
-  static std::string json(const std::vector<Cell>& cells) { return study_json("", cells, {}); }
+  static std::string json(const std::vector<Cell>& cells) {
+    return study_json(touched_runs(), cells, {});
+  }
 
   std::filesystem::path folder_;
 };
@@ -71,7 +73,7 @@ TEST_F(StudyParts, PutTogetherAreTheWholeToTheLastByte) {
   }
   const Merged whole_again = merged(parts);
   EXPECT_EQ(json(whole_again.cells), whole);
-  EXPECT_EQ(whole_again.about.robot, "wallmobot3");
+  EXPECT_EQ(whole_again.about.robot, &robot("wallmobot3"));
   EXPECT_EQ(whole_again.about.plan.at("collisions"), 90);
 }
 

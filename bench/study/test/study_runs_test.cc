@@ -23,15 +23,14 @@ using tauext::test::error_of;
 using Names = std::vector<std::string>;
 
 TEST(StudyRuns, ARobotWithoutRunsIsToldWhichHaveThem) {
-  EXPECT_EQ(error_of([] { touched_runs("testbed1"); }),
+  EXPECT_EQ(error_of([] { touched_runs(&robot("testbed1")); }),
             "the detection study has no runs for testbed1; it has them for wallmobot3, "
             "wallmobot6, and for robots from files");
-  EXPECT_EQ(error_of([] { touched_runs("r2d2"); }).find("unknown robot 'r2d2'; known: "), 0u);
-  EXPECT_EQ(touched_runs("").robot, "wallmobot3");
+  EXPECT_EQ(touched_runs().robot, &robot("wallmobot3"));
 }
 
 TEST(StudyRuns, TakeSpecificationsAndRefuseWhatCannotBeBuilt) {
-  const Robot& r = robot(touched_runs("").robot);
+  const Robot& r = *touched_runs().robot;
   const Names tuned = {"mo2:bandwidth=50", "ekf"}, detectors = {"high_pass:w=60"};
   EXPECT_EQ(chosen_estimators(r, tuned), tuned);
   EXPECT_EQ(chosen_detectors(r, detectors), detectors);
@@ -128,8 +127,8 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
     EXPECT_GE(c.blows, 8) << c.condition;
     EXPECT_NEAR(c.hours(), 26. / 3600, 1e-5) << c.condition;
   }
-  for (const char* robot : {"", "bench/examples/arm6.xml"}) {
-    const StudyRuns& runs = touched_runs(robot);
+  for (const char* name : {"wallmobot3", "bench/examples/arm6.xml"}) {
+    const StudyRuns& runs = touched_runs(&robot(name));
     EXPECT_EQ(std::count(runs.quick.begin(), runs.quick.end(), "hard"), 0) << "only if asked for";
     const PlantKey known = plant_of(runs.conditions.front());
     const PlantKey hard = plant_of(condition(runs, "hard"));
@@ -155,7 +154,7 @@ TEST(DetectionStudy, HonestConditionsAreThoseOfAnyArm) {
 }
 
 TEST(MovedOn, IsFromWhereTheMeetingBeganToWhereOurOwnModelSaysThePointIs) {
-  const StudyRuns& runs = touched_runs("bench/examples/arm6.xml");
+  const StudyRuns& runs = touched_runs(&robot("bench/examples/arm6.xml"));
   const Job job{plant_of(condition(runs, "hard")), TouchKind::kSlowPush, 1, 0};
   const Model model = runs.model(job.plant);
   const Trace truth = std::move(simulated(runs, {&job, 1}, model).front());

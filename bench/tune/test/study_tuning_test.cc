@@ -154,7 +154,7 @@ TEST(StudyTuning, RefusesWhatCannotBe) {
 }
 
 TEST(TrainingRuns, FindLessWithHigherThresholds) {
-  const study::StudyRuns& runs = study::touched_runs("wallmobot3");
+  const study::StudyRuns& runs = study::touched_runs();
   const TrainingRuns training(runs, study::condition(runs, "light"), 2, 1, 2);
   const auto seen = training.seen_by("mo1");
   ASSERT_FALSE(seen.empty());
