@@ -2,7 +2,6 @@
 #include "bench/program/program.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -15,7 +14,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mjcf/trace/atomic_file.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/text.h"
 
@@ -26,20 +24,6 @@
 namespace tauext {
 
 namespace {
-
-// a program that is ended leaves no file behind that has a name, and ends as it would have
-void remove_unfinished_files_on_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
-    action.sa_handler = [](int which) {
-      remove_unfinished_files();
-      ::signal(which, SIG_DFL);
-      ::raise(which);
-    };
-    ::sigaction(signal, &action, nullptr);
-  }
-}
 
 // what CLI11 2.5 and later make of a text: paragraphs
 template <class Formatter>
@@ -102,7 +86,6 @@ void keep_freed_memory() {
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  remove_unfinished_files_on_signals();
   set_help(app);
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), TAUEXT_VERSION));
   try {

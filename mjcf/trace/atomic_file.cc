@@ -3,11 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -17,68 +14,22 @@
 #include <utility>
 
 #include "mjcf/trace/file_claims.h"
-#include "mjcf/trace/text.h"
 
 namespace tauext {
 namespace fs = std::filesystem;
 namespace {
 
-// names that a signal handler removes
-std::array<std::atomic<const char*>, 64> unfinished{};
-
-void remember(const char* name) {
-  for (auto& slot : unfinished) {
-    const char* free = nullptr;
-    if (slot.compare_exchange_strong(free, name)) return;
-  }
-}
-
-void forget(const char* name) {
-  for (auto& slot : unfinished) {
-    const char* mine = name;
-    if (slot.compare_exchange_strong(mine, nullptr)) return;
-  }
-}
-
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// a name may have 255 bytes
-std::string begin_of_temporary(const fs::path& path) {
-  return "." + path.filename().string().substr(0, 150) + ".";
-}
-
-// .out.csv.1234-9f0c31d2a5b6e877.part beside out.csv: of process 1234
+// .out.csv.9f0c31d2a5b6e877.part beside out.csv; a name may have 255 bytes
 std::string temporary_name(const fs::path& path) {
   std::random_device random;
-  return (folder_of(path) / fmt::format("{}{}-{:08x}{:08x}.part", begin_of_temporary(path),
-                                        ::getpid(), random(), random()))
+  return (folder_of(path) / fmt::format(".{}.{:08x}{:08x}.part",
+                                        path.filename().string().substr(0, 150), random(),
+                                        random()))
       .string();
-}
-
-// the process whose temporary that is; 0 if it is none of this path's
-pid_t owner_of(const std::string& name, const std::string& begin) {
-  constexpr std::string_view kEnd = "-0123456789abcdef.part";
-  if (!name.starts_with(begin) || name.size() < begin.size() + kEnd.size()) return 0;
-  const std::size_t end = name.size() - kEnd.size();
-  const bool fits = name[end] == '-' && name.ends_with(".part") &&
-                    name.find_first_not_of("0123456789abcdef", end + 1) == end + 17;
-  return fits ? number_in<pid_t>(name.substr(begin.size(), end - begin.size())).value_or(0) : 0;
-}
-
-// what processes that were killed have left beside a path
-void sweep(const fs::path& path) {
-  const std::string begin = begin_of_temporary(path);
-  std::error_code error;
-  for (fs::directory_iterator e(folder_of(path), error), end; !error && e != end;
-       e.increment(error)) {
-    const pid_t process = owner_of(e->path().filename().string(), begin);
-    struct stat file {};
-    const bool ours = process > 0 && ::lstat(e->path().c_str(), &file) == 0 &&
-                      S_ISREG(file.st_mode) && file.st_uid == ::geteuid();
-    if (ours && ::kill(process, 0) != 0 && errno == ESRCH) ::unlink(e->path().c_str());
-  }
 }
 
 // the kernel's rule for sticky folders, /proc/sys/fs/protected_symlinks
@@ -94,13 +45,7 @@ bool may_follow(const fs::path& link) {
 
 }  // namespace
 
-void remove_unfinished_files() noexcept {
-  for (const auto& slot : unfinished) {
-    if (const char* const name = slot.load()) ::unlink(name);
-  }
-}
-
-AtomicFile::AtomicFile(std::string path, Until until) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   if (path_ == "-") {
     file_ = stdout;
     in_place_ = true;
@@ -119,26 +64,17 @@ AtomicFile::AtomicFile(std::string path, Until until) : path_(std::move(path)) {
   if (exists) claims::add_output(replaced_, path_);
   replaces_ = exists;
   try {
-    sweep(path_);
-    open_beside(until);
+    open_beside();
   } catch (...) {
-    leave_nothing();
+    if (exists) claims::drop_output(replaced_);
     throw;
   }
 }
 
 AtomicFile::~AtomicFile() {
-  leave_nothing();
-}
-
-void AtomicFile::leave_nothing() {
-  if (std::exchange(replaces_, false)) claims::drop_output(replaced_);
+  if (replaces_) claims::drop_output(replaced_);
   if (file_ != nullptr && file_ != stdout) std::fclose(file_);
-  file_ = nullptr;
-  if (temporary_.empty()) return;
-  ::unlink(temporary_.c_str());
-  forget(temporary_.c_str());
-  temporary_.clear();
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::follow_links() {
@@ -155,22 +91,18 @@ void AtomicFile::follow_links() {
   }
 }
 
-void AtomicFile::open_beside(Until until) {
+void AtomicFile::open_beside() {
   constexpr mode_t kMode = 0666;  // less the umask
-  int fd = -1;
-  if (until == Until::kNowhere) {
-    fd = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
-  }
+  int fd = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
   if (fd < 0) {
-    const std::string name = temporary_name(path_);
-    fd = ::open(name.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, kMode);
-    if (fd < 0) fail("cannot open for writing");
-    temporary_ = name;
-    remember(temporary_.c_str());
+    temporary_ = temporary_name(path_);
+    fd = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, kMode);
   }
+  if (fd < 0) fail("cannot open for writing");
   file_ = ::fdopen(fd, "w");
   if (file_ != nullptr) return;
   ::close(fd);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
   fail("cannot open for writing");
 }
 
@@ -215,12 +147,10 @@ void AtomicFile::put_in_place() {
       fail("cannot name the new file");
     }
     temporary_ = name;
-    remember(temporary_.c_str());
   }
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail("cannot rename the new file onto it");
   }
-  forget(temporary_.c_str());
   temporary_.clear();
   if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
       folder >= 0) {

@@ -11,22 +11,17 @@
 
 namespace tauext {
 
-/// A file that takes its path's place by commit(); without commit(), whatever ends the program,
-/// nothing is left. It keeps mode and owner of the file that it replaces, as far as the user may.
-/// The path "-" is standard output; devices and pipes are written in place. A link stays a link,
-/// and what it points to is replaced, unless somebody else's link lies in a folder that everybody
-/// may write.
+/// A file that takes its path's place by commit(). Until then it is in no folder (O_TMPFILE), so
+/// that whatever ends the program leaves nothing; where the file system cannot do that, a program
+/// that is killed leaves a hidden .part beside the path. It keeps mode and owner of what it
+/// replaces, as far as the user may. The path "-" is standard output; devices and pipes are written
+/// in place. A link stays a link, and what it points to is replaced, unless somebody else's link
+/// lies in a folder that everybody may write.
 class AtomicFile {
  public:
-  /// Where the bytes are until commit().
-  enum class Until : bool {
-    kNowhere,  ///< in no folder (O_TMPFILE), where the file system can do that; else kNamed
-    kNamed,    ///< beside the path, under a name that nobody can guess
-  };
-
   /// @throws std::runtime_error naming the path: the system's reason, or that this program reads
   /// that very file (input_file.h)
-  explicit AtomicFile(std::string path, Until until = Until::kNowhere);
+  explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -37,9 +32,8 @@ class AtomicFile {
   void commit();
 
  private:
-  void leave_nothing();
   void follow_links();
-  void open_beside(Until until);
+  void open_beside();
   void keep_owner();
   void put_in_place();
   [[noreturn]] void fail(const char* what) const;
@@ -50,8 +44,5 @@ class AtomicFile {
   bool replaces_ = false;  // a file that is there
   struct stat replaced_ {};
 };
-
-/// Removes what AtomicFiles have under a name; safe in a signal handler.
-void remove_unfinished_files() noexcept;
 
 }  // namespace tauext

@@ -2,12 +2,8 @@
 #include "bench/program/program.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
-#include <filesystem>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -15,12 +11,9 @@
 #include <vector>
 
 #include "bench/program/realtime.h"
-#include "mjcf/trace/atomic_file.h"
 
 namespace tauext::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 // what a program with a flag --n makes of these arguments, and what it says on standard error
 std::pair<int, std::string> outcome(std::vector<std::string> arguments,
@@ -53,30 +46,6 @@ TEST(Program, ANumberThatDoesNotFitIsNoWholeNumber) {
   for (const char* text : {"18446744073709551616", "-1", "1.5", "", "1x"}) {
     EXPECT_NE(whole_number(text), "") << text;
   }
-}
-
-// a child that is ended in the middle of a file with a name
-TEST(Program, EndedByASignalItLeavesNoFileAndEndsAsItWouldHave) {
-  const fs::path folder =
-      fs::temp_directory_path() / ("tauext_program_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-      outcome({}, [&]() -> int {
-        AtomicFile file((folder / "out").string(), AtomicFile::Until::kNamed);
-        file.write("half");
-        ::raise(signal);
-        return kGood;
-      });
-      ::_exit(0);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << signal;
-    EXPECT_TRUE(fs::is_empty(folder)) << signal;
-  }
-  fs::remove_all(folder);
 }
 
 TEST(Program, APriorityIsOneToNinetyNine) {
