@@ -93,6 +93,12 @@ std::string number(double x) {
   return fmt::format("{:.4g}", x);
 }
 
+// to a tenth of its standard error
+std::string number(double x, double error) {
+  const double digits = std::ceil(std::log10(std::abs(x / error))) + 1;
+  return fmt::format("{:.{}g}", x, digits > 4 ? static_cast<int>(std::min(digits, 9.)) : 4);
+}
+
 // a sentence for each
 std::string missing(const std::vector<Suspect>& all, const std::string& where) {
   std::string out;
@@ -136,7 +142,7 @@ std::string parameter_table(const std::vector<CalibratedJoint>& joints, TableFor
     const auto add = [&](const std::string& term, const char* unit, double value, double error,
                          const std::string& excitation, const std::string& own) {
       table.add({format == TableFormat::kText ? std::exchange(name, "") : name, term, unit,
-                 number(value), fmt::format("{:.2g}", error), excitation, own});
+                 number(value, error), fmt::format("{:.2g}", error), excitation, own});
     };
     if (j.gain != 0)
       add(j.of_currents ? "gain" : "torque_gain", j.of_currents ? "N m/A" : "1",
@@ -346,6 +352,19 @@ struct Recordings {
   bool gravity_added = false;  // to the torques of one
 };
 
+// without those that repeat the one before though a joint moves: sensors are slower than the log
+Trace without_repeats(const Trace& t) {
+  constexpr double kMoves = 1e-3;  // [rad/s]
+  std::vector<int> kept;
+  for (int k = 0; k < t.size(); ++k) {
+    const bool repeats = k > 0 && t.q.col(k) == t.q.col(k - 1) && t.qd.col(k) == t.qd.col(k - 1) &&
+                         t.tau.col(k) == t.tau.col(k - 1) &&
+                         t.qd.col(k).cwiseAbs().maxCoeff() > kMoves;
+    if (!repeats) kept.push_back(k);
+  }
+  return static_cast<int>(kept.size()) == t.size() ? t : select_samples(t, kept);
+}
+
 Recordings read_logs(const Flags& f, const Arm& arm, const std::vector<std::string>& paths) {
   const auto contacts = contacts_of(f.contacts, all_logs(f));
   Recordings all;
@@ -354,6 +373,14 @@ Recordings read_logs(const Flags& f, const Arm& arm, const std::vector<std::stri
         read_any_log(path, {f.channel, f.columns, arm.tree.joint_names(), true, contacts});
     log.require_consistent(path);
     all.usable = all.usable && log.usable();
+    if (log.velocity_delay > 0) {
+      say(
+          fmt::format("{}: its qd is made of q, some {:.0f} ms late, which makes rotors too large: "
+                      "record qd, too",
+                      path, 1000 * log.velocity_delay));
+      all.usable = false;
+    }
+    log.trace = without_repeats(log.trace);
     all.gravity_added = all.gravity_added || log.trace.tau_without_gravity;
     if (log.trace.dof() != arm.tree.dof())
       throw std::invalid_argument(fmt::format("{}: the log has {} joints, and {} has {}", path,
@@ -407,6 +434,29 @@ bool say_doubts(const std::vector<CalibratedJoint>& joints) {
   return sure;
 }
 
+// whether tau held, or was read at instants, as it is taken for: the other reading leaves no less
+// than 1 / 1.5 of what is left
+bool is_read_rightly(const ArmTree& arm, std::vector<Trace> logs, const CalibrateOptions& o,
+                     const std::vector<CalibratedJoint>& as_it_is) {
+  constexpr double kMuch = 1.5 * 1.5;                                 // [1] of mean squares
+  const auto left = [](const std::vector<CalibratedJoint>& joints) {  // [1] of a torque's, mean
+    double sum = 0;
+    for (const CalibratedJoint& j : joints)
+      if (j.torque > 0) sum += std::pow(j.after / j.torque, 2);
+    return sum / static_cast<double>(joints.size());
+  };
+  for (Trace& log : logs) log.torque_at_instants = !log.torque_at_instants;
+  const double other = left(calibrate_arm(arm, logs, o)), own = left(as_it_is);
+  if (!(kMuch * other < own)) return true;
+  const bool instant = logs.front().torque_at_instants;
+  say(fmt::format(
+      "tau seems to be {}: so read, {:.2g} of it is left over, and {:.2g} as it is. In a map "
+      "(--columns), [{}] instead of [{}] says so",
+      instant ? "read at each t" : "held from each t", std::sqrt(other), std::sqrt(own),
+      instant ? "tau_instant" : "tau", instant ? "tau" : "tau_instant"));
+  return false;
+}
+
 int calibrate(const Flags& f, const Arm& robot_arm) {
   const ArmTree& arm = robot_arm.tree;
   Recordings all = read_logs(f, robot_arm, f.logs);
@@ -423,6 +473,8 @@ int calibrate(const Flags& f, const Arm& robot_arm) {
   o.scale = f.apply;
   NewRobotFile robot{f.robot, f.lock, {}, nullptr, f.logs};
   robot.joints = naming(f.logs, [&] { return calibrate_arm(arm, logs, o); });
+  if (!currents && !all.gravity_added)
+    usable = naming(f.logs, [&] { return is_read_rightly(arm, logs, o, robot.joints); }) && usable;
   judge_by_file(robot, logs, f.windows);
   if (!logs.front().tau_is_current)  // what was scaled had a gain before
     for (int i = 0; i < arm.dof(); ++i) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -66,8 +67,7 @@ class UnitDoubt {
   void take(const Sample& s) {
     least_ = least_.cwiseMin(s.q);
     most_ = most_.cwiseMax(s.q);
-    if (samples_++ == 0) from_ = s.t;
-    to_ = s.t;
+    ++samples_;
     if (longest_ > 0) return take_step(s);
     first_.push_back(s);
     if (first_.size() == kFirst) settle();
@@ -94,8 +94,9 @@ class UnitDoubt {
       if (!is_noise(j)) continue;
       return fmt::format(
           "qd{} is rather noise than motion, {:.2g} of {:.2g} rad/s (or m/s): if it is the "
-          "difference of a coarse q, a recording without qd has it made of q, filtered "
-          "(`velocity_filter` in a map, --columns)",
+          "difference of a coarse q, a map (--columns) with [t], [q] and [tau] and without [qd] "
+          "has "
+          "it made of q, filtered (`velocity_filter`)",
           j + 1, std::sqrt(joints_[j].noise / joints_[j].steps),
           std::sqrt(joints_[j].speed / joints_[j].steps));
     }
@@ -141,9 +142,8 @@ class UnitDoubt {
                       remedy));
       break;
     }
-    if (samples_ > 2 && to_ - from_ > kLongestStep * static_cast<double>(samples_))
-      say(fmt::format("{}: the samples are {:.3g} apart on average: {}", path,
-                      (to_ - from_) / static_cast<double>(samples_ - 1), remedy));
+    if (samples_ > 2 && longest_ > kGap * kLongestStep)
+      say(fmt::format("{}: the samples are {:.3g} apart: {}", path, longest_ / kGap, remedy));
     if (contradicts())
       say(path + ": q and qd contradict each other, so that no estimate from them means anything");
   }
@@ -160,6 +160,7 @@ class UnitDoubt {
     // [(rad/s)^2] squares of qd, and of its noise by second differences, in windows that it moves
     double speed = 0, noise = 0, steps = 0;
     double own_speed = 0, own_noise = 0, own_steps = 0;  // of the window
+    double way = 0, least = 0, most = 0;                 // [rad] q since the begin, without gaps
 
     double alike() const { return std::abs(xy) / std::sqrt(xx * yy); }
     // [s] of qd behind q, where y = x + late a
@@ -188,25 +189,26 @@ class UnitDoubt {
     constexpr double kMoved = 0.1;    // [rad], more than a joint at rest trembles
     constexpr double kNudged = 0.02;  // [rad], more than it creeps in steps of its encoder
     constexpr double kSame = 0.99, kMostSlip = 0.05;  // [1] of correlation, of the speed
-    constexpr double kFewest = 5 * 0.026;  // [s], as longest_: slower samples miss what is between
     const Joint& sum = joints_[j];
-    const auto at = static_cast<Eigen::Index>(j);
-    const double range = most_[at] - least_[at];
+    const double range = sum.most - sum.least;
     if (stands(sum)) return true;
     if (rests(sum)) return range > kMoved;
     if (std::max(range, sum.path) < kNudged) return false;
     if (range > kMoved && (sum.alike() < kForeign || says_of(j) != j)) return true;
     // q fixes the speed exactly: a slope other than 1 is another rate or unit
-    if (longest_ < kFewest && range > kMoved && sum.alike() > kSame &&
+    if (longest_ < kCoarse && range > kMoved && sum.alike() > kSame &&
         std::abs(sum.xy / sum.yy - 1) > kMostSlip)
       return true;
     return sum.alike() > 0.9 && (sum.xy > 2 * sum.xx || sum.xy < 0.5 * sum.xx);
   }
 
   bool is_noise(std::size_t j) const {
-    constexpr double kMostNoise = 0.4;  // [1]
+    constexpr double kMostNoise = 0.4, kLittle = 0.05;  // [1], [rad/s]
+    constexpr double kFewestSteps = 100;
     const Joint& sum = joints_[j];
-    return sum.steps > kFirst / 10 && sum.noise > kMostNoise * kMostNoise * sum.speed;
+    return longest_ < kCoarse && sum.steps > kFewestSteps &&
+           sum.noise > kMostNoise * kMostNoise * sum.speed &&
+           sum.noise > kLittle * kLittle * sum.steps;
   }
 
   // whether qd is that of another time than q, beyond chance and beyond a filter's delay
@@ -227,7 +229,7 @@ class UnitDoubt {
     for (std::size_t k = 1; k < first_.size(); ++k) steps.push_back(first_[k].t - first_[k - 1].t);
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
-    longest_ = 5 * *middle;
+    longest_ = kGap * *middle;
     before_last_ = last_ = first_.front();
     for (std::size_t j = 0; j < joints_.size(); ++j)
       joints_[j].from = last_.qd[static_cast<Eigen::Index>(j)];
@@ -239,13 +241,17 @@ class UnitDoubt {
     const double h = s.t - last_.t;
     for (std::size_t j = 0; j < joints_.size() && h <= longest_; ++j) {
       const auto at = static_cast<Eigen::Index>(j);
-      const double x = h * (s.qd[at] + last_.qd[at]) / 2, y = s.q[at] - last_.q[at];
-      joints_[j].x += x, joints_[j].y += y;
-      joints_[j].path += std::abs(x);
+      const double x = h * (s.qd[at] + last_.qd[at]) / 2;
+      double y = s.q[at] - last_.q[at];
+      if (std::abs(y) > kHalfTurn) y = std::remainder(y, 2 * std::numbers::pi);  // wrapped
+      Joint& sum = joints_[j];
+      sum.x += x, sum.y += y, sum.way += y;
+      sum.least = std::min(sum.least, sum.way), sum.most = std::max(sum.most, sum.way);
+      sum.path += std::abs(x);
       if (!(last_.t - before_last_.t <= longest_)) continue;
-      joints_[j].own_noise += std::pow(s.qd[at] - 2 * last_.qd[at] + before_last_.qd[at], 2) / 6;
-      joints_[j].own_speed += last_.qd[at] * last_.qd[at];
-      ++joints_[j].own_steps;
+      sum.own_noise += std::pow(s.qd[at] - 2 * last_.qd[at] + before_last_.qd[at], 2) / 6;
+      sum.own_speed += last_.qd[at] * last_.qd[at];
+      ++sum.own_steps;
     }
     before_last_ = std::exchange(last_, s);
     const Sample& before = before_last_;
@@ -270,8 +276,11 @@ class UnitDoubt {
   }
 
   static constexpr std::size_t kFirst = 1000;
-  static constexpr double kWindow = 0.1;   // [s]
-  static constexpr double kCreeps = 2e-3;  // [rad] in it
+  static constexpr double kGap = 5;                // [1] usual steps, from which on one is a gap
+  static constexpr double kCoarse = kGap * 0.026;  // [s] slower samples miss what is between
+  static constexpr double kWindow = 0.1;           // [s]
+  static constexpr double kCreeps = 2e-3;          // [rad] in it
+  static constexpr double kHalfTurn = 3;   // [rad] more than which no joint moves in a sample
   static constexpr double kForeign = 0.5;  // [1] correlation of what is another joint's
 
   VectorXd least_, most_;
@@ -282,9 +291,8 @@ class UnitDoubt {
   std::vector<Sample> first_;  // until they are kFirst, or all
   Sample last_, before_last_;
   std::int64_t samples_ = 0;
-  double longest_ = 0;        // [s] over a gap qd says nothing; 0 until settle()
-  double from_ = 0, to_ = 0;  // [s]
-  double window_ = -kNever;   // [s] where it began
+  double longest_ = 0;       // [s] over a gap qd says nothing; 0 until settle()
+  double window_ = -kNever;  // [s] where it began
 };
 
 // whether a joint's q, qd or tau is new in every kth sample only, and another in each; or whether
@@ -349,9 +357,11 @@ class Repeats {
   struct Channel {
     double last = 0, least_change = std::numeric_limits<double>::infinity();  // not 0
     int age = 0;                                                              // [samples] of it
-    std::array<int, kMostAge + 1> ages{};      // that it reached, how often
-    double from = 0, least_q = 0, most_q = 0;  // [s], [rad] since it is what it is
-    bool changes = false, stuck = false;
+    std::array<int, kMostAge + 1> ages{};                      // that it reached, how often
+    double from = 0, least_q = 0, most_q = 0;                  // [s], [rad] since it is what it is
+    bool changes = false, stuck = false, by_one_step = false;  // by which it came to what it is
+    bool rounded = false;   // so that it stays the same for long, and then goes on by one step
+    bool went_on = false;   // after it was stuck
     double stuck_from = 0;  // [s]
 
     void take(double now) {
@@ -363,6 +373,7 @@ class Repeats {
       // an encoder's single step comes in every kth sample at a constant speed, too
       if (age > 0 && change > 1.5 * least_change)
         ++ages[static_cast<std::size_t>(std::min(age, kMostAge))];
+      by_one_step = changes && change < 1.5 * least_change;
       if (age > 0) least_change = std::min(least_change, change);
       changes = changes || age > 0;
       last = now, age = 1;
@@ -371,9 +382,12 @@ class Repeats {
     // whether it is the same for long, in which its joint moves far
     void look(double t, double q) {
       constexpr double kLong = 0.5, kFar = 0.1;  // [s], [rad]
-      if (age == 1) from = t, least_q = most_q = q;
+      if (age == 1) {
+        if (stuck && !went_on) went_on = true, rounded = by_one_step, stuck = !rounded;
+        from = t, least_q = most_q = q;
+      }
       least_q = std::min(least_q, q), most_q = std::max(most_q, q);
-      if (stuck || t - from < kLong || most_q - least_q < kFar) return;
+      if (stuck || rounded || t - from < kLong || most_q - least_q < kFar) return;
       stuck = true, stuck_from = from;
     }
 
@@ -563,7 +577,8 @@ RecordedLog read_any_log(const std::string& path, const LogOptions& o) {
   LogReader reader(path, o);
   Trace trace = trace_of(reader);
   reader.report();
-  return {std::move(trace), reader.contradicts(), !reader.usable()};
+  return {std::move(trace), reader.contradicts(), !reader.usable(),
+          reader.contents().velocity_delay};
 }
 
 }  // namespace tauext

@@ -78,6 +78,7 @@ struct RecordedLog {
   /// (bench/replay/robot_log.h).
   bool doubtful = false;
   bool usable() const { return !doubtful; }  ///< whether it is what one means
+  double velocity_delay = 0;                 ///< [s] of a qd that was made of q
   /// Asked by programs that write down what they learn from it.
   /// @throws std::invalid_argument if q and qd contradict each other
   void require_consistent(const std::string& path) const;

@@ -77,7 +77,10 @@ std::pair<Trace, Output> joined(const std::vector<LogRun>& logs) {
 }  // namespace
 
 void add_floor_metrics(const std::vector<LogRun>& runs, Score& score) {
-  if (runs.empty()) return;
+  const bool unknown = std::any_of(runs.begin(), runs.end(), [](const LogRun& r) {
+    return r.trace->force.cols() > 0 && r.trace->contact.empty();
+  });
+  if (runs.empty() || unknown) return;
   const Eigen::Index n = runs.front().output->tau_ext.rows();
   VectorXd squares = VectorXd::Zero(n), drift = VectorXd::Zero(n);
   std::size_t count = 0;

@@ -47,6 +47,7 @@ struct LogRun {
 };
 
 /// What is left while nothing touches, by the labels of the logs: all the time in a log without.
+/// Nothing where a log has forces and no labels, which would say when something touches.
 void add_floor_metrics(const std::vector<LogRun>& runs, Score& score);
 
 /// How the estimates compare with the vendor's own, joint by joint, where all of the logs have

@@ -156,6 +156,12 @@ std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t mos
   return some;
 }
 
+bool moves(const std::vector<const ArmWindow*>& windows) {
+  constexpr double kMoves = 0.02;  // [rad/s]
+  return std::any_of(windows.begin(), windows.end(),
+                     [](const ArmWindow* w) { return w->speed.cwiseAbs().maxCoeff() > kMoves; });
+}
+
 WindowFit fit(const std::vector<const ArmWindow*>& windows, int joint, const VectorXd& y,
               const MatrixXd& any, const MatrixXd& positive) {
   const Index bounded = positive.cols() + 2, n = any.cols() + bounded;

@@ -60,6 +60,9 @@ class WindowMaker {
   std::size_t every_ = 1, count_ = 0;
 };
 
+/// Whether a joint moves in one of them, more than an encoder flickers by.
+bool moves(const std::vector<const ArmWindow*>& windows);
+
 /// At most that many of the windows, from all of the recording.
 std::vector<const ArmWindow*> thinned(const ArmWindows& windows, std::size_t most);
 

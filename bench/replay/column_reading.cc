@@ -92,7 +92,7 @@ class Search {
   static double size(const VectorXd& share) { return (share.array() + kKnown).log().sum(); }
 
   // all that differ from it in one thing, with zeros in so many parts of a turn
-  std::vector<ColumnReading> next(const ColumnReading& from, int parts) const {
+  std::vector<ColumnReading> next(const ColumnReading& from, int parts, bool exchanges) const {
     std::vector<ColumnReading> all;
     const auto with = [&](auto&& change) {
       all.push_back(from);
@@ -108,7 +108,7 @@ class Search {
         });
     }
     if (!from.degrees) with([](ColumnReading& r) { r.degrees = true; });
-    for (int a = 0; a < n_; ++a) {
+    for (int a = 0; a < n_ && exchanges; ++a) {
       for (int b = a + 1; b < n_; ++b) {
         const auto exchange = [a, b](std::vector<int>& order, VectorXd& sign) {
           std::swap(order[static_cast<std::size_t>(a)], order[static_cast<std::size_t>(b)]);
@@ -125,12 +125,13 @@ class Search {
   }
 
   // step by step, each the best of its kind
-  Found best(const ColumnReading& own, const VectorXd& unexplained_by_own, int parts) const {
+  Found best(const ColumnReading& own, const VectorXd& unexplained_by_own, int parts,
+             bool exchanges = true) const {
     Found best{own, unexplained_by_own};
     for (int step = 0; step < n_ && (best.unexplained.array() > kFits).any(); ++step) {
       double least = size(best.unexplained) - kWorthAStep;
       Found next_one;
-      for (ColumnReading& r : next(best.reading, parts)) {
+      for (ColumnReading& r : next(best.reading, parts, exchanges)) {
         VectorXd u = unexplained(r);
         if (!(size(u) < least)) continue;
         least = size(u) - kAlmostEqual;
@@ -139,10 +140,24 @@ class Search {
       if (next_one.unexplained.size() == 0) break;
       best = std::move(next_one);
     }
+    for (int j = 0; j < n_; ++j)
+      if (best.reading.zero[j] != 0) refine_zero(best, j, std::numbers::pi / parts);
     return best;
   }
 
  private:
+  // one between the parts of a turn that were tried, by steps of that [rad] and less
+  void refine_zero(Found& best, int j, double step) const {
+    for (; step > 1e-3; step /= 2) {
+      for (const double by : {-step, step}) {
+        ColumnReading r = best.reading;
+        r.zero[j] += by;
+        VectorXd u = unexplained(r);
+        if (size(u) < size(best.unexplained) - kAlmostEqual) best = {std::move(r), std::move(u)};
+      }
+    }
+  }
+
   static double power(const VectorXd& y) { return y.squaredNorm() / static_cast<double>(y.size()); }
   double little_power(int j) const { return std::pow(kLittle * arm_.usual_torque[j], 2); }
 
@@ -207,9 +222,9 @@ std::string words(const ColumnReading& r) {
     all.push_back(words_of_order(r.torque, "q, qd and tau", "`order`"));
   } else {
     if (!moved(r.torque).empty())
-      all.push_back(words_of_order(r.torque, "tau", "[tau]'s `columns`"));
+      all.push_back(words_of_order(r.torque, "tau", "[tau]'s `columns` by numbers"));
     if (!moved(r.motion).empty())
-      all.push_back(words_of_order(r.motion, "q and qd", "[q]'s and [qd]'s `columns`"));
+      all.push_back(words_of_order(r.motion, "q and qd", "[q]'s and [qd]'s `columns` by numbers"));
   }
   if (r.degrees)
     all.push_back("q and qd fit as degrees: set `unit` of [q] and [qd] in a map (--columns)");
@@ -260,14 +275,14 @@ FoundReading better_reading(const ArmTree& arm, const WindowMaker& recording) {
   const VectorXd before = search.unexplained(own);
   if ((before.array() < kFits).all()) return {};
   Found found = search.best(own, before, 4);
-  const bool exchanged = !moved(found.reading.motion).empty();
-  if ((found.unexplained.array() > kFits).any() || exchanged) {
-    Found finer = search.best(own, before, 12);
-    const bool simpler = exchanged && moved(finer.reading.motion).empty();
-    if (Search::size(finer.unexplained) <
-        Search::size(found.unexplained) + (simpler ? kAlmostEqual : -kTenTimes))
-      found = std::move(finer);
-  }
+  const auto instead = [&found](Found other, double worse) {
+    if (Search::size(other.unexplained) < Search::size(found.unexplained) + worse)
+      found = std::move(other);
+  };
+  const auto exchanged = [&found] { return !moved(found.reading.motion).empty(); };
+  if ((found.unexplained.array() > kFits).any())
+    instead(search.best(own, before, 24), exchanged() ? 0 : -kTenTimes);
+  if (exchanged()) instead(search.best(own, before, 24, false), kAlmostEqual);  // which is simpler
   const VectorXd& after = found.unexplained;
   const bool one_alone = ((after.array() + kKnown) < 0.1 * (before.array() + kKnown)).any(),
              all_fit = (after.array() < 0.02).all();

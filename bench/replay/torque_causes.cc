@@ -2,6 +2,7 @@
 #include "bench/replay/torque_causes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/replay/column_reading.h"
 #include "mjcf/mujoco/layout.h"
 
 namespace tauext {
@@ -20,6 +22,7 @@ constexpr double kMinFactor = 1.25;       // [1] nearer to 1 a file's masses may
 constexpr double kAlmostAll = 0.1;    // [1] by which a multiple of gravity may differ from -1 or 1
 constexpr double kMostlyNoise = 0.6;  // [1] of the windows; fewer that are independent are no noise
 constexpr double kFarthest = 0.3;     // [m] of a load's center from the end effector
+constexpr double kMostOffset = 0.1;   // [1] of the largest usual torque, more than a sensor's
 constexpr double kLargestRotor = 3;   // [1] of the largest usual torque, at 10 rad/s^2
 
 using Eigen::Index;
@@ -32,13 +35,17 @@ struct Gain {
   double likelihood = 0;  // log
   double improvement =
       1;             // [1] by which the mean square gets smaller, in the joint where it does most
-  VectorXd numbers;  // that were fitted
+  VectorXd numbers;  // that were fitted; of another reading that improvement, joint by joint
 };
 
 class Causes {
  public:
-  Causes(const ArmTree& arm, const WindowMaker& recording)
-      : arm_(arm), recording_(recording), windows_(thinned(recording.windows(), kMostFitted)) {
+  // @param offsets whether any recording may have some
+  Causes(const ArmTree& arm, const WindowMaker& recording, bool offsets = true)
+      : arm_(arm),
+        recording_(recording),
+        offsets_(offsets),
+        windows_(thinned(recording.windows(), kMostFitted)) {
     for (int j = 0; j < arm.dof(); ++j) {
       Joint one;
       const VectorXd tau = each(windows_, [j](const ArmWindow& w) { return w.tau[j]; });
@@ -53,7 +60,6 @@ class Causes {
   }
 
   std::string words() const {
-    if (std::string why = large_rotor(); !why.empty()) return why;
     const Gain load = by_load();
     double best = load.likelihood + kSure;
     std::string words;
@@ -62,11 +68,17 @@ class Causes {
       best = g.likelihood;
       words = in_words();
     };
-    if (gravity_is_twice())
-      consider(by_gravity_twice(), [] {
+    const double again = gravity_again();
+    if (std::abs(again - 1) < kAlmostAll)
+      consider(by_gravity(1), [] {
         return "tau contains the torque of gravity twice: it is added to a torque that has it "
                "already. Use [tau] in the place of [tau_without_gravity] in a map (--columns), or "
                "do not add it where tau is recorded";
+      });
+    if (std::abs(again + 1) < kAlmostAll)
+      consider(by_gravity(-1), [] {
+        return "tau does not contain the torque of gravity. If the recording has it removed, use "
+               "[tau_without_gravity] in a map (--columns)";
       });
     double unit = 1;
     consider(by_unit(unit), [&] {
@@ -86,7 +98,8 @@ class Causes {
         });
       }
     }
-    return words;
+    if (words.empty() && load.likelihood < kSure) words = large_rotor();
+    return words.empty() ? large_offset() : words;
   }
 
  private:
@@ -117,34 +130,36 @@ class Causes {
   };
 
   WindowFit left(const Joint& of, int j, const VectorXd& y, const MatrixXd& more = {}) const {
-    MatrixXd any(y.size(), 1 + more.cols());
+    MatrixXd any(y.size(), offsets_ + more.cols());
     if (more.cols() > 0) any.leftCols(more.cols()) = more;
-    any.rightCols(1).setOnes();
+    if (offsets_) any.rightCols(1).setOnes();
     return fit(windows_, j, y, any, of.rotor);
   }
 
-  // what a fit of joint j gains beside the model
-  void add(Gain& g, int j, const WindowFit& f) const {
+  // what a fit of joint j gains beside the model; [1] by which its mean square gets smaller
+  double add(Gain& g, int j, const WindowFit& f) const {
     const Joint& of = joints_[static_cast<std::size_t>(j)];
     const double ratio = (of.own.mean_square + of.negligible) / (f.mean_square + of.negligible);
     g.likelihood += independent(ratio < 1 ? of.own.residual : f.residual) / 2 * std::log(ratio);
     g.improvement = std::max(g.improvement, ratio);
+    return ratio;
   }
 
-  Gain by_gravity_twice() const {
+  // of all joints, which contain it so many times more
+  Gain by_gravity(double again) const {
     Gain g;
     for (int j = 0; j < arm_.dof(); ++j) {
       const Joint& of = joints_[static_cast<std::size_t>(j)];
-      add(g, j, left(of, j, of.rest - of.gravity));
+      add(g, j, left(of, j, of.rest - again * of.gravity));
     }
     return g;
   }
 
-  // whether all joints together have as much of it again, and no other share
-  bool gravity_is_twice() const {
+  // [1] how many times more all joints together contain it
+  double gravity_again() const {
     std::vector<MatrixXd> columns;
     for (const Joint& of : joints_) columns.emplace_back(of.gravity);
-    return std::abs(in_common(columns).numbers[0] - 1) < kAlmostAll;
+    return in_common(columns).numbers[0];
   }
 
   Gain by_gravity_of(int j) const {
@@ -175,6 +190,7 @@ class Causes {
   Gain by_factor(int j, double& s) const {
     Gain g;
     const Joint& of = joints_[static_cast<std::size_t>(j)];
+    if (!moves(windows_)) return g;
     MatrixXd any(of.rest.size(), 2);
     any << of.model, VectorXd::Ones(of.rest.size());
     WindowFit f = fit(windows_, j, of.rest, any);
@@ -199,7 +215,7 @@ class Causes {
       others.push_back(recording_.window(std::move(motion), tau));
     }
     const Windows windows = thinned(others, others.size() + 1);
-    Gain g;
+    Gain g{.numbers = VectorXd(arm_.dof())};
     for (int k = 0; k < arm_.dof(); ++k) {
       const VectorXd rest =
           each(windows, [k](const ArmWindow& w) { return w.tau[k] - w.model[k]; });
@@ -208,7 +224,7 @@ class Causes {
       if (f.mean_square > joints_[static_cast<std::size_t>(k)].negligible &&
           independent(f.residual) < kMostlyNoise * static_cast<double>(windows.size()))
         return {};
-      add(g, k, f);
+      g.numbers[k] = add(g, k, f);
     }
     return g;
   }
@@ -222,12 +238,14 @@ class Causes {
     });
   }
 
-  // two joints that move alike
+  // of two joints that move alike, and both fit better so: a load may make one of them do so
   Gain by_exchange(int a, int b) const {
-    return by_reading([this, a, b](MatrixXd& motion, ArmWindow::VectorN&) {
+    Gain g = by_reading([this, a, b](MatrixXd& motion, ArmWindow::VectorN&) {
       motion.row(1 + a).swap(motion.row(1 + b));
       motion.row(1 + arm_.dof() + a).swap(motion.row(1 + arm_.dof() + b));
     });
+    if (g.numbers.size() == 0 || std::min(g.numbers[a], g.numbers[b]) < kMinImprovement) return {};
+    return g;
   }
 
   // numbers that all joints have in common, each with its torques in these windows
@@ -241,9 +259,9 @@ class Causes {
         const Joint& of = joints_[static_cast<std::size_t>(j)];
         const MatrixXd& E = columns[static_cast<std::size_t>(j)];
         MatrixXd C(count, 4);
-        C << VectorXd::Ones(count), of.rotor,
-            each(windows_, [j](const ArmWindow& w) { return w.direction[j]; }),
-            each(windows_, [j](const ArmWindow& w) { return w.speed[j]; });
+        C << of.rotor, each(windows_, [j](const ArmWindow& w) { return w.direction[j]; }),
+            each(windows_, [j](const ArmWindow& w) { return w.speed[j]; }),
+            VectorXd::Constant(count, offsets_);
         const Eigen::ColPivHouseholderQR<MatrixXd> qr(C);
         const MatrixXd A = E - C * qr.solve(E);
         const VectorXd y = of.rest - C * qr.solve(of.rest);
@@ -329,15 +347,20 @@ class Causes {
     return heavier;
   }
 
+  // [N m] that accelerate a joint of this kind by 10 rad/s^2
+  double largest_torque(int j) const {
+    double largest = 0;
+    for (int k = 0; k < arm_.dof(); ++k)
+      if (arm_.slides(k) == arm_.slides(j)) largest = std::max(largest, arm_.usual_torque[k]);
+    return largest;
+  }
+
   // which is none, but a unit, where gravity does not show it
   std::string large_rotor() const {
     for (int j = 0; j < arm_.dof(); ++j) {
       const Joint& of = joints_[static_cast<std::size_t>(j)];
-      double largest = 0;  // [N m] that accelerate a joint of this kind by 10 rad/s^2
-      for (int k = 0; k < arm_.dof(); ++k)
-        if (arm_.slides(k) == arm_.slides(j)) largest = std::max(largest, arm_.usual_torque[k]);
       const double rotor = of.own.multiples[1];
-      if (!(10 * rotor > kLargestRotor * largest)) continue;
+      if (!(10 * rotor > kLargestRotor * largest_torque(j))) continue;
       const double without =
           fit(windows_, j, of.rest, MatrixXd::Ones(of.rest.size(), 1)).mean_square;
       if (without < kMinImprovement * (of.own.mean_square + of.negligible)) continue;
@@ -349,8 +372,29 @@ class Causes {
     return "";
   }
 
+  // more than sensors have, and no load makes
+  std::string large_offset() const {
+    const Causes without(arm_, recording_, false);
+    Gain g;
+    std::vector<int> joints;
+    std::vector<double> offsets;
+    for (int j = 0; j < arm_.dof(); ++j) {
+      const WindowFit& own = joints_[static_cast<std::size_t>(j)].own;
+      const double ratio = without.add(g, j, own), offset = own.multiples[0];
+      if (ratio < kMinImprovement || std::abs(offset) < kMostOffset * largest_torque(j)) continue;
+      joints.push_back(j + 1);
+      offsets.push_back(-offset);
+    }
+    if (joints.empty() || g.likelihood < without.by_load().likelihood + kSure) return "";
+    return fmt::format(
+        "tau of {} fits if {:.3g} N m (or N) are added to it: was it set to 0 where the recording "
+        "begins? `zero` of [tau] in a map (--columns) adds them",
+        listed(joints), fmt::join(offsets, ", "));
+  }
+
   const ArmTree& arm_;
   const WindowMaker& recording_;
+  bool offsets_;
   Windows windows_;
   std::vector<Joint> joints_;
 };

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What else than a load explains a recording's torques, where it is too little for torque_fit.h to
-/// see in slow poses: gravity that is there twice or that one joint lacks, a factor of all torques
-/// or of one joint's, all signs of one joint reversed, or a rotor larger than the arm.
+/// see in slow poses: gravity that is there twice, or that one joint or all lack, a factor of all
+/// torques or of one joint's, all signs of one joint reversed, two joints that move alike and are
+/// exchanged, a rotor larger than the arm, or an offset larger than a sensor's.
 ///
 /// Each is fitted to the mean torques of windows (arm_windows.h), beside what any recording may
-/// have: friction and rotors' inertia that the file lacks, and a sensor's offset.
+/// have: friction and rotors' inertia that the file lacks, and, but for the last, an offset.
 #pragma once
 
 #include <string>

@@ -25,6 +25,8 @@ constexpr double kMaxSpreadOfGains = 1.5;  // [1] of drives that are in one arm
 constexpr double kMinVariation = 1e-4;     // [1] of mean squares: less is one pose
 constexpr double kMinTorqueShare = 0.05;   // [1] of a joint's usual torque, which it has to carry
 constexpr double kMinVariedShare = 0.01;   // [1] of it, by which the motion makes it vary
+constexpr double kOutlier = 10;            // [1] of a usual torque
+constexpr double kMostlyUnknown = 0.7;     // [1] of mean squares
 constexpr double kMoving = 0.5;            // [1] of the time that a joint moves one way
 constexpr double kStiction = 1.2;          // [1] of its dry friction
 constexpr double kSame = 1.02;             // [1] of factors that one unit has, and no masses
@@ -40,6 +42,10 @@ using Eigen::VectorXd;
 
 double mean_square(const VectorXd& y) {
   return y.squaredNorm() / static_cast<double>(y.size());
+}
+
+double variation(const VectorXd& y) {
+  return mean_square(y.array() - y.mean());
 }
 
 }  // namespace
@@ -157,7 +163,7 @@ TorqueFit::Cause TorqueFit::by_gravity(const std::vector<SlowJoint>& joints) {
   if (*least > 1 && !far && !(spread < 1.2 && factors.size() > 2)) return {alone, false};  // a load
   return {fmt::format("in slow poses tau of {} is {:.3g} times the torque of the model: {}",
                       listed(scaled), fmt::join(factors, ", "),
-                      *most < 0 ? "its sign is reversed; set `sign = -1` in a map (--columns)"
+                      *most < 0 ? "its sign is reversed: `sign = -1` of [tau] in a map (--columns)"
                       : *least > 1.8 && *most < 2.2
                           ? "is gravity added to a torque that has it already, or is this another "
                             "unit? `gain = 0.5` of [tau] in a map (--columns) halves it"
@@ -276,6 +282,7 @@ std::string TorqueFit::by_copies() const {
 std::string TorqueFit::by_rest() const {
   std::vector<int> dead;
   const Windows windows = thinned(windows_.windows(), kMost);
+  if (!moves(windows)) return "";
   for (int j = 0; j < n_; ++j) {
     const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
                    model = each(windows, [j](const ArmWindow&w) { return w.model[j]; });
@@ -305,8 +312,32 @@ std::string TorqueFit::by_another_motion() const {
   if (joints.size() < 2) return "";
   return fmt::format(
       "tau of {} does not follow the motion: less what the motion takes, it varies more than it "
-      "does by itself. Are tau and q of one recording, and is it of this robot?",
+      "does by itself. Are tau and q of one recording, is it of this robot, and is tau in N m (a "
+      "current is [current] in a map, --columns)?",
       listed(joints));
+}
+
+// where nothing weighs, of torques of which most are friction or a rotor that the model
+// does not know, or else another unit
+std::string TorqueFit::by_nothing_known() const {
+  const Windows windows = thinned(windows_.windows(), kMost);
+  double all = 0, left = 0, modelled = 0, carried = 0;
+  for (int j = 0; j < n_; ++j) {
+    const double usual = std::pow(arm_.usual_torque[j], 2);
+    const VectorXd tau = each(windows, [j](const ArmWindow&w) { return w.tau[j]; }),
+                   rest = each(windows, [j](const ArmWindow&w) { return w.tau[j] - w.model[j]; });
+    const Eigen::ArrayXd most = VectorXd::Constant(tau.size(), kOutlier * std::sqrt(usual));
+    all += variation(tau.array().min(most).max(-most)) / usual;
+    const double noise =
+        fit(windows, j, rest, MatrixXd::Ones(rest.size(), 1), rotor_torque(windows, j)).mean_square;
+    left += std::max(variation(rest.array().min(most).max(-most)) - noise, 0.) / usual;
+    modelled += mean_square(each(windows, [j](const ArmWindow& w) { return w.model[j]; })) / usual;
+    carried += mean_square(each(windows, [j](const ArmWindow& w) { return w.gravity[j]; })) / usual;
+  }
+  if (!(left > kMostlyUnknown * all) || carried > kMinVariation * modelled) return "";
+  return "nothing weighs on these joints, and the model explains little of tau: is it in N "
+         "m, and not a current? Friction or rotors that the robot's file lacks may be the rest, "
+         "too";
 }
 
 bool TorqueFit::is_long_enough() const {
@@ -318,22 +349,25 @@ TorqueFit::Judgement TorqueFit::judge() const {
   if (std::string why = by_rest(); !why.empty()) return {why, true};
   if (std::string why = by_copies(); !why.empty()) return {why, true};
   if (std::string why = by_gravity_of_file(); !why.empty()) return {why, true};
+  const auto or_else = [](const std::string& why) {
+    return why + (why.ends_with('?') ? "" : ".") +
+           " Or else its masses are not those of the file, it carries a load, or something touches "
+           "it all the time";
+  };
   if (gravity_added_)
-    if (std::string why = by_added_gravity(); !why.empty())
-      return {why + ". Or it carries a load", false};
-  const std::string or_else =
-      ". Or else its masses are not those of the file, or it carries a load";
+    if (std::string why = by_added_gravity(); !why.empty()) return {or_else(why), false};
   const FoundReading reading = better_reading(arm_, windows_);
   if (reading.varied) return {reading.words, true};
   const std::vector<SlowJoint> joints = slow_joints();
   const Cause gravity = by_gravity(joints);
   if (gravity.varied) return {gravity.words, true};
   for (const std::string& why : {gravity.words, reading.words})
-    if (!why.empty()) return {why + or_else, false};
+    if (!why.empty()) return {or_else(why), false};
   if (std::string why = found_delay(arm_, windows_); !why.empty()) return {why, false};
   if (std::string why = by_another_arm(joints); !why.empty()) return {why, false};
   if (std::string why = by_another_motion(); !why.empty()) return {why, false};
-  if (std::string why = found_cause(arm_, windows_); !why.empty()) return {why + or_else, false};
+  if (std::string why = found_cause(arm_, windows_); !why.empty()) return {or_else(why), false};
+  if (std::string why = by_nothing_known(); !why.empty()) return {why, false};
   double power = 0, residual = 0;
   for (const SlowJoint& j : joints) power += j.power, residual += j.residual;
   if (!(residual > power)) return {};
@@ -360,10 +394,10 @@ bool fits(const TorqueFit& fit, const std::string& path) {
   if (!fit.is_long_enough())
     say(
         fmt::format("{}: too short to compare its torques with the robot's: {} windows of 0.1 s "
-                    "without a gap or a contact are needed",
+                    "without a gap or a contact are needed, so that nothing tells whether they fit",
                     path, kMinWindows));
   if (!j.why.empty()) say(fmt::format("{}: {}", path, j.why));
-  return j.why.empty();
+  return j.why.empty() && fit.is_long_enough();
 }
 
 bool torques_fit(const ArmTree& arm, const std::vector<Trace>& logs, bool gravity_added,

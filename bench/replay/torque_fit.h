@@ -79,6 +79,7 @@ class TorqueFit {
   std::string by_copies() const;
   std::string by_rest() const;
   std::string by_another_motion() const;
+  std::string by_nothing_known() const;
 
   ArmTree arm_;
   bool gravity_added_;

@@ -206,6 +206,10 @@ TEST(LogMetrics, FloorAndDriftAreOfWhatNobodyTouches) {
   log.output.tau_ext.array() += Eigen::ArrayXXd::Map(log.trace.t.data(), 1, 6000) / 60;  // 1 N m
   // the thirds of 5760 untouched samples begin 4080 samples apart
   EXPECT_NEAR(*log.score().get(Metric::kDrift), 0.68, 0.001);
+  log.trace.contact.clear();
+  EXPECT_TRUE(log.score().get(Metric::kFloor)) << "all of it";
+  log.trace.force = Eigen::Matrix3Xd::Zero(3, 6000);
+  EXPECT_FALSE(log.score().get(Metric::kFloor)) << "nobody says when a force acts";
 }
 
 TEST(LogMetrics, MarksAreCountedAgainstLabelsWithIntervals) {

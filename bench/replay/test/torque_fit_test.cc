@@ -260,6 +260,18 @@ TEST_F(TorqueFits, GravityThatIsThereTwiceIsADoubt) {
   expect(robot.words(log), "the torque of gravity twice");
 }
 
+// more than a sensor's, as one that was set to 0 in the first pose
+TEST_F(TorqueFits, ALargeOffsetIsADoubt) {
+  const Robot robot = arm6();
+  Trace log = robot.run("in_motion");
+  log.tau.colwise() -= log.tau.col(0).eval();
+  EXPECT_EQ(robot.contradiction(log), "");
+  expect(robot.words(log), "was it set to 0");
+  log = robot.run("in_motion");
+  log.tau.row(1).array() += 2;
+  EXPECT_EQ(robot.words(log), "") << "a sensor's";
+}
+
 TEST_F(TorqueFits, GravityThatOneJointLacksIsADoubt) {
   const Robot robot = arm6();
   const auto gravity = gravity_of(robot.arm);
@@ -307,8 +319,8 @@ TEST_F(TorqueFits, JointsThatMoveAlikeAndAreExchangedAreADoubt) {
   log.q.resize(2, 12000), log.qd = log.q, log.tau = log.q;
   log.torque_at_instants = true;
   for (int k = 0; k < 12000; ++k) {
-    const double t = 1e-3 * k, w = 1.3, q1 = 0.3 + 0.15 * std::sin(w * t), q2 = q1 + 0.3;
-    const double qd = 0.15 * w * std::cos(w * t), qdd = -0.15 * w * w * std::sin(w * t);
+    const double t = 1e-3 * k, w = 1.3, q1 = 0.3 + 0.4 * std::sin(w * t), q2 = q1 + 0.3;
+    const double qd = 0.4 * w * std::cos(w * t), qdd = -0.4 * w * w * std::sin(w * t);
     const double coupled = 2 * 0.4 * 0.15 * std::cos(q2), turned = 2 * 0.4 * 0.15 * std::sin(q2);
     const double far = 0.017 + 2 * 0.15 * 0.15;  // [kg m^2] the second link about its joint
     const double tau1 = (0.07 + 5 * 0.2 * 0.2 + 2 * 0.4 * 0.4 + far + 2 * coupled) * qdd +
@@ -337,6 +349,24 @@ TEST_F(TorqueFits, AUnitIsADoubtWhereNothingWeighs) {
   expect(Robot::words_of(floating, log), "all torques are 0.73");
 }
 
+// so that friction may be all of it, and a current, too
+TEST_F(TorqueFits, ATorqueOfWhichTheModelKnowsLittleIsADoubtWhereNothingWeighs) {
+  const Robot robot = arm6();
+  const auto gravity = gravity_of(robot.arm);
+  ArmTree floating = robot.arm;
+  floating.gravity.setZero();
+  Trace log = robot.run("in_motion");
+  for (int k = 0; k < log.size(); ++k) log.tau.col(k) -= gravity(log.q.col(k));
+  const auto with_friction = [&log](double torque) {
+    Trace other = log;
+    other.tau.array() += torque * (50 * log.qd.array()).tanh();
+    return other;
+  };
+  EXPECT_EQ(Robot::words_of(floating, with_friction(1)), "");
+  expect(Robot::words_of(floating, with_friction(100)), "explains little of tau");
+  EXPECT_EQ(robot.words(robot.run("in_motion")), "");
+}
+
 // whose rotor no gear makes
 TEST_F(TorqueFits, ARotorLargerThanTheArmIsNone) {
   const Robot robot = arm6();
@@ -355,6 +385,13 @@ TEST_F(TorqueFits, DegreesAndZerosBetweenAreNamed) {
   other = robot.run("free");
   other.q.row(1).array() -= std::numbers::pi / 3;
   expect(robot.contradiction(other), "it fits with 1.05 rad added");
+  for (const double zero : {0.7, -0.35}) {  // [rad] which is no part of a turn
+    other = robot.run("free");
+    other.q.row(2).array() -= zero;
+    const std::string why = robot.words(other), words = "it fits with ";
+    ASSERT_NE(why.find(words), std::string::npos) << why;
+    EXPECT_NEAR(std::stod(why.substr(why.find(words) + words.size())), zero, 5e-3) << why;
+  }
 }
 
 // a load at the end acts on all joints before
