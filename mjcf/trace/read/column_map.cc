@@ -8,12 +8,14 @@
 #include <cstdlib>
 #include <numbers>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/read/files/several_files.h"
+#include "mjcf/trace/read/joint_names.h"
 
 namespace tauext {
 namespace {
@@ -62,12 +64,21 @@ bool matches(const std::string& name, const std::regex& expression, std::smatch&
   }
 }
 
-// the number in the first group that has matched, by which joints are in order
-int joint_number(const std::smatch& match) {
+// what the first group has matched, by which joints are in order; without a group the name
+std::string joint_in(const std::smatch& match) {
   for (std::size_t i = 1; i < match.size(); ++i) {
-    if (match[i].matched) return std::atoi(match[i].str().c_str());
+    if (match[i].matched) return match[i].str();
   }
-  return 0;
+  return match[0].str();
+}
+
+// of a name that begins with it; else 0
+int number_of_joint(const std::string& joint) {
+  return std::atoi(joint.c_str());
+}
+
+bool is_number(std::string_view text) {
+  return text.find_first_not_of("0123456789") == text.npos;
 }
 
 bool of_joints(std::string_view quantity) {
@@ -109,26 +120,108 @@ void require_order(const std::vector<std::pair<int, int>>& numbered, std::string
 
 }  // namespace
 
-std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
-                                 const std::vector<std::string>& columns,
-                                 const std::string& path) const {
-  std::vector<int> found;
-  if (!w.expression.empty()) {
-    const std::regex expression(w.expression);
-    std::vector<std::pair<int, int>> numbered;  // by joint
-    for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
-      const std::string& name = columns[static_cast<std::size_t>(i)];
-      std::smatch match;
-      if (name.size() > kLongestName || !matches(name, expression, match, quantity, path)) continue;
-      numbered.emplace_back(joint_number(match), i);
+namespace detail {
+
+// which columns are those of the robot's joints by their names, and what there is to say of it
+class JointColumns {
+ public:
+  explicit JointColumns(const std::vector<std::string>& joints) : joints_(joints) {}
+
+  // where the joints are in a list of names, in the robot's order; empty: it has none of them
+  std::vector<std::size_t> places(const std::vector<std::string>& names, bool all_or_none,
+                                  std::string_view quantity, const std::string& path) {
+    const std::string whose = fmt::format("{}: the columns of [{}]", path, quantity);
+    const std::set<std::string> all(names.begin(), names.end());
+    const JointNames found = find_joint_names(all, joints_, whose);
+    if (!found.any() || (all_or_none && !found.all())) return {};
+    std::vector<std::string> missing;
+    std::vector<std::size_t> at;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (found.called[i].empty()) missing.push_back(joints_[i]);
+      at.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), found.called[i]) -
+                                            names.begin()));
     }
-    std::sort(numbered.begin(), numbered.end());
-    // a preset leaves the order to others, unless q has one by now
-    const bool in_any_order =
-        !order_.empty() || (w.of_preset && (leaves_order_open() || !of_joints(quantity)));
-    if (!in_any_order) require_order(numbered, quantity, w.expression, path);
-    for (const auto& [joint, column] : numbered) found.push_back(column);
+    if (!missing.empty()) fail_missing_joints(missing, joints_, all, whose);
+    return at;
   }
+
+  void leave_out(const std::string& column) { others_.push_back(column); }
+  void reorder(std::string_view quantity) { reordered_ += fmt::format(" [{}]", quantity); }
+  // one whose names are not the robot's, or numbers
+  void keep_order(std::string_view quantity) { kept_ += fmt::format(" [{}]", quantity); }
+  // @throws std::runtime_error where nobody knows the order of some, as it is not that of others
+  void require_one_order(const std::string& path) const {
+    if (reordered_.empty() || kept_.empty()) return;
+    throw std::runtime_error(fmt::format(
+        "{}: by the robot's names the joints are in another order than in the map's list of{}, and "
+        "nothing tells that of{}: list all by such names, or all by numbers, in the robot's order",
+        path, reordered_, kept_));
+  }
+  void take_as_they_are(std::string_view quantity) {
+    if (!joints_.empty()) nameless_ += fmt::format(" [{}]", quantity);
+  }
+
+  void note(std::vector<std::string>& notes) const {
+    if (!others_.empty())
+      notes.push_back(fmt::format("{} columns of other joints are left out: {}", others_.size(),
+                                  listed_names(others_)));
+    if (!reordered_.empty())
+      notes.push_back("joints are taken by the robot's names, and not in the map's order:" +
+                      reordered_);
+    if (!nameless_.empty())
+      notes.push_back(
+          fmt::format("no column has the name of a joint of the robot ({}), so joints are in the "
+                      "file's order:{}",
+                      listed_names(joints_), nameless_));
+  }
+
+ private:
+  const std::vector<std::string>& joints_;
+  std::vector<std::string> others_;          // columns
+  std::string reordered_, kept_, nameless_;  // quantities
+};
+
+}  // namespace detail
+
+std::vector<int> ColumnMap::find_matching(std::string_view quantity, const Wanted& w,
+                                          const std::vector<std::string>& columns,
+                                          const std::string& path,
+                                          detail::JointColumns& joints) const {
+  const std::regex expression(w.expression);
+  std::vector<std::pair<int, int>> numbered;  // by joint
+  std::vector<std::string> names;             // of joints
+  std::vector<int> found;
+  for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
+    const std::string& name = columns[static_cast<std::size_t>(i)];
+    std::smatch match;
+    if (name.size() > kLongestName || !matches(name, expression, match, quantity, path)) continue;
+    names.push_back(joint_in(match));
+    numbered.emplace_back(number_of_joint(names.back()), i);
+  }
+  if (of_joints(quantity) && order_.empty() &&
+      !std::all_of(names.begin(), names.end(), is_number)) {
+    for (const std::size_t at : joints.places(names, false, quantity, path))
+      found.push_back(std::exchange(numbered[at].second, -1));
+    for (const auto& [joint, column] : numbered)
+      if (!found.empty() && column >= 0)
+        joints.leave_out(columns[static_cast<std::size_t>(column)]);
+    if (!found.empty()) return found;
+    if (names.size() > 1) joints.take_as_they_are(quantity);
+  }
+  std::sort(numbered.begin(), numbered.end());
+  // a preset leaves the order to others, unless q has one by now
+  const bool in_any_order =
+      !order_.empty() || (w.of_preset && (leaves_order_open() || !of_joints(quantity)));
+  if (!in_any_order) require_order(numbered, quantity, w.expression, path);
+  for (const auto& [joint, column] : numbered) found.push_back(column);
+  return found;
+}
+
+std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
+                                 const std::vector<std::string>& columns, const std::string& path,
+                                 detail::JointColumns& joints) const {
+  std::vector<int> found;
+  if (!w.expression.empty()) found = find_matching(quantity, w, columns, path, joints);
   for (const std::string& name : w.names) {
     const auto at = std::find(columns.begin(), columns.end(), name);
     if (at == columns.end())
@@ -157,7 +250,8 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
 
 std::vector<int> ColumnMap::find_in_file(std::string_view quantity, const Wanted& w,
                                          const std::vector<std::string>& columns,
-                                         const std::string& path) const {
+                                         const std::string& path,
+                                         detail::JointColumns& joints) const {
   const std::string prefix = w.file.empty() ? "" : w.file + kOfFile;
   const std::vector<std::string> others = files();
   std::vector<std::string> names;
@@ -172,7 +266,8 @@ std::vector<int> ColumnMap::find_in_file(std::string_view quantity, const Wanted
     names.push_back(name.substr(prefix.size()));
     places.push_back(static_cast<int>(i));
   }
-  std::vector<int> found = find(quantity, w, names, w.file.empty() ? path : path + ", " + w.file);
+  std::vector<int> found =
+      find(quantity, w, names, w.file.empty() ? path : path + ", " + w.file, joints);
   for (int& c : found) c = places[static_cast<std::size_t>(c)];
   return found;
 }
@@ -191,13 +286,13 @@ bool ColumnMap::needs_first_file() const {
   });
 }
 
-void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
-                             const std::string& path) const {
-  if (order_.empty()) return;
+void ColumnMap::put_in_order(std::string_view quantity, const std::vector<int>& order,
+                             MappedQuantity& m, const std::string& path) const {
+  if (order.empty()) return;
   MappedQuantity ordered;
   ordered.has_gain = m.has_gain, ordered.held = m.held;
-  for (const int j : order_) {
-    if (std::count(order_.begin(), order_.end(), j) > 1)
+  for (const int j : order) {
+    if (std::count(order.begin(), order.end(), j) > 1)
       throw std::runtime_error(
           fmt::format("{}: `order` names joint {} of the recording twice", path, j));
     if (j > static_cast<int>(m.columns.size()))
@@ -208,6 +303,21 @@ void ColumnMap::put_in_order(std::string_view quantity, MappedQuantity& m,
     ordered.zero.push_back(m.zero[static_cast<std::size_t>(j - 1)]);
   }
   m = std::move(ordered);
+}
+
+// that of the map, or by the names in its list
+std::vector<int> ColumnMap::order_of(std::string_view quantity, const Wanted& w,
+                                     const std::string& path, detail::JointColumns& joints) const {
+  if (order_.empty() && !w.numbers.empty()) joints.keep_order(quantity);
+  if (!order_.empty() || w.names.empty()) return order_;
+  std::vector<int> order;
+  for (const std::size_t at : joints.places(w.names, true, quantity, path))
+    order.push_back(static_cast<int>(at) + 1);
+  if (order.empty()) joints.keep_order(quantity);
+  if (!std::is_sorted(order.begin(), order.end())) joints.reorder(quantity);
+  for (std::size_t i = 0; i < w.names.size() && !order.empty(); ++i)
+    if (std::count(order.begin(), order.end(), i + 1) == 0) joints.leave_out(w.names[i]);
+  return order;
 }
 
 bool ColumnMap::leaves_order_open() const {
@@ -239,14 +349,16 @@ std::vector<std::string> ColumnMap::missing_in(const MappedColumns& found) const
   return all;
 }
 
-MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
-                                const std::string& path) const {
+MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns, const std::string& path,
+                                const std::vector<std::string>& joints,
+                                std::vector<std::string>* notes) const {
   MappedColumns all;
+  detail::JointColumns of_robot(joints);
   for (const Quantity& q : kQuantities) {
     const auto wanted = wanted_.find(q.name);
     if (wanted == wanted_.end() || (rate_ > 0 && q.name == "t")) continue;
     const Wanted& w = wanted->second;
-    MappedQuantity m{find_in_file(q.name, w, columns, path), {}};
+    MappedQuantity m{find_in_file(q.name, w, columns, path, of_robot), {}};
     if (m.columns.empty() && (q.name == "t" || q.name == "q"))
       throw std::runtime_error(
           fmt::format("{}: no column has the {}, [{}]: none is called '{}'{}; --columns says which "
@@ -269,7 +381,7 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
                        each(w.sign, i, 1.));
       m.zero.push_back(each(w.zero, i, 0.));
     }
-    if (q.of_joints) put_in_order(q.name, m, path);
+    if (q.of_joints) put_in_order(q.name, order_of(q.name, w, path, of_robot), m, path);
     for (const auto& [name, other] : all) {
       const auto shared = std::find_first_of(m.columns.begin(), m.columns.end(),
                                              other.columns.begin(), other.columns.end());
@@ -279,6 +391,8 @@ MappedColumns ColumnMap::mapped(const std::vector<std::string>& columns,
     }
     all.emplace(q.name, std::move(m));
   }
+  of_robot.require_one_order(path);
+  if (notes != nullptr) of_robot.note(*notes);
   return all;
 }
 

@@ -16,6 +16,10 @@
 
 namespace tauext {
 
+namespace detail {
+class JointColumns;
+}
+
 /// A quantity of a recording, in the words of a map.
 struct Quantity {
   std::string_view name;   ///< of its table
@@ -63,7 +67,9 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 /// A map, as its file has it (column_map_file.h).
 ///
 /// A table of TOML for each quantity that there is: `columns`, a regular expression for their whole
-/// names (joints in the order of the number in it), a list of names, or a list of numbers from 1;
+/// names (joints in the order of the number in its group, else by the robot's names in the group,
+/// or in these names), a list of names (joints by the robot's, if it has all of them, and else in
+/// its order), or a list of numbers from 1;
 /// `unit`, `gain`, `sign` and, in SI units, `zero`, one for all or one for each of these columns;
 /// `file`, which has them (files/several_files.h); `held` of a torque (kTorques), by default true
 /// for `tau` alone. A torque takes the place of the preset's, and its columns where it has none.
@@ -74,8 +80,12 @@ using MappedColumns = std::map<std::string, MappedQuantity, std::less<>>;
 class ColumnMap {
  public:
   /// Which columns of a source make which quantity; those that it does not have are missing.
+  /// @param joints the robot's, by name, in its order; empty: unknown
+  /// @param notes what there is to say of how these were found; may be null
   /// @throws std::runtime_error naming the path, the quantity and what was looked for
-  MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path) const;
+  MappedColumns mapped(const std::vector<std::string>& columns, const std::string& path,
+                       const std::vector<std::string>& joints = {},
+                       std::vector<std::string>* notes = nullptr) const;
 
   /// A sentence for each quantity that the map's own tables name, not its preset, and that is not
   /// among those found.
@@ -116,12 +126,19 @@ class ColumnMap {
     bool of_preset = false;  // whose sources need not have it
   };
 
+  std::vector<int> find_matching(std::string_view quantity, const Wanted& w,
+                                 const std::vector<std::string>& columns, const std::string& path,
+                                 detail::JointColumns& joints) const;
   std::vector<int> find(std::string_view quantity, const Wanted& w,
-                        const std::vector<std::string>& columns, const std::string& path) const;
+                        const std::vector<std::string>& columns, const std::string& path,
+                        detail::JointColumns& joints) const;
   std::vector<int> find_in_file(std::string_view quantity, const Wanted& w,
-                                const std::vector<std::string>& columns,
-                                const std::string& path) const;
-  void put_in_order(std::string_view quantity, MappedQuantity& m, const std::string& path) const;
+                                const std::vector<std::string>& columns, const std::string& path,
+                                detail::JointColumns& joints) const;
+  std::vector<int> order_of(std::string_view quantity, const Wanted& w, const std::string& path,
+                            detail::JointColumns& joints) const;
+  void put_in_order(std::string_view quantity, const std::vector<int>& order, MappedQuantity& m,
+                    const std::string& path) const;
 
   std::map<std::string, Wanted, std::less<>> wanted_;
   std::vector<int> order_;

@@ -92,10 +92,10 @@ unit = ["s", "ns"]
 /// Franka's state in a bag of ROS 2 (bag_rows.h), old and new: tau_ext_hat_filtered as libfranka's.
 inline constexpr NamedQuantity kFrankaState[] = {
     {"t", "t"},
-    {"q", R"(q\[(\d)\]|measured_joint_state\.position\..*)"},
-    {"qd", R"(dq\[(\d)\]|measured_joint_state\.velocity\..*)"},
-    {"tau_instant", R"(tau_[jJ]\[(\d)\]|measured_joint_state\.effort\..*)"},
-    {"driver", R"(tau_ext_hat_filtered(?:\[(\d)\]|\.effort\..*))"}};
+    {"q", R"(q\[(\d)\]|measured_joint_state\.position\.(.*))"},
+    {"qd", R"(dq\[(\d)\]|measured_joint_state\.velocity\.(.*))"},
+    {"tau_instant", R"(tau_[jJ]\[(\d)\]|measured_joint_state\.effort\.(.*))"},
+    {"driver", R"(tau_ext_hat_filtered(?:\[(\d)\]|\.effort\.(.*)))"}};
 
 /// In our own MCAP files: by the messages' t, as the stamps of the file are whole nanoseconds.
 inline constexpr NamedQuantity kTauextMcap[] = {
@@ -113,9 +113,9 @@ inline constexpr NamedQuantity kTauextMcap[] = {
 
 /// In a bag of ROS 2 (bag_rows.h).
 inline constexpr NamedQuantity kJointState[] = {{"t", "t"},
-                                                {"q", R"(position\..*)"},
-                                                {"qd", R"(velocity\..*)"},
-                                                {"tau_instant", R"(effort\..*)"}};
+                                                {"q", R"(position\.(.*))"},
+                                                {"qd", R"(velocity\.(.*))"},
+                                                {"tau_instant", R"(effort\.(.*))"}};
 
 /// The first one is what is taken if nobody says.
 inline constexpr ColumnPreset kColumnPresets[] = {

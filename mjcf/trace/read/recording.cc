@@ -298,7 +298,7 @@ struct RecordingReader::Impl {
 
   // what the map finds
   MappedColumns known() {
-    MappedColumns all = map.mapped(rows->columns(), path);
+    MappedColumns all = map.mapped(rows->columns(), path, joints, &skipped.notes);
     for (std::string& missing : map.missing_in(all)) skipped.notes.push_back(std::move(missing));
     if (map.rate() > 0)
       skipped.notes.push_back(

@@ -22,8 +22,8 @@ struct RecordingOptions {
   /// `tauext`.
   std::string columns;
   std::string topic;  ///< of a bag; "": as BagRows chooses it
-  /// The robot's joints by name, in its order: by these a bag's are found, unless the map names
-  /// columns or has an `order`. Empty: unknown.
+  /// The robot's joints by name, in its order: by these columns are found (joint_names.h), unless
+  /// the map numbers them or has an `order`. Empty: unknown.
   std::vector<std::string> joints;
 };
 

@@ -2,14 +2,11 @@
 #include "mjcf/trace/read/bag/bag_rows.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +14,7 @@
 #include "mjcf/trace/read/bag/bag_messages.h"
 #include "mjcf/trace/read/bag/json_type.h"
 #include "mjcf/trace/read/bag/parts.h"
+#include "mjcf/trace/read/joint_names.h"
 
 namespace tauext {
 namespace {
@@ -32,11 +30,6 @@ const char* read_message(BagMessageType& type, const BagMessage& message, Messag
 // for messages to people
 void keep_some(std::set<std::string>& names, const std::string& name) {
   if (names.size() < kMostJoints) names.insert(name);
-}
-
-template <class Names>
-std::string listed(const Names& names) {
-  return printable_name(fmt::format("{}", fmt::join(names, ", ")), 400);
 }
 
 }  // namespace
@@ -142,11 +135,22 @@ void BagRows::look_ahead() {
   messages_->rewind();
   if (type_->lists() == 0) missing.clear();
   called_ = joints_;
-  if (any && (missing.empty() || find_by_prefix(named))) return;
-  if (any) fail_missing(missing, named);
+  if (any && !missing.empty()) find_by_other_names(missing, named);
+  if (any) return;
   throw std::runtime_error(fmt::format("{}: no message on topic {} can be read; of the first: {}{}",
                                        messages_->path(), printable_name(messages_->topic().name),
                                        first, end.empty() ? "" : "; " + end));
+}
+
+// of joints that are not all there by the robot's names
+void BagRows::find_by_other_names(const std::vector<std::string>& missing,
+                                  const std::set<std::string>& named) {
+  const std::string whose = fmt::format("{}: the messages on topic {}", messages_->path(),
+                                        printable_name(messages_->topic().name));
+  JointNames found = find_joint_names(named, joints_, whose);
+  if (!found.all()) fail_missing_joints(missing, joints_, named, whose);
+  called_ = std::move(found.called);
+  note_ = "its joints' names " + found.how;
 }
 
 // of the fields without names how many there are, if any is finite
@@ -212,53 +216,6 @@ void BagRows::name_columns() {
                                            messages_->path(),
                                            printable_name(messages_->topic().name), kMostColumns));
   }
-}
-
-// whether one text, put before each of the robot's names or taken from it, gives names of messages
-bool BagRows::find_by_prefix(const std::set<std::string>& named) {
-  std::map<std::string, std::vector<std::string>> found;  // by the words of the note
-  const auto attempt = [&](const std::string& how, auto&& call) {
-    std::vector<std::string> names;
-    for (const std::string& joint : joints_) names.push_back(call(joint));
-    const bool all = std::all_of(names.begin(), names.end(),
-                                 [&](const std::string& n) { return named.count(n) > 0; });
-    if (all) found.emplace(how, std::move(names));
-  };
-  for (const std::string& name : named) {
-    if (!name.ends_with(joints_[0]) || name == joints_[0]) continue;
-    const std::string before = name.substr(0, name.size() - joints_[0].size());
-    attempt(fmt::format("have the prefix '{}'", printable_name(before)),
-            [&](const std::string& joint) { return before + joint; });
-  }
-  for (std::size_t end = joints_[0].find_first_of("_/"); end != std::string::npos;
-       end = joints_[0].find_first_of("_/", end + 1)) {
-    const std::string before = joints_[0].substr(0, end + 1);
-    attempt(fmt::format("do not have the robot's prefix '{}'", printable_name(before)),
-            [&](const std::string& joint) {
-              return joint.starts_with(before) ? joint.substr(before.size()) : "";
-            });
-  }
-  if (found.empty()) return false;
-  if (found.size() > 1)
-    throw std::runtime_error(fmt::format(
-        "{}: the messages on topic {} match the robot's joints in more than one way: their names "
-        "{}, or they {}; name the columns in a map (--columns): [q] columns = [\"position.NAME\", "
-        "..]",
-        messages_->path(), printable_name(messages_->topic().name), found.begin()->first,
-        std::next(found.begin())->first));
-  called_ = found.begin()->second;
-  note_ = "its joints' names " + found.begin()->first;
-  return true;
-}
-
-void BagRows::fail_missing(const std::vector<std::string>& missing,
-                           const std::set<std::string>& named) const {
-  throw std::runtime_error(fmt::format(
-      "{}: the messages on topic {} never name {}; the robot has {}, and they name {}. Where a "
-      "joint has another name there, --columns FILE.toml says which it is: [q] columns = "
-      "[\"position.NAME\", ..], and [qd] and [tau_instant] likewise",
-      messages_->path(), printable_name(messages_->topic().name), listed(missing), listed(joints_),
-      listed(named)));
 }
 
 bool BagRows::next(std::vector<double>& row, SkippedRows& skipped) {
@@ -352,7 +309,8 @@ void BagRows::note_strangers(SkippedRows& skipped) {
     if (!note.empty()) skipped.notes.push_back(std::move(note));
   if (with_strangers_ == 0) return;
   skipped.notes.push_back(fmt::format("{} messages name other joints, which are left out: {}",
-                                      with_strangers_, listed(strangers_)));
+                                      with_strangers_,
+                                      listed_names({strangers_.begin(), strangers_.end()})));
 }
 
 }  // namespace tauext

@@ -33,10 +33,10 @@ BagTopic topic_of_bag(const std::string& path, const std::string& topic);
 /// "effort.NAME", of each joint of the robot in its order or, where nobody says what these are, of
 /// each that the first good message names and in its order. So a sensor_msgs/msg/JointState is
 /// "position.NAME" [rad], "velocity.NAME" [rad/s] and "effort.NAME" [N m]. Where the messages have
-/// the robot's names with one text before all of them, or without one that the robot's begin with,
-/// these are its joints; a note says so. Messages may have another order; what one does not have is
-/// NaN, and a field of which none has a number has no columns. A message that names joints, and
-/// none of these, is no row; where messages name other joints, a note names them once, at the end.
+/// the robot's names with other text around them (joint_names.h), these are its joints; a note says
+/// so. Messages may have another order; what one does not have is NaN, and a field of which none
+/// has a number has no columns. A message that names joints, and none of these, is no row; where
+/// messages name other joints, a note names them once, at the end.
 ///
 /// Types other than JointState are read where the bag has their definition, as bags of ROS 2 Iron
 /// and later do, and all of mcap. Messages that are written as JSON (JsonType) need none. Those of
@@ -71,9 +71,8 @@ class BagRows : public RowSource {
   void look_ahead();
   void look_for_numbers();
   void name_columns();
-  bool find_by_prefix(const std::set<std::string>& named);
-  [[noreturn]] void fail_missing(const std::vector<std::string>& missing,
-                                 const std::set<std::string>& named) const;
+  void find_by_other_names(const std::vector<std::string>& missing,
+                           const std::set<std::string>& named);
   bool find_joints(const MessageNumbers& message);
   bool is_stamp(std::size_t field) const;
   double stamp_of(const MessageNumbers& message) const;

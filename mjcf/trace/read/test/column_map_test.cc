@@ -32,7 +32,8 @@ class Columns : public testing::Test {
   }
   Trace read(const std::string& text, const std::string& map) {
     skipped_ = {};
-    return read_recording(put("log.csv", text), {.columns = map}, &skipped_, &regularity_);
+    return read_recording(put("log.csv", text), {.columns = map, .joints = joints_}, &skipped_,
+                          &regularity_);
   }
   // with a map of these lines
   Trace read_by(const std::string& text, const std::string& toml) {
@@ -46,6 +47,7 @@ class Columns : public testing::Test {
   }
 
   fs::path folder_;
+  std::vector<std::string> joints_;  // of the robot; empty: unknown
   SkippedRows skipped_;
   Regularity regularity_;
 };
@@ -205,6 +207,95 @@ TEST_F(Columns, ByNumbersInAnyUnitAndOrder) {
   EXPECT_NEAR(t.q(1, 0), 0.25 + std::numbers::pi / 2, 1e-15);
   EXPECT_NEAR(t.tau(0, 0), 1.5, 1e-12);
   EXPECT_EQ(t.tau(1, 0), -2);
+}
+
+using Names = std::vector<std::string>;
+
+// two rows in which q of joint number i of these names is i, qd 10 i and tau 100 i, and which have
+// the joints in this order; {} in a pattern is the name
+std::string rows_with(const Names& joints, const std::vector<std::size_t>& order,
+                      const Names& patterns) {
+  std::string head = "t", row;
+  for (std::size_t k = 0; k < patterns.size(); ++k) {
+    for (const std::size_t i : order) {
+      head += "," + fmt::format(fmt::runtime(patterns[k]), joints[i]);
+      row += fmt::format(",{}", static_cast<double>(i) * std::pow(10., static_cast<double>(k)));
+    }
+  }
+  return head + "\n0" + row + "\n0.001" + row + "\n";
+}
+
+std::string map_of(const Names& columns) {
+  return fmt::format(
+      "[t]\ncolumns = ['t']\n[q]\ncolumns = {}\n[qd]\ncolumns = {}\n[tau]\ncolumns = {}\n",
+      columns[0], columns[1], columns[2]);
+}
+
+// as PlotJuggler, and programs of people's own, write what a bag has
+TEST_F(Columns, OfJointsAreFoundByTheRobotsNames) {
+  joints_ = {"hip_x", "knee", "ankle"};
+  const std::vector<std::pair<Names, std::string>> layouts = {
+      {{"position.{}", "velocity.{}", "effort.{}"}, "joint_state"},
+      {{"position.left/leg_{}", "velocity.left/leg_{}", "effort.left/leg_{}"}, "joint_state"},
+      {{"/joints/{}/position", "/joints/{}/velocity", "/joints/{}/effort"},
+       map_of({"'/joints/(.*)/position'", "'/joints/(.*)/velocity'", "'/joints/(.*)/effort'"})},
+      {{"{}_q", "{}_v", "{}Nm"}, map_of({"'.*_q'", "'.*_v'", "'[a-z_]*Nm'"})}};
+  for (const auto& [patterns, map] : layouts) {
+    for (const std::vector<std::size_t>& order :
+         {std::vector<std::size_t>{0, 1, 2}, {2, 0, 1}, {1, 3, 2, 0}}) {
+      const std::string csv = rows_with({"hip_x", "knee", "ankle", "grip"}, order, patterns);
+      const Trace t = map.find('\n') == map.npos ? read(csv, map) : read_by(csv, map);
+      ASSERT_EQ(t.dof(), 3) << csv;
+      EXPECT_EQ(t.q.col(1), Eigen::Vector3d(0, 1, 2)) << csv;
+      EXPECT_EQ(t.qd.col(1), Eigen::Vector3d(0, 10, 20)) << csv;
+      EXPECT_EQ(t.tau.col(1), Eigen::Vector3d(0, 100, 200)) << csv;
+      const bool has_grip = order.size() == 4;
+      ASSERT_EQ(skipped_.notes.size(), has_grip ? 1U : 0U) << csv;
+      if (has_grip)
+        expect_says(skipped_.notes[0], "3 columns of other joints are left out: " +
+                                           fmt::format(fmt::runtime(patterns[0]), "grip") + ", ");
+    }
+  }
+}
+
+// each with the sign that the map gives it
+TEST_F(Columns, OfAListAreFoundByTheRobotsNamesIfItHasAll) {
+  joints_ = {"hip", "knee"};
+  const std::string csv = rows_with({"hip", "knee"}, {1, 0}, {"q_{}", "v_{}", "e_{}"});
+  const std::string map = map_of({"['q_knee', 'q_hip']\nsign = [-1, 1]\nzero = [0.5, 0.25]",
+                                  "['v_hip', 'v_knee']", "['e_knee', 'e_hip']"});
+  const Trace t = read_by(csv, map);
+  EXPECT_EQ(t.q.col(0), Eigen::Vector2d(0.25, -0.5));
+  EXPECT_EQ(t.tau.col(0), Eigen::Vector2d(0, 100));
+  EXPECT_EQ(skipped_.notes,
+            Names{"joints are taken by the robot's names, and not in the map's order: [q] [tau]"});
+  // who renames a joint lists the names, and `order` is by places
+  joints_ = {"hip", "shin"};
+  EXPECT_EQ(read_by(csv, map).tau.col(0), Eigen::Vector2d(100, 0));
+  joints_ = {"hip", "knee"};
+  EXPECT_EQ(read_by(csv, "order = [1, 2]\n" + map).tau.col(0), Eigen::Vector2d(100, 0));
+}
+
+TEST_F(Columns, ThatHaveOtherNamesThanTheRobotsJointsAreToldSo) {
+  const Names patterns = {"position.{}", "velocity.{}", "effort.{}"};
+  const std::string csv = rows_with({"hip", "knee", "l_toe"}, {2, 1, 0}, patterns);
+  joints_ = {"a", "b", "c"};
+  EXPECT_EQ(read(csv, "joint_state").q.col(0), Eigen::Vector3d(2, 1, 0)) << "the file's order";
+  EXPECT_EQ(skipped_.notes,
+            Names{"no column has the name of a joint of the robot (a, b, c), so joints are in the "
+                  "file's order: [q] [qd] [tau_instant]"});
+  joints_ = {"knee", "ankle", "hip"};
+  expect_says(error_of([&] { read(csv, "joint_state"); }),
+              "the columns of [q] never name ankle; the robot has knee, ankle, hip, and they name "
+              "hip, knee, l_toe. Where a joint has another name there, --columns FILE.toml says");
+  joints_ = {"toe"};
+  expect_says(error_of([&] {
+                read(rows_with({"l_toe", "r_toe"}, {0, 1}, patterns), "joint_state");
+              }),
+              "their names have the prefix 'l_', or they have the prefix 'r_'");
+  joints_ = {"q2", "q1", "q0"};  // a number in the name is the order that the map asks for
+  EXPECT_EQ(read("t,q1,q2,q3,tau1,tau2,tau3\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n", "tauext").q.col(0),
+            Eigen::Vector3d(1, 2, 3));
 }
 
 TEST_F(Columns, ThatNobodyWantsMayHoldAnything) {
