@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -80,11 +81,15 @@ void McapMessages::select() {
 void McapMessages::rewind() {
   at_ = kMagicSize, end_ = file_.size();
   ended_ = false, lost_.reset();
+  any_chunk_ = false, damage_.clear();
   chunk_.clear(), chunk_at_ = 0;
 }
 
 std::string McapMessages::note() const {
   if (!lost_) return "";
+  if (!damage_.empty())
+    return fmt::format("the last {} of its {} bytes are not read: a chunk {}", *lost_, file_.size(),
+                       damage_);
   return *lost_ == 0 ? "it was not closed, so its last messages may be missing"
                      : fmt::format(
                            "it ends too early: the last {} of its {} bytes are no whole "
@@ -145,7 +150,7 @@ bool McapMessages::next_record(Record& record) {
     at_ += kHeadSize;
     const std::uint64_t begin = std::exchange(at_, at_ + record.size);
     if (record.kind == op::kChunk) {
-      open_chunk(begin);
+      if (!take_chunk(begin)) return end(false);
       continue;
     }
     const bool wanted =
@@ -167,6 +172,23 @@ bool McapMessages::next_in_chunk(Record& record) {
   record.bytes = f.rest().substr(0, record.size);
   chunk_at_ += kHeadSize + record.size;
   return true;
+}
+
+// false: it is damaged, and what was read before is all that is read
+bool McapMessages::take_chunk(std::uint64_t begin) {
+  try {
+    open_chunk(begin);
+    any_chunk_ = true;
+    return true;
+  } catch (const std::runtime_error& e) {
+    if (!any_chunk_) throw;
+    damage_ = e.what();
+    if (const std::string path = file_.path() + ": "; damage_.starts_with(path))
+      damage_.erase(0, path.size());
+    chunk_.clear(), chunk_at_ = 0;
+    at_ = begin - kHeadSize;
+    return false;
+  }
 }
 
 // whose record's bytes end at at_

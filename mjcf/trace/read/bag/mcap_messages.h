@@ -17,7 +17,8 @@
 namespace tauext {
 
 /// Those of some topics. Chunks may be compressed by zstd or lz4, and
-/// have up to 256 MB; a file that ends too early is read up to its last whole record.
+/// have up to 256 MB. A file that ends too early is read up to its last whole record, and one of
+/// which a chunk is damaged up to that chunk, unless it is the first.
 class McapMessages final : public BagMessages {
  public:
   /// @throws std::runtime_error as BagRows does
@@ -47,7 +48,8 @@ class McapMessages final : public BagMessages {
   bool next_record(Record& record);
   bool end(bool closed);
   bool next_in_chunk(Record& record);
-  void open_chunk(std::uint64_t size);
+  bool take_chunk(std::uint64_t begin);
+  void open_chunk(std::uint64_t begin);
   void read_summary();
   void learn(const Record& record);
 
@@ -55,6 +57,8 @@ class McapMessages final : public BagMessages {
   std::uint64_t at_ = 0, end_ = 0;  // in the file: the next record; where they end
   bool ended_ = false;
   std::optional<std::uint64_t> lost_;  // [bytes] behind the last record of a file without its end
+  bool any_chunk_ = false;             // was opened
+  std::string damage_;                 // of the first chunk that is not read
   std::string record_, chunk_;
   std::size_t chunk_at_ = 0;
   std::map<std::uint16_t, Schema> schemas_;

@@ -346,19 +346,67 @@ TEST_F(Bag, OfTheStorageMcapIsRead) {
   EXPECT_GT(readable, 100);
 }
 
-// where its records end is by mcap.dev/spec: a byte, and how many bytes follow, as 8
-TEST_F(Bag, OfTheStorageMcapThatIsCutOffSaysWhatIsLeft) {
-  constexpr std::size_t kMagic = 8, kHeadSize = 9;
-  const std::string bytes = get(fixture("chunks_plain.mcap"));
-  std::vector<std::size_t> ends = {kMagic};
+// of a file of MCAP the kinds of its records, and where the first begins and each ends, by
+// mcap.dev/spec: a byte, and how many bytes follow, as 8
+struct McapRecords {
+  std::vector<std::size_t> ends = {8};
   std::vector<int> kinds;
-  while (kinds.empty() || kinds.back() != 15) {
+};
+
+McapRecords records_of(const std::string& bytes) {
+  constexpr std::size_t kHeadSize = 9;
+  McapRecords r;
+  while (r.kinds.empty() || r.kinds.back() != 15) {
     std::size_t size = 0;
     for (std::size_t i = 8; i > 0; --i)
-      size = size << 8 | static_cast<unsigned char>(bytes[ends.back() + i]);
-    kinds.push_back(bytes[ends.back()]);
-    ends.push_back(ends.back() + kHeadSize + size);
+      size = size << 8 | static_cast<unsigned char>(bytes[r.ends.back() + i]);
+    r.kinds.push_back(bytes[r.ends.back()]);
+    r.ends.push_back(r.ends.back() + kHeadSize + size);
   }
+  return r;
+}
+
+TEST_F(Bag, OfTheStorageMcapIsReadUpToAChunkThatIsDamaged) {
+  for (const std::string kind : {"plain", "zstd", "lz4"}) {
+    const std::string bytes = get(fixture("chunks_" + kind + ".mcap"));
+    const auto [ends, kinds] = records_of(bytes);
+    const auto chunk = std::find(kinds.begin(), kinds.end(), 6);
+    const auto second = std::find(chunk + 1, kinds.end(), 6);
+    const std::size_t first_end = ends.at(static_cast<std::size_t>(chunk - kinds.begin()) + 1),
+                      begin = ends.at(static_cast<std::size_t>(second - kinds.begin())),
+                      end = ends.at(static_cast<std::size_t>(second - kinds.begin()) + 1);
+    std::string zeros = bytes.substr(0, end - 30);
+    zeros.resize(bytes.size());
+    std::vector<std::string> damaged = {zeros};
+    for (const std::size_t at : {end - 12, end - 40, begin + 9 + 16}) {  // the last: its size
+      damaged.push_back(bytes);
+      damaged.back()[at] ^= 0x55;
+    }
+    for (const std::string& one : damaged) {
+      BagRows rows(put(one, "damaged.mcap"), "", {"a", "b"});
+      SkippedRows skipped;
+      EXPECT_EQ(rows_of(rows, skipped).size(), 2U) << kind;
+      ASSERT_EQ(skipped.notes.size(), 1U) << kind;
+      EXPECT_TRUE(skipped.notes[0].starts_with(
+          fmt::format("the last {} of its {} bytes are not read: a chunk ", bytes.size() - begin,
+                      bytes.size())))
+          << skipped.notes[0];
+      EXPECT_TRUE(
+          skipped.notes[0].ends_with("; `mcap recover` makes a file of what is whole; 2 "
+                                     "messages were read, the last of t = 101.000 s"))
+          << skipped.notes[0];
+    }
+    std::string none = bytes;
+    none[first_end - 12] ^= 0x55;
+    const std::string error = error_of_opening(put(none, "none.mcap"));
+    EXPECT_TRUE(error.ends_with("; `mcap recover` makes a file of what is whole")) << error;
+  }
+}
+
+TEST_F(Bag, OfTheStorageMcapThatIsCutOffSaysWhatIsLeft) {
+  constexpr std::size_t kHeadSize = 9;
+  const std::string bytes = get(fixture("chunks_plain.mcap"));
+  const auto [ends, kinds] = records_of(bytes);
   std::size_t chunks = 0;
   for (std::size_t r = 0; r + 1 < kinds.size(); ++r) {
     chunks += kinds[r] == 6 ? 1 : 0;

@@ -48,11 +48,11 @@ std::string_view packer_of(std::string_view begin) {
   throw std::runtime_error(fmt::format("{}: {}", path, why));
 }
 
-// "run.csv.zst" is part.csv without it
+// "run.csv.zst" is part.csv without it; bytes that no program has packed are a chunk of MCAP
 [[noreturn]] void fail_unpacking(const std::string& path, std::string_view program,
                                  std::string_view why) {
   const std::string remedy =
-      program.empty() ? ""
+      program.empty() ? "; `mcap recover` makes a file of what is whole"
                       : fmt::format("; {} -dc {} > part{} gets what is before that", program, path,
                                     std::filesystem::path(path).stem().extension().string());
   fail(path, one_line(fmt::format("cannot be unpacked: {}{}", why, remedy)));
