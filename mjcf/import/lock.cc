@@ -7,7 +7,6 @@
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -39,10 +38,9 @@ const std::regex& compiled(const std::string& regex) {
 
 // a joint that is taken away stays at its `ref`
 bool stays_in_range(const XMLElement& joint) {
-  std::istringstream range(text(joint, "range"));
-  double lower = 0, upper = 0;
+  const std::vector<double> range = numbers_in(text(joint, "range"));
   const double ref = joint.DoubleAttribute("ref", 0);
-  return !(range >> lower >> upper) || (lower <= ref && ref <= upper);
+  return range.size() < 2 || (range[0] <= ref && ref <= range[1]);
 }
 
 std::set<std::string> remove_joints(XMLElement& root, const std::string& lock,

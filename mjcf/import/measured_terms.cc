@@ -4,10 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -55,9 +52,9 @@ std::pair<double, double> remove_numeric(XMLElement& root, std::string_view name
   std::pair<double, double> numbers;
   each(root, [&](XMLElement& e) {
     if (name_of(e) != "numeric" || text(e, "name") != name) return true;
-    std::istringstream in(text(e, "data"));
-    in.imbue(std::locale::classic());
-    in >> numbers.first >> numbers.second;
+    const std::vector<double> data = numbers_in(text(e, "data"));
+    if (!data.empty()) numbers.first = data[0];
+    if (data.size() > 1) numbers.second = data[1];
     e.Parent()->DeleteChild(&e);
     return false;
   });
@@ -86,14 +83,6 @@ void put_payload(XMLElement& root, const Payload& p) {
   // of a ball of water's density
   const double r = std::cbrt(p.mass / 4189), I = 0.4 * p.mass * r * r;
   inertial->SetAttribute("diaginertia", fmt::format("{0:.17g} {0:.17g} {0:.17g}", I).c_str());
-}
-
-// the larger end of a range; 0 without one
-double most(const std::string& range) {
-  double from = 0, to = 0;
-  std::istringstream in(range);
-  in.imbue(std::locale::classic());
-  return in >> from >> to ? std::max(-from, to) : 0;
 }
 
 }  // namespace
@@ -132,27 +121,6 @@ void put_rated(XMLElement& mujoco, const std::string& joint, double torque, doub
       mujoco.InsertNewChildElement("custom")->InsertNewChildElement("numeric");
   number->SetAttribute("name", (std::string(kRated) + joint).c_str());
   number->SetAttribute("data", (exact(torque) + " " + exact(speed)).c_str());
-}
-
-void keep_rated(XMLElement& mujoco) {
-  std::map<std::string, double> rated;
-  each(mujoco, [&](XMLElement& e) {
-    if (parent_name(e) != "actuator" || e.Attribute("joint") == nullptr) return true;
-    const std::string forces = with_defaults(mujoco, e, "forcerange");
-    const double force = most(
-        forces.empty() && name_of(e) == "motor" ? with_defaults(mujoco, e, "ctrlrange") : forces);
-    std::istringstream gear(with_defaults(mujoco, e, "gear"));
-    double factor = 1;
-    gear.imbue(std::locale::classic());
-    if (!(gear >> factor)) factor = 1;
-    double& of_joint = rated[text(e, "joint")];
-    of_joint = std::max(of_joint, std::abs(factor) * force);
-    return true;
-  });
-  for (auto& [name, joint] : named(mujoco, "joint"))
-    if (const double range = most(with_defaults(mujoco, *joint, "actuatorfrcrange")); range > 0)
-      rated[name] = range;
-  for (const auto& [name, torque] : rated) put_rated(mujoco, name, torque, 0);
 }
 
 }  // namespace tauext::detail

@@ -70,9 +70,5 @@ inline constexpr std::string_view kRated = "tauext:rated:";
 /// unknown: files have 0 there.
 void put_rated(tinyxml2::XMLElement& mujoco, const std::string& joint, double torque, double speed);
 
-/// The same of each joint that has an `actuatorfrcrange`, or else an actuator with a `forcerange`,
-/// or else a motor with a `ctrlrange`, by itself or by its class.
-void keep_rated(tinyxml2::XMLElement& mujoco);
-
 }  // namespace detail
 }  // namespace tauext

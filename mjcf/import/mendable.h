@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Errors of robots' files that flags mend.
+/// Errors of robots' files that flags mend, and words of the commands that do it.
 #pragma once
 
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace tauext {
@@ -32,5 +33,18 @@ class Mendable : public std::runtime_error {
  private:
   Mending by_;
 };
+
+/// A word in the quotes that a shell takes away.
+inline std::string shell_quoted(std::string_view word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + '\'';
+}
+
+/// A path as a word of a command line: in quotes where it needs them.
+inline std::string shell_word(const std::string& path) {
+  const bool plain = path.find_first_of(" '\"$`\\()&;<>|*?[]#~!{}") == path.npos;
+  return plain ? path : shell_quoted(path);
+}
 
 }  // namespace tauext

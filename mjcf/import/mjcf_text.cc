@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <locale>
 #include <set>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "mjcf/import/attach.h"
+#include "mjcf/import/drives.h"
 #include "mjcf/import/lock.h"
 #include "mjcf/import/masses/body_masses.h"
 #include "mjcf/import/masses/inertia.h"
@@ -80,6 +82,7 @@ class Import {
     frames_to_bodies(root);
     problems_.raise();
     detail::keep_rated(root);
+    problems_.attempt([&] { detail::keep_drive_dynamics(root, options_.lock, out_.changed); });
     keep(root);
     problems_.raise();
     detail::name_joints(root);
@@ -117,6 +120,11 @@ class Import {
     doc.LoadFile(file.c_str());
     if (fs::file_size(file) == 0) throw std::runtime_error(one_line(where + "the file is empty"));
     if (doc.Error() || doc.RootElement() == nullptr) {
+      if (const char* const letters = utf16_of(file))
+        throw std::runtime_error(one_line(fmt::format(
+            "{}it is in UTF-16, and UTF-8 is read: iconv -f {} -t UTF-8 {} > {}", where, letters,
+            shell_word(file.string()),
+            shell_word(fs::path(file).replace_extension(".utf8" + file.extension().string())))));
       const int line = doc.ErrorLineNum();  // 0: in none of them
       throw std::runtime_error(one_line(fmt::format("{}{}no XML ({})", where,
                                                     line > 0 ? fmt::format("line {}: ", line) : "",
@@ -135,6 +143,15 @@ class Import {
     check(*doc.RootElement());
     each(*doc.RootElement(), check);
     return *doc.RootElement();
+  }
+
+  // by the mark at its beginning, or by the zero beside its first letter
+  // as iconv calls it; null if it is not in it
+  static const char* utf16_of(const fs::path& file) {
+    std::string begin(2, ' ');
+    std::ifstream(file).read(begin.data(), 2);
+    if (begin == "\xFF\xFE" || begin == "\xFE\xFF") return "UTF-16";
+    return begin[0] == '\0' ? "UTF-16BE" : begin[1] == '\0' ? "UTF-16LE" : nullptr;
   }
 
   // XML must not have them, and terminals obey them
@@ -284,8 +301,7 @@ class Import {
   void refuse_degrees(XMLElement& root) {
     each(root, [&](XMLElement& e) {
       if (!radians_ || e.Attribute("euler") == nullptr) return true;
-      std::istringstream words(text(e, "euler"));
-      for (double x; words >> x;)
+      for (const double x : detail::numbers_in(text(e, "euler")))
         if (std::abs(x) > 4 * M_PI)
           problems_.attempt([&] {
             fail(e,
@@ -303,6 +319,11 @@ class Import {
     const XMLNode* at = geom.Parent();
     if (!from_geom_ && at->FirstChildElement("inertial") != nullptr) return false;
     if (total_mass_) return name_of(*at->ToElement()) != "worldbody";
+    return moves(*at);
+  }
+
+  static bool moves(const XMLNode& body) {
+    const XMLNode* at = &body;
     while (at != nullptr && !detail::has_joint(*at)) at = at->Parent();
     return at != nullptr;
   }
@@ -355,11 +376,15 @@ class Import {
     const std::string_view attributes = attributes_of(e);
     if (name_of(e) == "spatial" && (has_forces(e) || tendons_have_forces_))
       fail(e,
-           "a <spatial> tendon, or its default, has stiffness, damping or frictionloss, which no "
-           "estimator here knows; take that out");
+           "a <spatial> tendon, or its default, has stiffness, damping, frictionloss or armature, "
+           "which no estimator here knows; take that out");
+    if (name_of(e) == "plugin" && parent_name(e) == "body" && moves(*e.Parent()))
+      fail(e, "a <plugin> acts on the body '{}', and what it does is not known here: take it out",
+           text(*e.Parent()->ToElement(), "name"));
     if (name_of(e) == "flag") obey(e);
     if (attributes.empty()) {
-      if (!has_word(detail::kLeftOutElements, name_of(e)))
+      if (!has_word(detail::kLeftOutElements, name_of(e)) &&
+          !has_word(detail::kActuators, name_of(e)))
         fail(e, "this import knows no <{}>; {}", name_of(e),
              detail::remedy_for(name_of(e), detail::elements_of(detail::kKept)));
       return drop_section(e);
@@ -400,8 +425,8 @@ class Import {
 
   static bool has_forces(const XMLElement& tendon) {
     bool any = false;
-    for (const char* force : {"stiffness", "damping", "frictionloss"})
-      any = any || tendon.DoubleAttribute(force, 0) != 0;
+    for (const char* force : {"stiffness", "damping", "frictionloss", "armature"})
+      for (const double x : detail::numbers_in(text(tendon, force))) any = any || x != 0;
     return any;
   }
 

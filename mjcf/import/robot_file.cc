@@ -16,6 +16,7 @@
 #include "mjcf/import/json_object.h"
 #include "mjcf/import/masses/body_masses.h"
 #include "mjcf/import/masses/inertia.h"
+#include "mjcf/import/mendable.h"
 #include "mjcf/trace/printable.h"
 #include "mjcf/trace/text.h"
 
@@ -134,11 +135,6 @@ RobotFile robot_of(const Json& json, const std::string& path) {
 
 namespace fs = std::filesystem;
 
-// of a command line
-std::string file_word(const std::string& path) {
-  return path.find_first_of(" '\"$`\\()&;<>|*?") == path.npos ? path : '\'' + path + '\'';
-}
-
 // package://NAME/PATH is ROS's, for what lies in NAME's folder of shared files
 std::string why_address(const std::string& path) {
   const std::size_t at = path.find("://") + 3;
@@ -188,8 +184,8 @@ std::string why_other_kind(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return why_folder(path);
   const fs::path file = path;
-  const std::string plain = file_word(fs::path(file).replace_extension().string());
-  const std::string kind = in_small_letters(file.extension().string()), own = file_word(path);
+  const std::string plain = shell_word(fs::path(file).replace_extension().string());
+  const std::string kind = in_small_letters(file.extension().string()), own = shell_word(path);
   if (kind == ".xacro") {
     const bool named = fs::path(file.stem()).extension() == ".urdf";  // arm.urdf.xacro
     return fmt::format(

@@ -118,7 +118,7 @@ inline constexpr Kept kLeftOut[] = {
     {"body", " gravcomp user mocap sleep "},
     {"joint", " group user actuatorfrcrange actuatorfrclimited actuatorgravcomp "},
     {"freejoint", " group align "},
-    {"geom", " group priority material rgba user hfield fluidshape fluidcoef "},
+    {"geom", " group priority material rgba user hfield fluidshape fluidcoef surfacevel adhesion "},
     {"site", " group material rgba user "},
     {"mesh",
      " maxhullvert inertia content_type builtin params material user texcoord "
@@ -131,10 +131,13 @@ inline constexpr Kept kLeftOut[] = {
 /// dynamics that we take: left out with all that is in them. Any other one is an error.
 inline constexpr std::string_view kLeftOutElements =
     " visual statistic size text tuple sensor keyframe actuator deformable extension flag "
-    "lengthrange "
-    "camera light pair material texture hfield skin model spatial distance flex flexvert "
-    "flexstrain "
-    "general motor position velocity intvelocity damper cylinder muscle adhesion dcmotor plugin ";
+    "lengthrange camera light pair material texture hfield skin model spatial distance flex "
+    "flexvert flexstrain ";
+
+/// Elements of <actuator>: left out, too, but for what drives.h keeps of them.
+inline constexpr std::string_view kActuators =
+    " general motor position velocity intvelocity orientation pid damper cylinder muscle adhesion "
+    "dcmotor plugin ";
 
 /// Newer elements that would change the arm if they were left out.
 inline constexpr std::string_view kUnknown[] = {"replicate", "composite", "flexcomp"};

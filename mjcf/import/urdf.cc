@@ -86,16 +86,26 @@ const KeptOfUrdf* known_of(std::string_view element) {
   return k == std::end(kUrdf) ? nullptr : k;
 }
 
-// a second one would be overlooked
-void refuse_doubles(const XMLElement& e, const std::string& owner) {
-  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
-    if (const XMLElement* const second = c->NextSiblingElement(c->Name());
-        second != nullptr && known_of(name_of(*c)) != nullptr)
-      fail(*second, "{}: a second <{}>", owner, name_of(*c));
+// whether it says how a joint moves that does not
+bool is_of_fixed(const XMLElement& e) {
+  return has_word(" axis limit dynamics mimic ", name_of(e)) && parent_name(e) == "joint" &&
+         text(*e.Parent()->ToElement(), "type") == "fixed";
 }
 
-// beside links and joints; what is nearly called so and has parts of them in it is misspelt, and
-// what has a link with a mass in it would lose that
+// a second one would be overlooked, unless it says the same as the first
+void refuse_doubles(const XMLElement& e, const std::string& owner,
+                    std::map<std::string, int>& dropped) {
+  for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
+    const XMLElement* const second = c->NextSiblingElement(c->Name());
+    if (second == nullptr || known_of(name_of(*c)) == nullptr) continue;
+    const bool same =
+        name_of(*c) == "axis" && numbers_in(text(*c, "xyz")) == numbers_in(text(*second, "xyz"));
+    if (!same && !is_of_fixed(*c)) fail(*second, "{}: a second <{}>", owner, name_of(*c));
+    ++dropped[fmt::format("second {}", name_of(*c))];
+  }
+}
+
+// beside links and joints; what is nearly called so and has parts of them in it is misspelt
 void drop_other(const XMLElement& e, std::map<std::string, int>& dropped) {
   const std::string name = in_small_letters(name_of(e));
   const bool near = std::min(edits(name, "link"), edits(name, "joint")) <= 2;
@@ -103,12 +113,10 @@ void drop_other(const XMLElement& e, std::map<std::string, int>& dropped) {
     if (near && e.FirstChildElement(k.element.data()) != nullptr)
       fail(e, "<{}> has a <{}>: {}", name_of(e), k.element, remedy_for(name, " link joint "));
   }
-  for (const XMLElement* l = e.FirstChildElement("link"); l != nullptr;
-       l = l->NextSiblingElement("link")) {
-    if (l->FirstChildElement("inertial") != nullptr)
-      fail(*l, "link '{}' stands within <{}>, and belongs into <robot>", text(*l, "name"),
-           name_of(e));
-  }
+  for (const XMLElement* p = e.FirstChildElement(); p != nullptr; p = p->NextSiblingElement())
+    if (const bool is_link = name_of(*p) == "link" && p->FirstChildElement() != nullptr;
+        is_link || (name_of(*p) == "joint" && p->Attribute("type") != nullptr))  // no mere name
+      ++dropped[fmt::format("{} in <{}>", name_of(*p), name_of(e))];
   ++dropped[std::string(name_of(e))];
 }
 
@@ -121,7 +129,7 @@ void drop_attribute(const XMLElement& e, const std::string& owner, std::string_v
     const std::string small = in_small_letters(name);
     const bool like_it = edits(small, word) <= 2 || small.starts_with(word) ||  // frictionloss, too
                          name_of(e) == "axis" || name_of(e) == "mimic";
-    const bool stands_for_it = e.Attribute(word.c_str()) == nullptr && like_it;
+    const bool stands_for_it = e.Attribute(word.c_str()) == nullptr && like_it && !is_of_fixed(e);
     if (stands_for_it || name_of(e) == "origin")
       fail(e, "{}: <{}> knows no '{}'; known:{}", owner, name_of(e), name,
            known.substr(0, known.size() - 1));
@@ -181,7 +189,7 @@ void refuse_unknown(const XMLElement& e, const std::string& owner,
     if (!has_word(known->attributes, name))
       drop_attribute(e, owner, name, known->attributes, dropped);
   }
-  refuse_doubles(e, owner);
+  refuse_doubles(e, owner, dropped);
   for (const XMLElement* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement())
     refuse_unknown(*c, owner, dropped);
 }
@@ -286,14 +294,57 @@ class Urdf {
         if (p.kg > 0) ++how_.dropped["mass of what never moves"];
     }
     if (!whole) return;
-    if (roots.empty()) fail(robot, "every link is a joint's child: the joints go round in a ring");
-    if (roots.size() != 1)
+    if (roots.size() > 1)
       fail(robot,
            "{} links are no child of a joint, and one must be: the base; join the others to it, or "
            "take them out: {}",
            roots.size(), fmt::join(roots, ", "));
-    for (const auto& [name, link] : links_)
-      if (placed_.count(name) == 0) fail(*link, "link '{}' hangs on itself", name);
+    for (const auto& link : links_) problems_.attempt([&] { refuse_ring(link.first); });
+    if (problems_.count() == 0) free_followers();
+  }
+
+  // Many grippers have joints that turn against their leader, and its limits: which leave no way.
+  void free_followers() {
+    std::map<std::string, XMLElement*> joints;
+    each(mujoco_, [&](XMLElement& e) {
+      if (is_joint(e)) joints.emplace(text(e, "name"), &e);
+      return true;
+    });
+    each(mujoco_, [&](XMLElement& e) {
+      if (parent_name(e) != "equality") return true;
+      XMLElement& follower = *joints.at(text(e, "joint1"));
+      const std::vector<double> own = numbers_in(text(follower, "range")),
+                                of = numbers_in(text(*joints.at(text(e, "joint2")), "range")),
+                                tie = numbers_in(text(e, "polycoef"));
+      if (own.size() < 2 || of.size() < 2 || tie[1] == 0) return true;
+      const auto [from, to] = std::minmax({(own[0] - tie[0]) / tie[1], (own[1] - tie[0]) / tie[1]});
+      if (std::max(of[0], from) < std::min(of[1], to)) return true;
+      follower.DeleteAttribute("range");
+      ++how_.dropped["limits that a <mimic> contradicts"];
+      return true;
+    });
+  }
+
+  // what no base carries hangs on a ring, which is named once
+  void refuse_ring(std::string link) {
+    std::set<std::string> above;
+    const auto parent = [&](const std::string& of) {
+      return link_of(*joint_of_child_.at(of), "parent");
+    };
+    for (; placed_.count(link) == 0; link = parent(link)) {
+      placed_.insert(link);
+      above.insert(link);
+    }
+    if (above.count(link) == 0) return;
+    const XMLElement& joint = *joint_of_child_.at(link);
+    std::vector<std::string> joints;
+    std::string at = link;
+    do {
+      joints.push_back(fmt::format("'{}'", text(*joint_of_child_.at(at), "name")));
+      at = parent(at);
+    } while (at != link);
+    fail(joint, "the joints {} go round in a ring: take out one of them",
+         fmt::join(joints.rbegin(), joints.rend(), ", "));
   }
 
   std::string link_of(const XMLElement& joint, const char* end) const {
@@ -489,10 +540,11 @@ class Urdf {
                              name, leader),
                      {.lock = {name}, .balance = false});
     }
+    const double offset = number(mimic, "offset", 0), multiplier = number(mimic, "multiplier", 1);
     XMLElement& e = *mujoco_.InsertNewChildElement("equality")->InsertNewChildElement("joint");
     e.SetAttribute("joint1", name.c_str());
     e.SetAttribute("joint2", leader.c_str());
-    set(e, "polycoef", {number(mimic, "offset", 0), number(mimic, "multiplier", 1), 0, 0, 0});
+    set(e, "polycoef", {offset, multiplier, 0, 0, 0});
   }
 
   // it moves, and is another one

@@ -9,7 +9,9 @@
 
 #include <cctype>
 #include <cstddef>
+#include <locale>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "mjcf/import/mendable.h"
+#include "mjcf/import/schema.h"
 #include "mjcf/trace/printable.h"
 
 namespace tauext::detail {
@@ -137,7 +140,17 @@ void each(XMLElement& at, Visit&& visit) {
   }
 }
 
+/// The numbers at the beginning of a text, apart by blanks.
+inline std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> all;
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  for (double x = 0; in >> x;) all.push_back(x);
+  return all;
+}
+
 /// An attribute, or that of its class: the one that it names, or a body around it, or the file's.
+/// Actuators of all kinds share their defaults.
 inline std::string with_defaults(XMLElement& root, const XMLElement& e, const char* attribute) {
   if (e.Attribute(attribute) != nullptr) return text(e, attribute);
   std::string name = text(e, "class");
@@ -152,9 +165,12 @@ inline std::string with_defaults(XMLElement& root, const XMLElement& e, const ch
     return found == nullptr;
   });
   for (; found != nullptr && name_of(*found) == "default"; found = found->Parent()->ToElement()) {
-    const XMLElement* const values = found->FirstChildElement(e.Name());
-    if (values != nullptr && values->Attribute(attribute) != nullptr)
-      return text(*values, attribute);
+    for (const XMLElement* v = found->LastChildElement(); v != nullptr;
+         v = v->PreviousSiblingElement()) {
+      const bool is_of = name_of(*v) == name_of(e) ||
+                         (parent_name(e) == "actuator" && has_word(kActuators, name_of(*v)));
+      if (is_of && v->Attribute(attribute) != nullptr) return text(*v, attribute);
+    }
   }
   return "";
 }

@@ -79,6 +79,8 @@ std::string doubts_about(const mjModel& m) {
   constexpr double kFar = 3;  // [1] of the way through the joints, from a joint to a center of mass
   constexpr double kLongest = 20;         // [m]
   constexpr double kMostTurn = 8 * M_PI;  // [rad]
+  constexpr double kMostWay = 10;         // [m] of a slide
+  constexpr double kEndless = 1e6;        // [rad] or [m] from which on no limit is meant
   constexpr double kApart = 0.01;         // [m] wheels on a base, one beside the other, are no arm
   if (m.nv < 3) return "";
   const std::vector<Moving> parts = moving_parts(m);
@@ -103,12 +105,16 @@ std::string doubts_about(const mjModel& m) {
   if (mass > kDense * reach * reach * reach)
     all.push_back(fmt::format("it weighs {:.3g} kg", mass));
   if (reach > kLongest) all.push_back(fmt::format("it reaches more than {:g} m", kLongest));
-  for (int j = 0; j < m.njnt; ++j)
-    if (const mjtNum* const range = m.jnt_range + 2 * j;
-        m.jnt_type[j] == mjJNT_HINGE && m.jnt_limited[j] != 0 && range[1] - range[0] > kMostTurn)
-      all.push_back(
-          fmt::format("joint '{}' has limits of {:.4g} and {:.4g} rad, which may be degrees",
-                      element_name(m, mjOBJ_JOINT, j), range[0], range[1]));
+  for (int j = 0; j < m.njnt; ++j) {
+    const bool slides = m.jnt_type[j] == mjJNT_SLIDE;
+    const mjtNum* const range = m.jnt_range + 2 * j;
+    if (m.jnt_limited[j] == 0 || !(range[1] - range[0] > (slides ? kMostWay : kMostTurn)) ||
+        std::max(-range[0], range[1]) > kEndless)
+      continue;
+    all.push_back(fmt::format(
+        "joint '{}' has limits of {:.4g} and {:.4g} {}", element_name(m, mjOBJ_JOINT, j), range[0],
+        range[1], slides ? "m, which may be mm: give m" : "rad, which may be degrees: give rad"));
+  }
   if (all.empty()) return "";
   return one_line(fmt::format("doubtful, as the arm reaches {:.2g} m: {}; such numbers are often "
                               "placeholders, or in other units (g, mm, degrees), and torques of "

@@ -11,8 +11,9 @@ namespace tauext {
 
 /// Of an arm of three joints or more, not all in one place: bodies whose inertia is that of
 /// something larger than the whole arm, and a mass that would be heavier than gold if it filled a
-/// cube as long as the arm reaches. Files have such numbers where somebody only needed some, or in
-/// g and mm. In one line, with what they are; "" if there are none.
+/// cube as long as the arm reaches; hinges of more than four turns, and slides of more than 10 m.
+/// Files have such numbers where somebody only needed some, or in g, mm and degrees. In one line,
+/// with what they are; "" if there are none.
 std::string doubts_about(const mjModel& m);
 
 }  // namespace tauext

@@ -42,17 +42,6 @@ ImportOptions with(const Mending& by, ImportOptions options) {
   return options;
 }
 
-// as a shell takes it
-std::string quoted(std::string_view word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + '\'';
-}
-std::string path_word(const std::string& path) {
-  const bool plain = path.find_first_of(" '\"$`\\()&;<>|*?[]#~!{}") == path.npos;
-  return plain ? path : quoted(path);
-}
-
 std::string name_of(const mjModel& m, int joint) {
   return mj_id2name(&m, mjOBJ_JOINT, joint);  // the import has named all of them
 }
@@ -83,10 +72,10 @@ bool is_small_arm(const ImportOptions& options, const Reading& read) {
 
 std::string flags(const std::string& path, const ImportOptions& given, const ImportOptions& more) {
   if (more.balance == given.balance)
-    return more.lock == given.lock ? "" : "--lock " + quoted(more.lock);
-  return fmt::format("tauext-import {}{}{} --balance --out arm.xml", path_word(path),
+    return more.lock == given.lock ? "" : "--lock " + shell_quoted(more.lock);
+  return fmt::format("tauext-import {}{}{} --balance --out arm.xml", shell_word(path),
                      more.lock.empty() ? "" : " --lock ",
-                     more.lock.empty() ? "" : quoted(more.lock));
+                     more.lock.empty() ? "" : shell_quoted(more.lock));
 }
 
 // where it has too many joints: how to keep some of them
@@ -100,12 +89,15 @@ std::string advice(const mjModel& m, const std::string& path, const ImportOption
   if (const std::string all_but = "(?!(" + either(fewer.kept) + ")$).*";
       all_but.size() < row.lock.size())
     row.lock = all_but;  // which fixes the base, too, as `options` do
-  if (!is_small_arm(row, read)) return "";
-  return fmt::format(
-      "estimators take arms of {} joints at most, and here are {}: {} keeps the {} from '{}' to "
-      "'{}'",
-      kMostLeaders, ties.free.size(), flags(path, given, row), fewer.row.size(),
-      printable_name(fewer.row.front()), printable_name(fewer.row.back()));
+  const bool tied = static_cast<int>(ties.free.size()) <= kMostLeaders;
+  const std::string many =
+      tied ? "too many joints move with others: "
+           : fmt::format("estimators take arms of {} joints at most, and here are {}: ",
+                         kMostLeaders, ties.free.size());
+  if (!is_small_arm(row, read)) return many + "--lock REGEX fixes others";
+  return many + fmt::format("{} keeps the {} from '{}' to '{}'", flags(path, given, row),
+                            fewer.row.size(), printable_name(fewer.row.front()),
+                            printable_name(fewer.row.back()));
 }
 
 // the joint that carries each one; -1: none

@@ -368,6 +368,120 @@ TEST_F(OfUrdf, WhatIsOutOfPlaceIsAnErrorOnlyWhereItIsMissing) {
             std::string::npos);
 }
 
+// as PR2's files have them
+TEST_F(OfUrdf, PartsWithinForeignElementsAreLeftOutAndCounted) {
+  const std::string path =
+      put(urdf("<gazebo><link name='a'><inertial><mass>1</mass></inertial></link><link name='b'/>"
+               "<joint name='j' type='fixed'/></gazebo><transmission><joint name='elbow'/>"
+               "</transmission><group><link name='x'><inertial/></link></group>"),
+          "arm.urdf");
+  EXPECT_EQ(tree_of(load_mjcf(path)).dof(), 3);
+  const auto left_out = import_mjcf(path).dropped;
+  EXPECT_EQ(left_out.at("link in <gazebo>"), 1) << "b is a name";
+  EXPECT_EQ(left_out.at("joint in <gazebo>"), 1);
+  EXPECT_EQ(left_out.at("link in <group>"), 1);
+  EXPECT_EQ(left_out.count("joint in <transmission>"), 0u);
+}
+
+TEST_F(OfUrdf, AnAxisThatMovesNothingOrSaysTheSameMayStandThere) {
+  const std::string fixed =
+      "<link name='eye'/><joint name='screws' type='fixed'><parent link='tool'/><child "
+      "link='eye'/><axis xzy='0 0 1'/><axis xyz='1 0 0'/></joint>";
+  std::string text = urdf(fixed);
+  const std::string axis = "<axis xyz='1 0 1'/>";
+  text.replace(text.find(axis), axis.size(), axis + "<axis xyz='1.0 0  1'/>");
+  const std::string path = put(text, "arm.urdf");
+  const auto left_out = import_mjcf(path).dropped;
+  EXPECT_EQ(left_out.at("second axis"), 2);
+  EXPECT_EQ(left_out.at("axis.xzy"), 1);
+  EXPECT_EQ(tree_of(load_mjcf(path)).joints[1].axis,
+            tree_of(load_mjcf(put(urdf(), "plain.urdf"))).joints[1].axis);
+  text.replace(text.find("'1.0 0  1'"), 10, "'1.0 0 -1'");
+  EXPECT_NE(
+      error_of([&] { import_mjcf(put(text, "arm.urdf")); }).find("joint 'elbow': a second <axis>"),
+      std::string::npos);
+}
+
+// as Robotiq's grippers have them
+TEST_F(OfUrdf, LimitsOfAFollowerThatItsMimicContradictsAreLeftOutAndCounted) {
+  const auto finger = [](const char* name, const char* limit, const std::string& mimic) {
+    return fmt::format(
+        "<link name='{0}'><inertial><mass value='.1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"
+        "</link><joint name='to_{0}' type='revolute'><parent link='tool'/><child "
+        "link='{0}'/><limit "
+        "{1}/>{2}</joint>",
+        name, limit, mimic);
+  };
+  const auto path = [&](const char* multiplier) {
+    return put(urdf(finger("b", "lower='0' upper='.9'",
+                           fmt::format("<mimic joint='to_a' multiplier='{}'/>", multiplier)) +
+                    finger("a", "lower='0' upper='.8'", "")),
+               "arm.urdf");
+  };
+  for (const auto& [multiplier, left_out, upper] :
+       {std::tuple("-1", 1u, .8), {"1", 0u, .8}, {"1.5", 0u, .6}}) {
+    const std::string file = path(multiplier);
+    EXPECT_EQ(import_mjcf(file).dropped.count("limits that a <mimic> contradicts"), left_out);
+    const ArmTree arm = tree_of(load_mjcf(file));
+    EXPECT_NEAR(arm.upper[3], upper, 1e-12) << multiplier;
+    EXPECT_NEAR(arm.lower[3], 0, 1e-12) << multiplier;
+  }
+}
+
+TEST_F(OfUrdf, ARingNamesItsJoints) {
+  const auto loose = [](const char* link, const char* parent) {
+    return fmt::format(
+        "<link name='{0}'/><joint name='to_{0}' type='fixed'><parent link='{1}'/><child "
+        "link='{0}'/></joint>",
+        link, parent);
+  };
+  const auto error = [&](const std::string& text) {
+    return error_of([&] { import_mjcf(put(text, "arm.urdf")); });
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  // beside the arm: one of two with a link that hangs on it, and one of itself
+  const std::string two = error(urdf(loose("a", "c") + loose("b", "a") + loose("c", "b") +
+                                     loose("d", "b") + loose("e", "e")));
+  has(two, "the joints 'to_b', 'to_c', 'to_a' go round in a ring: take out one of them");
+  has(two, "the joints 'to_e' go round in a ring");
+  EXPECT_EQ(two.find("to_d"), two.npos) << two;
+  has(error("<robot name='r'>" + loose("a", "b") + loose("b", "a") + "</robot>"),
+      "the joints 'to_b', 'to_a' go round in a ring");
+}
+
+TEST_F(OfUrdf, InUtf16NamesTheCommandThatMendsIt) {
+  std::string wide = "\xFF\xFE";
+  for (const char c : urdf()) wide += {c, '\0'};
+  std::string other = wide.substr(2);
+  for (std::size_t i = 0; i < other.size(); i += 2) std::swap(other[i], other[i + 1]);
+  for (const auto& [text, letters] :
+       {std::pair(wide, "UTF-16"), std::pair(wide.substr(2), "UTF-16LE"),
+        std::pair(other, "UTF-16BE")}) {
+    const std::string file = put(text, "arm.urdf");
+    const std::string error = error_of([&] { import_mjcf(file); });
+    EXPECT_NE(error.find(fmt::format("UTF-8 is read: iconv -f {} -t UTF-8 ", letters)),
+              std::string::npos)
+        << error;
+    EXPECT_TRUE(error.ends_with("arm.utf8.urdf")) << error;
+  }
+}
+
+TEST_F(OfUrdf, TooManyJointsAreNamedWithWhatElseIsWrong) {
+  std::string more;
+  for (int i = 0; i < 9; ++i)
+    more += fmt::format(
+        "<link name='f{0}'><inertial><mass value='.1'/><inertia ixx='1' iyy='1' izz='{1}'/>"
+        "</inertial></link><joint name='g{0}' type='continuous'><parent link='tool'/><child "
+        "link='f{0}'/></joint>",
+        i, i == 0 ? 3 : 1);
+  const std::string error = error_of([&] { load_mjcf(put(urdf(more), "arm.urdf")); });
+  EXPECT_NE(error.find("'f0' (line 1) 1, 1 and 3"), error.npos) << error;
+  EXPECT_NE(error.find("estimators take arms of 8 joints at most, and here are 12"), error.npos)
+      << error;
+}
+
 TEST_F(OfUrdf, AJointOfAnyTypeCanBeLocked) {
   const std::string path = put(
       urdf("<link name='c'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"
@@ -418,9 +532,6 @@ TEST_F(OfUrdf, TellsTypingErrorsAndBodiesThatCannotBe) {
            {"'upper'", "'${side}_upper'", "this is no URDF yet"},
            {"<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'><limit upper='1'/></axis>",
             "<limit> stands within <axis>, and belongs into joint"},
-           {"<link name='base'/>",
-            "<link name='base'/><group><link name='x'><inertial/></link></group>",
-            "link 'x' stands within <group>, and belongs into <robot>"},
            {"rpy='.3", "rpy='90", "rpy is 90 -0.2 0.5, more than two turns: it is in rad"},
            {"velocity='1'", "velocity='1,5'", "velocity of <limit> is '1,5', and must be a number"},
            {"lower='-2' upper='2'", "lower='3000' upper='2000'", "no way to go from 3000 to 2000"},
