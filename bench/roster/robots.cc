@@ -98,9 +98,10 @@ std::string list_scale(const Robot& r) {
   }
   return fmt::format(
       "{}  its end effector is {}\n  it weighs {:.3g} kg where it gives way, and is hit by {:.3g} "
-      "N{}\n",
-      table.format(), arm.end_effector, scale.mass, scale.force,
-      scale.gives_way ? ", as a joint would give way to more" : "");
+      "N{}{}\n",
+      table.format(), arm.end_effector, scale.mass, scale.blow,
+      scale.gives_way ? ", as a joint would give way to more" : "",
+      scale.by_effort ? "; loads and blows are by the file's effort" : "");
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+constexpr double kBlow = 0.02;  // [s] how long a blow takes
+
 // half of each joint's range, and the middle of it
 struct Ranges {
   VectorXd middle, half;  // [rad] or [m]
@@ -36,11 +38,17 @@ struct Ranges {
   }
 };
 
-// how many times `load` [N m] may act at once: then no joint goes further than `way` against the
-// controller
+// how many times `load` [N m] may act at once, beside what acts already: then no joint goes further
+// than `way` against the controller
+double share_of(const Plant& plant, const VectorXd& load, const VectorXd& way,
+                const VectorXd& beside) {
+  const VectorXd by_load = plant.inertia().partialPivLu().solve(load),
+                 before = plant.inertia().partialPivLu().solve(beside);
+  const Eigen::ArrayXd left = Tracking().Kp * way.array() - before.array() * by_load.array().sign();
+  return (left / by_load.array().abs().max(1e-300)).minCoeff();
+}
 double share_of(const Plant& plant, const VectorXd& load, const VectorXd& way) {
-  const VectorXd acceleration = plant.inertia().partialPivLu().solve(load).cwiseAbs();
-  return (Tracking().Kp * way.array() / acceleration.array().max(1e-300)).minCoeff();
+  return share_of(plant, load, way, VectorXd::Zero(load.size()));
 }
 
 // between both
@@ -59,6 +67,24 @@ double held_force(const ArmTree& arm, const VectorXd& torque) {
   return most;
 }
 
+// What the joints are used to where the file states what their drives can do, and no rotors, which
+// would show how heavy a load may be. An effort below what a joint is used to is a placeholder, and
+// so are all where each is far above that.
+VectorXd usual_by_effort(const ArmTree& arm) {
+  constexpr double kMost = 10;   // [1] times what the joint is used to
+  constexpr double kMuch = 1e5;  // [N m] or [N]
+  VectorXd usual = arm.usual_torque;
+  double least = kMuch;  // [1]
+  for (int i = 0; i < arm.dof(); ++i) {
+    const double effort = arm.rated_torque[i];
+    const auto leader = static_cast<std::size_t>(arm.leaders[static_cast<std::size_t>(i)]);
+    if (arm.joints[leader].armature > 0 || effort < usual[i] || effort >= kMuch) continue;
+    least = std::min(least, effort / usual[i]);
+    usual[i] = std::min(effort, kMost * usual[i]);
+  }
+  return least <= kMost ? usual : arm.usual_torque;
+}
+
 void set_forces(const Plant& plant, const ArmTree& arm, const VectorXd& way, ArmScale& scale) {
   const MatrixXd J = plant.end_effector_jacobian();
   const MatrixXd mobility = J * plant.inertia().partialPivLu().solve(J.transpose());  // [1/kg]
@@ -75,10 +101,16 @@ void set_forces(const Plant& plant, const ArmTree& arm, const VectorXd& way, Arm
   const Vector3d u = slanted(scale);
   scale.mass = 1 / u.dot(mobility * u);
   const VectorXd torque = J.transpose() * u;  // [N m/N]
-  const double most = std::min({20 * scale.mass, 300., held_force(arm, torque)});
+  const double held = std::min(300., held_force(arm, torque));
+  const double most = std::min(20 * scale.mass, held);
   const double bearable = share_of(plant, torque, way);
-  scale.force = std::min(most, bearable);
+  scale.force = scale.blow = std::min(most, bearable);
   scale.gives_way = bearable < most;
+  if (!scale.by_effort) return;
+  // after 2 T / pi of its peak, the critically damped controller lets it go on by v / (e w)
+  const double in_blow = M_PI * M_E / (2 * kBlow * std::sqrt(Tracking().Kp)) * bearable;
+  scale.blow = std::min(held, in_blow);
+  scale.gives_way = in_blow < held;
 }
 
 // a one-sided spring and damper in the way of the end effector
@@ -165,11 +197,13 @@ class Generic {
     for (const double t : {4., 9., 14.})
       pushes.push_back({TouchKind::kSlowPush, t, 1, 1, 1, push / 4});
     pushed = with_touches(pushed, pushes);
-    Scenario& blow = add("blow", fmt::format("half sines of {:.3g} N, 20 ms, at 5, 10 and 15 s", f),
-                         Response::kDetection);
+    const Vector3d hit = scale_.blow * slanted(scale_);
+    Scenario& blow =
+        add("blow", fmt::format("half sines of {:.3g} N, 20 ms, at 5, 10 and 15 s", scale_.blow),
+            Response::kDetection);
     std::vector<Touch> blows;
     for (const double t : {5., 10., 15.})
-      blows.push_back({TouchKind::kBlow, t, 0.02, 0, 0, t == 10 ? Vector3d(-push) : push});
+      blows.push_back({TouchKind::kBlow, t, kBlow, 0, 0, t == 10 ? Vector3d(-hit) : hit});
     blow = with_touches(blow, blows);
     Scenario& clamp =
         add("clamp", fmt::format("something is caught at 8 s: {:.3g} N in 0.75 s, held 3 s", f),
@@ -229,11 +263,20 @@ ArmScale scale_of(const Model& model) {
   scale.reach = (0.75 * (r.half + r.middle - scale.home)).cwiseMin(0.8);
   plant.set_state(scale.home, VectorXd::Zero(plant.dof()));
   const VectorXd way = (r.half / 8).cwiseMin(0.05);
+  const VectorXd usual = usual_by_effort(arm);
+  scale.by_effort = usual != arm.usual_torque;
   set_forces(plant, arm, way, scale);
   const VectorXd hand = scale.force * plant.end_effector_jacobian().colwise().norm().transpose();
-  scale.usual_torque = arm.usual_torque.cwiseMax(3 * hand);
-  scale.torque = scale.usual_torque / 5;
-  scale.torque *= std::min(1., share_of(plant, scale.torque, way));
+  scale.usual_torque = usual.cwiseMax(3 * hand);
+  const auto loads = [&](const VectorXd& used_to) -> VectorXd {
+    return used_to / 5 * std::min(1., share_of(plant, used_to / 5, way));
+  };
+  const VectorXd least = loads(arm.usual_torque.cwiseMax(3 * hand));
+  scale.torque = loads(scale.usual_torque);
+  if ((scale.torque - least).minCoeff() >= 0) return scale;
+  // no joint has less for its effort
+  const VectorXd more = scale.usual_torque / 5 - least;
+  scale.torque = least + std::min(1., share_of(plant, more, way, least)) * more;
   return scale;
 }
 
@@ -245,7 +288,7 @@ std::vector<Touch> touches_of(const ArmScale& scale, TouchKind kind, std::uint64
   std::vector<Touch> all = draw_touches(kind, seed, kFirstTouch, quiet().duration);
   for (Touch& t : all) {  // drawn in the plane of x and z, 300 N at most
     const Eigen::Vector2d f = t.force(std::vector{0, 2}) / 300;
-    t.force = scale.force * scale.directions * f;
+    t.force = (kind == TouchKind::kBlow ? scale.blow : scale.force) * scale.directions * f;
   }
   return all;
 }
