@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -135,12 +136,16 @@ class VelocityFilter {
  public:
   explicit VelocityFilter(double w) : w_(w) {}
 
+  double delay() const { return 1 / w_; }  // [s] of a pole
+  bool begun() const { return once_.size() > 0; }
+  // at the first sample, as if the speed [rad/s] had been so before, in steps like the first [s]
+  void begin(double t, const VectorXd& q, const VectorXd& speed, double step) {
+    const double late = step / std::expm1(w_ * step);  // each pole
+    once_ = q - late * speed, twice_ = once_ - late * speed;
+    t_ = t;
+  }
+  // of the next one [rad/s]
   VectorXd operator()(double t, const VectorXd& q) {
-    if (once_.size() == 0) {
-      once_ = twice_ = q;
-      t_ = t;
-      return VectorXd::Zero(q.size());
-    }
     const double h = t - t_, a = std::exp(-w_ * h);
     t_ = t;
     once_ = a * once_ + (1 - a) * q;
@@ -369,6 +374,41 @@ struct RecordingReader::Impl {
       skipped.notes.push_back(holes.in_words(true));
   }
 
+  // false at the end
+  bool next_row() {
+    if (!kept.empty()) {
+      row = std::move(kept.front());
+      kept.pop_front();
+      return true;
+    }
+    while (!timed.next(row)) {
+      if (ended) return false;
+      if (!take_row()) finish();
+    }
+    return true;
+  }
+
+  // by the mean speed [rad/s] over a pole's delay, which is returned; 0 over a gap
+  VectorXd begin_filter() {
+    const auto q = [this] { return VectorXd(VectorXd::Map(row.data() + layout.q, layout.dof)); };
+    std::vector<double> first = row;
+    std::deque<std::vector<double>> next;
+    const VectorXd from = q();
+    VectorXd speed = VectorXd::Zero(layout.dof);
+    double step = filter.delay();
+    while (row[0] < first[0] + filter.delay() && next_row()) {
+      const double h = row[0] - first[0];
+      const VectorXd way = q() - from;
+      if (h < 5 * filter.delay() && way.cwiseAbs().maxCoeff() < 3) speed = way / h;
+      if (next.empty()) step = h;
+      next.push_back(row);
+    }
+    kept = std::move(next);
+    row = std::move(first);
+    filter.begin(row[0], from, speed, step);
+    return speed;
+  }
+
   void fill(RecordedSample& s) {
     const auto copy = [&](Eigen::VectorXd& to, int at, int count) {
       if (at >= 0) to = VectorXd::Map(row.data() + at, count);
@@ -376,7 +416,7 @@ struct RecordingReader::Impl {
     s.t = row[0];
     copy(s.q, layout.q, layout.dof);
     copy(s.qd, layout.qd, layout.dof);
-    if (layout.qd < 0) s.qd = filter(s.t, s.q);
+    if (layout.qd < 0) s.qd = filter.begun() ? filter(s.t, s.q) : begin_filter();
     copy(s.tau, layout.tau, layout.dof);
     copy(s.tau_ext, layout.tau_ext, layout.dof);
     copy(s.driver, layout.driver, layout.dof);
@@ -400,6 +440,7 @@ struct RecordingReader::Impl {
   RecordingContents contents;
   SkippedRows skipped;
   std::vector<double> raw, row;
+  std::deque<std::vector<double>> kept;  // the rows behind it that were read already
   bool ended = false, noted = false;
   std::int64_t row_count = 0;  // with those that could not be read
   ColumnMap map;
@@ -429,13 +470,10 @@ const Regularity& RecordingReader::regularity() const {
 
 bool RecordingReader::next(RecordedSample& s) {
   Impl& r = *impl_;
-  while (!r.timed.next(r.row)) {
-    if (r.ended) {
-      if (r.counter.so_far().samples == 0) r.fail_empty();
-      r.note_holes();
-      return false;
-    }
-    if (!r.take_row()) r.finish();
+  if (!r.next_row()) {
+    if (r.counter.so_far().samples == 0) r.fail_empty();
+    r.note_holes();
+    return false;
   }
   r.fill(s);
   return true;
