@@ -243,7 +243,9 @@ std::vector<int> ColumnMap::find(std::string_view quantity, const Wanted& w,
     const std::string& name = columns[static_cast<std::size_t>(c)];
     if (w.numbers.empty() && std::count(columns.begin(), columns.end(), name + "#2") > 0)
       throw std::runtime_error(
-          fmt::format("{}: column '{}' appears twice", path, printable_name(name)));
+          fmt::format("{}: column '{}' appears twice; a map (--columns) takes one by its number: "
+                      "[{}] columns = [{}{}]",
+                      path, printable_name(name), quantity, c + 1, found.size() > 1 ? ", .." : ""));
   }
   return found;
 }

@@ -50,6 +50,8 @@ std::string magic_of(const std::string& path) {
 struct UnsupportedFormat {
   std::string_view magic, name, remedy;
 };
+constexpr std::string_view kOfWorkbook =
+    "python3 -c \"import pandas; pandas.read_excel('{0}').to_csv('run.csv', index=False)\"";
 constexpr UnsupportedFormat kUnsupported[] = {
     {"#ROSBAG", "a bag of ROS 1", "rosbags-convert --src {0} --dst new_bag (pip install rosbags)"},
     {"\x89HDF", "HDF5",
@@ -58,7 +60,8 @@ constexpr UnsupportedFormat kUnsupported[] = {
     {"%PDF", "a PDF", "export a table as CSV"},
     {"\xFF\xFE", "text in UTF-16", "iconv -f UTF-16 -t UTF-8 {0} > run.csv"},
     {"\xFE\xFF", "text in UTF-16", "iconv -f UTF-16 -t UTF-8 {0} > run.csv"},
-    {"\xD0\xCF\x11\xE0", "a workbook of old Excel", "save the sheet as CSV"},
+    {"version https://git-lfs", "a pointer of Git LFS in the place of its data", "git lfs pull"},
+    {"\xD0\xCF\x11\xE0", "a workbook of old Excel", kOfWorkbook},
 };
 
 void refuse_unsupported(const std::string& path, const std::string& begin) {
@@ -71,7 +74,17 @@ void refuse_unsupported(const std::string& path, const std::string& begin) {
   const bool zip = begin.starts_with("PK\x03\x04");
   if (zip &&
       (begin.find("[Content_Types].xml") != begin.npos || begin.find("_rels/") != begin.npos))
-    fail("a workbook of Excel", "save the sheet as CSV");
+    fail("a workbook of Excel", kOfWorkbook);
+  // without the mark before its letters
+  const auto letter = [&](std::size_t i) { return begin[i] >= ' ' && begin[i] <= '~'; };
+  for (const std::size_t first : {0U, 1U}) {
+    const std::size_t other = 1 - first;
+    if (begin.size() < 4 || !letter(first) || !letter(first + 2) || begin[other] != '\0' ||
+        begin[other + 2] != '\0')
+      continue;
+    fail("text in UTF-16",
+         fmt::format("iconv -f UTF-16{} -t UTF-8 {{0}} > run.csv", first == 0 ? "LE" : "BE"));
+  }
 }
 
 // a text of numbers has no other letters below the blank
@@ -106,12 +119,12 @@ bool is_numbered(const std::string& column) {
 std::unique_ptr<RowSource> open_rows(const std::string& path, const RecordingOptions& options,
                                      const CsvFormat& csv) {
   if (is_bag(path)) return std::make_unique<BagRows>(path, options.topic, options.joints);
+  const std::string begin = magic_of(path);
+  refuse_unsupported(path, begin);
   if (!options.topic.empty())
     throw std::invalid_argument(
         fmt::format("{}: has no channel '{}', as LCM logs have, and no topic, as ROS 2 bags have",
                     path, options.topic));
-  const std::string begin = magic_of(path);
-  refuse_unsupported(path, begin);
   if (begins_as_arrays(begin)) return std::make_unique<NpyRows>(path);
   if (begins_as_mat(begin)) return std::make_unique<MatRows>(path);
   if (is_compressed(begin)) {

@@ -208,7 +208,8 @@ void NpyRows::require_different_columns(const std::string& path) const {
   std::set<std::string> known;
   for (const std::string& c : columns_)
     if (!known.insert(c).second)
-      refuse(path, fmt::format("column '{}' appears twice", printable_name(c)));
+      refuse(path, fmt::format("column '{}' appears twice: save one of them by another name",
+                               printable_name(c)));
 }
 
 bool NpyRows::next(std::vector<double>& row, SkippedRows&) {

@@ -136,7 +136,8 @@ TEST_F(Npy, ErrorsNameWhatIsWrong) {
             "has 2 dimensions, where rows of fields have 1");
   EXPECT_EQ(error_with(of("'<f8'", "()"), "12345678"),
             "has 0 dimensions, where rows of numbers have 1 or 2");
-  EXPECT_EQ(error_with(of("[('t', '<f8'), ('t', '<f8')]", "(0,)")), "column 't' appears twice");
+  EXPECT_EQ(error_with(of("[('t', '<f8'), ('t', '<f8')]", "(0,)")),
+            "column 't' appears twice: save one of them by another name");
   EXPECT_EQ(error_with(of("[('t', [('x', '<f8')])]", "(0,)")),
             "its header has a structure in a structure, at '[('x', '<f8')])], 'fortran_ord'");
   EXPECT_EQ(error_of([&] { NpyRows x(fixture("objects.npy")); }),

@@ -169,7 +169,7 @@ TEST_F(Npz, ErrorsNameTheArray) {
   EXPECT_EQ(error_of_reading(zip({t, stored("q", npy("(3, 2)", 7))})),
             "array 'q': has 8 bytes more than its 3 rows");
   EXPECT_EQ(error_of_reading(zip({t, stored("q1", npy("(3,)", 3)), stored("q", npy("(3, 1)", 3))})),
-            "column 'q1' appears twice");
+            "column 'q1' appears twice: save one of them by another name");
   EXPECT_EQ(error_of_reading(zip({stored("rate", npy("()", 1))})),
             "has no array that could be columns");
   EXPECT_EQ(error_of_reading(zip({t, stored("\x1b[2J", "no array")})),

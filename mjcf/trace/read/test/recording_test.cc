@@ -242,7 +242,23 @@ TEST_F(TraceFile, ErrorsNameTheFileAndTheReason) {
   EXPECT_EQ(
       error_of_reading("0,1,2,3\n0.1,1,2,3\n"),
       path() + ": begins with numbers: the first line must name the columns, like t,q1,qd1,tau1");
-  EXPECT_EQ(error_of_reading("t,q1,q1,qd1,tau1\n"), path() + ": column 'q1' appears twice");
+  EXPECT_EQ(error_of_reading("t,t,q1,qd1,tau1\n"),
+            path() +
+                ": column 't' appears twice; a map (--columns) takes one by its number: [t] "
+                "columns = [1]");
+  EXPECT_EQ(error_of_reading("t,q1,q2,q1,qd1,tau1\n"),
+            path() +
+                ": column 'q1' appears twice; a map (--columns) takes one by its number: [q] "
+                "columns = [2, ..]");
+  for (const std::string time : {"2026-11-01T00:00:00.25Z", "2026-11-01 00:00:01", "00:00:02.5"})
+    EXPECT_EQ(error_of_reading(kHead + time + ",1,2,3,4,5,6\n"),
+              path() + ": no usable row (1 skipped; line 2: column 't' is '" + time +
+                  "', not a number: times are numbers, of seconds or a unit that the map says; "
+                  "`rate` [Hz] in a map of columns counts the rows instead)");
+  for (const int rows : {1, 10000})  // in one block of the file, and in several
+    EXPECT_EQ(
+        error_of_reading("t,q1,qd1,tau1\r" + std::string(rows * 8UL, '1') + "\r"),
+        path() + ": its lines end in CR, and not in LF: tr '\\r' '\\n' < " + path() + " > run.csv");
   EXPECT_EQ(
       error_of_reading("a,b,c\n"),
       path() +

@@ -83,9 +83,14 @@ TEST_F(Unpacked, WhatIsNotReadIsNamedWithARemedy) {
            {"#ROSBAG V2.0\n", "a bag of ROS 1, which is not read: rosbags-convert --src "},
            {"\x89HDF\r\n\x1a\n", "h5py"},
            {"PAR1\x15\x04", "pandas.read_parquet"},
-           {"PK\x03\x04\x14\0\x06\0\x08\0\0\0!\0[Content_Types].xml"s, "a workbook of Excel"},
+           {"PK\x03\x04\x14\0\x06\0\x08\0\0\0!\0[Content_Types].xml"s,
+            "x.csv').to_csv('run.csv', index=False)\""},
            {"\xff\xfet\0,\0q\0"s, "text in UTF-16, which is not read: iconv "},
-           {"\xd0\xcf\x11\xe0", "save the sheet as CSV"},
+           {"t\0,\0q\0"s, "text in UTF-16, which is not read: iconv -f UTF-16LE -t UTF-8 "},
+           {"\0t\0,\0q"s, "text in UTF-16, which is not read: iconv -f UTF-16BE -t UTF-8 "},
+           {"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+            "a pointer of Git LFS in the place of its data, which is not read: git lfs pull"},
+           {"\xd0\xcf\x11\xe0", "python3 -c \"import pandas; pandas.read_excel('"},
            {"\x7f"
             "ELF\2\1\1\0"s,
             "unknown format of recording; known: CSV"}}) {

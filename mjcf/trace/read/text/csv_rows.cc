@@ -70,6 +70,20 @@ bool has_decimal_comma(std::string_view field) {
   return number_of(text, value);
 }
 
+// what to do about a field that is no number, if that is known
+const char* remedy_of(std::string_view field) {
+  if (has_decimal_comma(field)) return ": write decimals with a point";
+  const bool is_time = field.find(':') != field.npos && field[0] >= '0' && field[0] <= '9';
+  return is_time ? ": times are numbers, of seconds or a unit that the map says; `rate` [Hz] in a "
+                   "map of columns counts the rows instead"
+                 : "";
+}
+
+[[noreturn]] void fail_line_ends(const std::string& path) {
+  throw std::runtime_error(
+      fmt::format("{0}: its lines end in CR, and not in LF: tr '\\r' '\\n' < {0} > run.csv", path));
+}
+
 // the one that the line has, of those that are usual
 char separator_of(std::string_view line) {
   for (const char c : {',', ';', '\t'}) {
@@ -108,6 +122,7 @@ bool CsvRows::next_line(std::string_view& line) {
                                  ? end_ - begin_
                                  : static_cast<std::size_t>(static_cast<const char*>(found) - from);
     if (size > kLongest) {
+      if (number_ == 0 && std::memchr(from, '\r', size) != nullptr) fail_line_ends(path_);
       throw std::runtime_error(fmt::format("{}: line {} is longer than {} bytes: no CSV of ours",
                                            path_, number_ + 1, kLongest));
     }
@@ -141,6 +156,7 @@ std::string_view CsvRows::first_line() {
   for (std::string_view line;;) {
     if (!next_line(line))
       throw std::runtime_error(path_ + (number_ == 0 ? ": is empty" : ": has no rows"));
+    if (line.find('\r') != line.npos) fail_line_ends(path_);
     if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     if (line.starts_with("sep=") && line.size() == 5) {
       if (format_.separator == 0) format_.separator = line[4];
@@ -219,8 +235,7 @@ std::string CsvRows::parse(std::string_view line, std::vector<double>& row,
       value = std::numeric_limits<double>::quiet_NaN();
     } else if (!number_of(field, value) && wrong.empty()) {
       wrong = fmt::format("column '{}' is '{}', not a number{}", printable_name(columns_[fields]),
-                          printable_name(std::string(field)),
-                          has_decimal_comma(field) ? ": write decimals with a point" : "");
+                          printable_name(std::string(field)), remedy_of(field));
     }
     if (!std::isfinite(value)) all_finite = false;
   }
