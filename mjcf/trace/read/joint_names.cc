@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -63,7 +64,8 @@ void refuse_two_ways(const std::vector<std::pair<Texts, JointNames>>& found,
     if (texts.first.starts_with(first.first) && texts.second.ends_with(first.second)) continue;
     throw std::runtime_error(fmt::format(
         "{} match the robot's joints in more than one way: their names {}, or they {}; name the "
-        "columns in a map (--columns): [q] columns = [\"position.NAME\", ..]",
+        "columns in a map (--columns): [q] columns = [\"position.NAME\", ..], and [qd] and "
+        "[tau_instant] likewise",
         whose, found.front().second.how, way.how));
   }
 }
