@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "mjcf/plant/simulated.h"
 #include "mjcf/record.h"
@@ -58,6 +59,16 @@ struct Robot {
 class TorqueFits : public testing::Test {
  protected:
   static Robot arm6() { return Robot("bench/examples/arm6.json"); }
+
+  // the same arm in motion where nothing weighs anything
+  static std::pair<ArmTree, Trace> weightless(const Robot& robot) {
+    const auto gravity = gravity_of(robot.arm);
+    ArmTree arm = robot.arm;
+    arm.gravity.setZero();
+    Trace log = robot.run("in_motion");
+    for (int k = 0; k < log.size(); ++k) log.tau.col(k) -= gravity(log.q.col(k));
+    return {std::move(arm), std::move(log)};
+  }
 
   static void expect(const std::string& why, const std::string& words) {
     EXPECT_NE(why.find(words), std::string::npos) << '"' << why << '"';
@@ -339,11 +350,7 @@ TEST_F(TorqueFits, JointsThatMoveAlikeAndAreExchangedAreADoubt) {
 // no joint alone shows it beside a load, and no slow pose, where nothing weighs anything
 TEST_F(TorqueFits, AUnitIsADoubtWhereNothingWeighs) {
   const Robot robot = arm6();
-  const auto gravity = gravity_of(robot.arm);
-  ArmTree floating = robot.arm;
-  floating.gravity.setZero();
-  Trace log = robot.run("in_motion");
-  for (int k = 0; k < log.size(); ++k) log.tau.col(k) -= gravity(log.q.col(k));
+  auto [floating, log] = weightless(robot);
   EXPECT_EQ(Robot::words_of(floating, log), "");
   log.tau *= 0.7375621;
   expect(Robot::words_of(floating, log), "all torques are 0.73");
@@ -352,14 +359,10 @@ TEST_F(TorqueFits, AUnitIsADoubtWhereNothingWeighs) {
 // so that friction may be all of it, and a current, too
 TEST_F(TorqueFits, ATorqueOfWhichTheModelKnowsLittleIsADoubtWhereNothingWeighs) {
   const Robot robot = arm6();
-  const auto gravity = gravity_of(robot.arm);
-  ArmTree floating = robot.arm;
-  floating.gravity.setZero();
-  Trace log = robot.run("in_motion");
-  for (int k = 0; k < log.size(); ++k) log.tau.col(k) -= gravity(log.q.col(k));
-  const auto with_friction = [&log](double torque) {
-    Trace other = log;
-    other.tau.array() += torque * (50 * log.qd.array()).tanh();
+  auto [floating, log] = weightless(robot);
+  const auto with_friction = [recorded = log](double torque) {
+    Trace other = recorded;
+    other.tau.array() += torque * (50 * recorded.qd.array()).tanh();
     return other;
   };
   EXPECT_EQ(Robot::words_of(floating, with_friction(1)), "");

@@ -13,12 +13,7 @@
 namespace tauext::test {
 namespace {
 
-class Doubts : public RobotFolder {
- protected:
-  std::string body(const std::string& xml) const {
-    return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
-  }
-};
+class Doubts : public RobotFolder {};
 
 TEST_F(Doubts, NameInertiasLargerThanTheArmMassesThatNoArmHasAndLimitsInOtherUnits) {
   const auto doubts = [&](const char* mass, const char* inertia) {

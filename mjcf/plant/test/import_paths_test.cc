@@ -16,13 +16,7 @@
 namespace tauext::test {
 namespace {
 
-class ImportPaths : public RobotFolder {
- protected:
-  // with these bodies
-  std::string body(const std::string& xml) const {
-    return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
-  }
-};
+class ImportPaths : public RobotFolder {};
 
 TEST_F(ImportPaths, AFileWithoutXmlHasNoLineToBlame) {
   for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{

@@ -21,6 +21,10 @@ class RobotFolder : public testing::Test {
     std::ofstream(folder_ / name) << xml;
     return folder_ / name;
   }
+  // a file with these bodies
+  std::string body(const std::string& xml) const {
+    return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
+  }
 
   const std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) / fmt::format("robots_{}", ::getpid());
