@@ -61,13 +61,7 @@ std::string arm(bool plain) {
               "<keyframe><key qpos='0 0 0 0'/></keyframe>");
 }
 
-class Import : public RobotFolder {
- protected:
-  // with these bodies
-  std::string body(const std::string& xml) const {
-    return put("<mujoco><worldbody>" + xml + "</worldbody></mujoco>");
-  }
-};
+class Import : public RobotFolder {};
 
 // by MuJoCo alone
 Model own_reading(const std::string& path) {
